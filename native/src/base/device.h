@@ -1,0 +1,45 @@
+// What renders of one host share: threads, Embree's device, colour management, warnings.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <tbb/task_arena.h>
+
+#include "gradus/gradus.h"
+
+struct RTCDeviceTy;
+
+namespace gradus {
+
+class ColorManager;  // color/color.h
+
+class Device {
+ public:
+  // Throws UnsupportedError if Embree or TBB are not those it was built with (contract 7.5).
+  explicit Device(const GradusDeviceSettings& settings);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  RTCDeviceTy* embree() const { return embree_; }
+  tbb::task_arena& arena() { return arena_; }
+  uint32_t threads() const { return threads_; }
+  ColorManager& color() { return *color_; }
+  // Each text is kept once.
+  void warn(const std::string& text);
+  bool take_warning(std::string* text);
+
+ private:
+  RTCDeviceTy* embree_ = nullptr;
+  uint32_t threads_ = 0;
+  tbb::task_arena arena_;
+  std::unique_ptr<ColorManager> color_;
+  std::mutex mutex_;
+  std::deque<std::string> warnings_;
+  std::deque<std::string> seen_;
+};
+
+}  // namespace gradus

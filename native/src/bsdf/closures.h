@@ -1,0 +1,121 @@
+// The scattering function of one surface point: a small set of weighted lobes, grouped into classes.
+//
+// Scattering first samples a class, with probability class_probability(c), then a direction within it; a light sample is split over the
+// classes (contract 1.4). All directions point away from the surface; `wo` towards the previous vertex, `wi` towards the next.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/types.h"
+
+namespace gradus {
+
+// Letters of a path word (contract 3.1): D rough, R specular reflection, T specular transmission.
+enum class ScatterClass : uint8_t { Diffuse = 0, Reflection = 1, Transmission = 2 };
+inline constexpr int kScatterClasses = 3;
+
+// What Blender's light passes call a lobe; independent of the class.
+enum class LightPass : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
+
+enum class LobeType : uint8_t {
+  Diffuse,  // Lambert, or Oren-Nayar with roughness > 0
+  Translucent,
+  Sheen,
+  GgxReflection,
+  GgxRefraction,
+  GgxGlass,         // reflection and refraction of one dielectric interface, chosen by Fresnel
+  DiracReflection,  // roughness 0
+  DiracRefraction,
+  DiracGlass,
+  Count
+};
+
+enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
+
+// One lobe. Frame: normal, and tangent where anisotropic.
+struct Lobe {
+  LobeType type = LobeType::Diffuse;
+  FresnelType fresnel = FresnelType::None;
+  LightPass pass = LightPass::Diffuse;
+  bool multiscatter = false;  // energy lost by single scattering is given back
+  Rgb weight = Rgb(0.0f);     // throughput of the node graph times colour
+  Vec3 normal = Vec3(0, 0, 1);
+  Vec3 tangent = Vec3(1, 0, 0);
+  float alpha_x = 0.0f;  // roughness², after anisotropy; diffuse: Oren-Nayar sigma
+  float alpha_y = 0.0f;
+  float ior = 1.0f;    // of the inside against the outside; the code looks at which side wo is on
+  Rgb f0 = Rgb(1.0f);  // Schlick
+  Rgb f90 = Rgb(1.0f);
+  Rgb transmission_tint = Rgb(1.0f);                   // glass lobes
+  float sample_weight = 0.0f;                          // filled by Closures::finish()
+  ScatterClass scatter_class = ScatterClass::Diffuse;  // reflection side; for GgxGlass the transmission side is T, unless rough (D)
+};
+
+// f·|cos(wi)| and its density in solid angle.
+struct BsdfEval {
+  Rgb value = Rgb(0.0f);
+  float pdf = 0.0f;  // p(wi | class)
+};
+
+struct BsdfSample {
+  Vec3 wi = Vec3(0.0f);
+  Rgb value = Rgb(0.0f);  // f·|cos|, of the whole class for smooth lobes; for Dirac the coefficient
+  float pdf = 0.0f;       // p(wi | class); for Dirac the discrete probability within the class
+  bool dirac = false;
+  bool transmitted = false;  // wi on the other side of the geometric surface
+  float eta = 1.0f;          // IOR of the side of wi over that of wo; 1 for reflection
+  float alpha = 1.0f;        // roughness of the sampled lobe, for the shift's criteria
+  Vec3 lobe_normal = Vec3(0, 0, 1);
+  uint8_t lobe = 0;  // index of the sampled lobe
+};
+
+inline constexpr int kMaxLobes = 12;
+
+class Closures {
+ public:
+  // Building: add lobes (more than kMaxLobes: the weakest is merged away), then finish() once.
+  void clear() { count_ = 0; }
+  Lobe* add();  // nullptr when full
+  // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by roughness_threshold
+  // (alpha), drops black ones, fills sampling weights.
+  void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold);
+
+  int count() const { return count_; }
+  const Lobe& lobe(int i) const { return lobes_[i]; }
+  bool empty() const { return count_ == 0; }
+
+  // P(class); the probabilities of the classes that are present sum to one. 0: class absent.
+  float class_probability(ScatterClass c) const { return class_probability_[static_cast<int>(c)]; }
+  // Smallest and largest alpha of the class's lobes (Dirac: 0); 1 for diffuse lobes. Shifts classify vertices by these.
+  float min_alpha(ScatterClass c) const { return min_alpha_[static_cast<int>(c)]; }
+  float max_alpha(ScatterClass c) const { return max_alpha_[static_cast<int>(c)]; }
+  // The class has lobes that are not Dirac, so that evaluate() can be non-zero.
+  bool has_smooth(ScatterClass c) const { return has_smooth_[static_cast<int>(c)]; }
+
+  // All smooth lobes of one class together.
+  BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
+  // The same, split by Blender's light passes (contract 6.5): value of each pass; sums to evaluate().value.
+  std::array<Rgb, 3> evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
+  // u: direction; u_lobe: choice of the lobe. False: absorbed.
+  bool sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample* out) const;
+  // One given lobe alone: what a shift needs to replay a Dirac event with the same lobe. False if the lobe cannot do it.
+  bool evaluate_dirac(int lobe, const Vec3& wo, bool transmitted, BsdfSample* out) const;
+
+  // Albedo of the lobes of a pass, for colour passes and denoising.
+  Rgb albedo(LightPass pass, const Vec3& wo) const;
+  Rgb albedo(const Vec3& wo) const;
+  // Average normal of the lobes, weighted as sampled; for the denoising normal.
+  Vec3 average_normal() const;
+
+ private:
+  std::array<Lobe, kMaxLobes> lobes_;
+  int count_ = 0;
+  std::array<float, kScatterClasses> class_probability_{};
+  std::array<float, kScatterClasses> min_alpha_{};
+  std::array<float, kScatterClasses> max_alpha_{};
+  std::array<bool, kScatterClasses> has_smooth_{};
+  Vec3 geometric_normal_ = Vec3(0, 0, 1);
+};
+
+}  // namespace gradus

@@ -1,0 +1,101 @@
+// The sampled frame: sums per pixel, in halves, so that variances are known. The one gate into it is frame/gate.h.
+//
+// A pixel p keeps the gradient samples of its own four offsets (towards +x, +y, -x, -y), so that nothing is written across pixels and
+// the result does not depend on tiles or threads; dx and dy are merged when read:
+//   dx(p) = [ sum(p, +x) - sum(p + x, -x) ] / pair count      (contract 1.5: normalised by the counts of the pair, batch by batch)
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+
+namespace gradus {
+
+enum Offset : int { kRight = 0, kUp = 1, kLeft = 2, kDown = 3, kOffsets = 4 };
+inline constexpr int kOffsetX[kOffsets] = {1, 0, -1, 0};
+inline constexpr int kOffsetY[kOffsets] = {0, 1, 0, -1};
+inline constexpr int kHalves = 2;
+
+// Integer rectangle of film pixels, upper bounds exclusive.
+struct Region {
+  int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  int32_t width() const { return x1 - x0; }
+  int32_t height() const { return y1 - y0; }
+  int64_t area() const { return int64_t(width()) * height(); }
+  bool contains(int32_t x, int32_t y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+};
+
+// Radiance (RGB) and, with a transparent film, alpha as the fourth channel; 0 otherwise.
+using Radiance = Vec4;
+
+// One component of the decomposition: primal sums and gradient sums of both halves. Row-major over Frame::region.
+struct ComponentPlanes {
+  std::array<std::vector<Radiance>, kHalves> primal;
+  std::array<std::array<std::vector<Radiance>, kOffsets>, kHalves> gradient;  // empty where the integrator makes none
+};
+
+// A data or light pass: sums over samples, `channels` per pixel.
+struct PassPlane {
+  uint32_t pass = GRADUS_PASS_COUNT;
+  uint32_t channels = 0;
+  bool first_sample_only = false;  // depth, ids: value, not a sum
+  bool skips_transparent = false;  // averaged by `weight` instead of the sample count
+  std::vector<float> values;
+  std::vector<float> weight;
+};
+
+// Counters by cause; names in gradus stats. One per worker, added up in the end.
+struct Counters {
+  uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0, rays_shift = 0, rays_shift_shadow = 0;
+  uint64_t shifts_attempted = 0, shifts_reconnected = 0, shifts_half_vector = 0, shifts_replayed = 0;
+  // failures by cause
+  uint64_t fail_missed = 0, fail_occluded = 0, fail_class = 0, fail_total_reflection = 0, fail_side = 0, fail_density = 0,
+           fail_jacobian = 0, fail_not_invertible = 0, fail_border = 0;
+  uint64_t nonfinite_radiance = 0, nonfinite_gradient = 0, nonfinite_feature = 0;
+  void add(const Counters& other);
+};
+
+class Frame {
+ public:
+  // full: size of the full frame; region: what is sampled (guard ring included); channels: 3, or 4 with a transparent film.
+  Frame(uint32_t full_width, uint32_t full_height, const Region& region, int channels, int components, bool gradients);
+
+  size_t index(int32_t x, int32_t y) const { return size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0); }
+  uint64_t memory_bytes() const;
+
+  uint32_t full_width, full_height;
+  Region region;
+  int channels;
+  bool gradients;
+  std::vector<ComponentPlanes> components;
+  std::array<std::vector<uint32_t>, kHalves> count;  // samples of each pixel and half
+  // Pair normalisation, sum over batches of (m_p + m_q)/2, for the pairs p→right and p→up, per half.
+  std::array<std::array<std::vector<float>, 2>, kHalves> pair_count;
+  std::vector<PassPlane> passes;
+  std::vector<float> fallback;  // samples that met a replaced node; empty unless asked for
+  Counters counters;
+
+  // Keys of what was sampled (contract 7.2) and settings that reading needs.
+  GradusSettings settings{};
+  uint64_t scene_key = 0;
+  int32_t frame_number = 0;
+};
+
+// Images read from a frame: planes of the region, channels interleaved (Frame::channels each).
+struct GradientImages {
+  int width = 0, height = 0, channels = 3;
+  std::vector<float> primal;  // mean
+  std::vector<float> dx, dy;  // forward differences, y up; last column, row are 0
+  // The same from one half alone, for variances; empty unless asked for.
+  std::array<std::vector<float>, kHalves> primal_half, dx_half, dy_half;
+};
+
+// Merges halves and pairs. with_halves: also fills the half images.
+GradientImages read_images(const Frame& frame, int component, bool with_halves);
+// Estimated variance of the mean of the primal: ((A - B)/2)², per channel (contract 1.2).
+std::vector<float> read_variance(const Frame& frame);
+
+}  // namespace gradus

@@ -1,0 +1,42 @@
+// An integrator turns a unit of work into samples of a frame: a pure function of (scene, plan, unit).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "frame/frame.h"
+#include "scene/camera.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+// A unit of work (contract 1.3): pixels of a tile, sample numbers [first, first + count) of each. count_map: samples per pixel of the
+// frame's region, 0 allowed, replaces `count`; the same map tells the counts of neighbours for the pair weights (contract 1.5).
+struct WorkUnit {
+  Region tile;
+  uint32_t first_sample = 0;
+  uint32_t count = 0;
+  const std::vector<uint32_t>* count_map = nullptr;
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  // Samples the unit into the frame: only pixels of the tile are written. `stop` is polled at least once per sample of a pixel; what is
+  // half done then is left out as a whole sample. Thread-safe for disjoint tiles.
+  virtual void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const = 0;
+};
+
+// What an integrator is made for; all lives as long as it.
+struct IntegratorContext {
+  std::shared_ptr<const Snapshot> snapshot;
+  Camera camera;
+  GradusSettings settings;
+};
+
+std::unique_ptr<Integrator> make_path_integrator(const IntegratorContext& context);
+std::unique_ptr<Integrator> make_gradient_integrator(const IntegratorContext& context);
+
+}  // namespace gradus

@@ -1,0 +1,50 @@
+// Reconstruction: from a noisy primal image and its sampled gradients to one image.
+//
+// A solver is W = estimate(images) and x = W(planes), with W a frozen linear operator (contract 3.4), so that alpha, light passes and
+// components can go through the same weights and add up exactly.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// One channel to reconstruct.
+struct PoissonPlanes {
+  const float* primal = nullptr;
+  const float* dx = nullptr;
+  const float* dy = nullptr;
+  size_t stride = 1;  // floats from pixel to pixel (interleaved channels)
+};
+
+// A frozen linear operator on (primal, dx, dy).
+class LinearOperator {
+ public:
+  virtual ~LinearOperator() = default;
+  // out: width·height values at `stride`. Deterministic for any number of threads.
+  virtual void apply(const PoissonPlanes& planes, float* out) const = 0;
+};
+
+struct SolveReport {
+  int outer_steps = 0;
+  int inner_steps = 0;
+  float residual = 0.0f;  // relative to the right side
+  bool hit_cap = false;
+};
+
+using CancelTest = std::function<bool()>;
+
+// L2, exact by DCT: minimises α²‖x−I‖² + ‖Dx−g‖². Unbiased. (Thesis eq. 5.13 with k = 2; Bhat et al. 2008 for the DCT.)
+std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
+// L1 by IRLS with weights estimated from `images` (all channels together) and then frozen. Consistent, not unbiased.
+std::unique_ptr<LinearOperator> make_l1(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
+
+// Reconstructs all channels of a frame's component; returns width·height·channels. L2 or L1 by `reconstruction`
+// (GradusReconstruction, never AUTO).
+std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                               SolveReport* report);
+
+}  // namespace gradus

@@ -1,0 +1,52 @@
+// Random values as a pure function of their key (contract 1.1): Owen-scrambled Sobol points, scrambled and shuffled by hashes.
+#pragma once
+
+#include "base/types.h"
+
+namespace gradus {
+
+enum class StreamKind : uint32_t { Pixel = 0, Pilot = 1, LightPath = 2, Chain = 3, Hole = 4 };
+
+// Film pixel and scene time are separate from the key on purpose: a temporal offset sample has another film pixel and time but the
+// stream of its base (contract 1.1).
+struct SampleKey {
+  uint32_t seed = 0;
+  StreamKind kind = StreamKind::Pixel;
+  uint32_t stream = 0;  // pixel streams: y·width + x of the full frame
+  int32_t stream_frame = 0;
+  uint32_t index = 0;  // sample number; halves A and B are the even and odd numbers, scrambled independently (contract 1.2)
+};
+
+// Dimensions come in blocks, so that an integrator can count events instead of numbers and a shift can replay one event.
+namespace dimension {
+inline constexpr uint32_t kFilm = 0;  // 2-D
+inline constexpr uint32_t kLens = 1;  // 2-D
+inline constexpr uint32_t kTime = 2;  // 1-D
+inline constexpr uint32_t kFirstVertex = 4;
+// Blocks of one path vertex, added to kFirstVertex + vertex·kPerVertex.
+inline constexpr uint32_t kBsdf = 0;         // 2-D direction
+inline constexpr uint32_t kLobe = 1;         // x: class, y: lobe in the class
+inline constexpr uint32_t kLight = 2;        // 2-D point on the emitter
+inline constexpr uint32_t kLightChoice = 3;  // x: which emitter, y: spare
+inline constexpr uint32_t kRoulette = 4;     // x: roulette, y: transparency
+inline constexpr uint32_t kOcclusion = 5;    // ambient occlusion pass
+inline constexpr uint32_t kPerVertex = 6;
+}  // namespace dimension
+
+class Sampler {
+ public:
+  Sampler() = default;
+  // independent: values of an independent-random generator in place of the net; for statistical tests only.
+  explicit Sampler(const SampleKey& key, bool independent = false);
+
+  // Point of block `block` in [0, 1)²: any order, any number of times, always the same.
+  Vec2 get2(uint32_t block) const;
+  float get1(uint32_t block) const { return get2(block).x; }
+
+ private:
+  uint32_t stream_hash_ = 0;
+  uint32_t index_ = 0;
+  bool independent_ = false;
+};
+
+}  // namespace gradus

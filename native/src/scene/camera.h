@@ -1,0 +1,37 @@
+// Camera: film position to ray, and world position to film, at the frame's time or one frame before or after (for vectors).
+#pragma once
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+
+namespace gradus {
+
+enum class Shutter { Now, Previous, Next };
+
+class Camera {
+ public:
+  Camera() = default;
+  Camera(const GradusCamera& desc, uint32_t width, uint32_t height);
+
+  // film: pixels of the full frame, origin at the lower left corner, pixel centres at +0.5. lens: [0,1)², ignored by pinholes.
+  // The segment starts at clip_start and ends at clip_end.
+  Ray ray(const Vec2& film, const Vec2& lens) const;
+  // Where a world point appears, in pixels; false behind the camera.
+  bool project(const Vec3& world, Shutter when, Vec2* film) const;
+  // Where a direction at infinity appears.
+  bool project_direction(const Vec3& direction, Shutter when, Vec2* film) const;
+  // Planar distance along the view axis.
+  float depth(const Vec3& world) const;
+  bool has_lens() const { return desc_.aperture_radius > 0.0f; }
+  Vec3 position() const;
+  Vec3 forward() const;
+  // Radius of the circle that a pixel covers at unit distance (perspective) or everywhere (orthographic): for footprints.
+  float pixel_spread() const;
+
+ private:
+  GradusCamera desc_{};
+  uint32_t width_ = 0;
+  uint32_t height_ = 0;
+};
+
+}  // namespace gradus

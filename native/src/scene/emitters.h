@@ -1,0 +1,68 @@
+// Everything that emits towards surfaces: lamps, emissive triangles, the world.
+//
+// An EmitterPoint is independent of the point that is lit, so that a shift can copy it and ask for its density from the offset vertex
+// (same random numbers would give another point).
+#pragma once
+
+#include "base/types.h"
+
+namespace gradus {
+
+class Snapshot;
+struct SurfacePoint;
+
+enum class EmitterKind : uint8_t { None, Lamp, Triangle, World };
+
+struct EmitterPoint {
+  EmitterKind kind = EmitterKind::None;
+  bool dirac = false;              // a position or direction without extent: BSDF sampling can never find it
+  uint32_t index = 0;              // lamp, or emissive triangle
+  uint32_t instance = UINT32_MAX;  // of an emissive triangle
+  uint32_t triangle = UINT32_MAX;
+  Vec2 barycentric = Vec2(0.0f);
+  Vec3 position = Vec3(0.0f);   // finite emitters
+  Vec3 normal = Vec3(0.0f);     // geometric; 0 for points
+  Vec3 direction = Vec3(0.0f);  // towards the emitter: world and suns
+  bool at_infinity() const {
+    return kind == EmitterKind::World || (kind == EmitterKind::Lamp && normal == Vec3(0.0f) && direction != Vec3(0.0f));
+  }
+};
+
+// An emitter point as seen from a receiver.
+struct EmitterView {
+  Vec3 direction = Vec3(0.0f);  // from the receiver, unit
+  float distance = kInfinity;
+  Rgb radiance = Rgb(0.0f);  // towards the receiver; Dirac: intensity/d² (point) or irradiance (sun): the integrand without a density
+  float pdf = 0.0f;          // solid angle at the receiver, choice of the emitter included; Dirac: the choice alone
+  float cosine = 1.0f;       // |normal·direction| at the emitter; 1 at infinity
+  bool casts_shadow = true;
+  uint32_t visibility = 0;  // GradusVisibility bits: which kinds of bounce may see it
+  uint32_t max_bounces = UINT32_MAX;
+};
+
+// The receiver of light; normal 0 for points without an orientation.
+struct Receiver {
+  Vec3 position;
+  Vec3 normal;
+  bool transmits = false;  // also lit from behind
+};
+
+// Samples a point on some emitter. choice: which one; u: where. kind None if there is nothing to sample from here.
+EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u);
+// The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine there.
+EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
+// The emitter point of a surface that a ray hit (kind None if it is not sampled as a light).
+EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& point);
+// The emitter point of a ray that left the scene.
+EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction);
+
+// Lamps do not stop rays: a ray sees all that it crosses before its hit. Calls visit(EmitterPoint, distance) for each
+// lamp with extent between ray.t_min and ray.t_max.
+struct LampHit {
+  EmitterPoint point;
+  float distance;
+};
+// Fills at most `capacity` hits sorted by distance, returns their number.
+int intersect_lamps(const Snapshot& snapshot, const Ray& ray, LampHit* hits, int capacity);
+
+}  // namespace gradus

@@ -1,0 +1,42 @@
+// The editable scene behind the C API: keeps what was set, makes snapshots.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+class Device;  // base/device.h: Embree device, thread arena, colour, warnings
+
+class Scene {
+ public:
+  explicit Scene(std::shared_ptr<Device> device);
+  ~Scene();
+  // Copies the arrays. Throws std::invalid_argument with a text that names the mesh where the arrays contradict each other;
+  // broken values (NaN, zero areas) are kept out later, with one warning (contract: broken data costs the broken object).
+  void set_mesh(uint64_t key, const GradusMesh& mesh);
+  void set_image(uint64_t key, const GradusImage& image);
+  void set_material(uint64_t key, const GradusMaterial& material);
+  void set_instances(const GradusInstances& instances);
+  void set_lights(const GradusLight* lights, size_t count);
+  void set_camera(const GradusCamera& camera);
+  void set_world(const GradusWorld& world);
+  void remove(GradusObjectKind kind, uint64_t key);
+  // Throws Cancelled when *cancel becomes non-zero.
+  void commit(const volatile int32_t* cancel, float* progress);
+  std::shared_ptr<const Snapshot> snapshot() const;  // of the last commit; nullptr before
+  const std::shared_ptr<Device>& device() const { return device_; }
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  std::shared_ptr<Device> device_;
+};
+
+}  // namespace gradus

@@ -1,0 +1,77 @@
+// The immutable scene that integrators see. Made by Scene::commit(); shares unchanged buffers with the snapshot before.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+#include "scene/surface.h"
+
+namespace gradus {
+
+struct EmitterTable;  // scene/emitter_table.h: lamps, emissive triangles, environment distribution, choice
+struct MeshData;      // scene/mesh.h
+struct MaterialData;  // shading/material.h: compiled node program and flags
+class ImageStore;     // scene/image_store.h
+struct Accelerator;   // scene/accelerator.h: Embree scenes
+
+struct InstanceData {
+  std::shared_ptr<const MeshData> mesh;
+  Mat4 to_world{1.0f};
+  Mat4 to_local{1.0f};
+  Mat3 normal_to_world{1.0f};
+  Mat4 to_world_previous{1.0f};
+  Mat4 to_world_next{1.0f};
+  bool mirrored = false;
+  uint32_t visibility = GRADUS_VISIBLE_ALL;
+  uint32_t random_id = 0;
+  int32_t pass_index = 0;
+  Vec4 color{1.0f};
+  Vec3 generated{0.0f};
+  Vec2 uv{0.0f};
+  std::vector<uint32_t> materials;  // by slot: index in Snapshot::materials
+};
+
+// What a scene contains, so that what it does not need can be left out.
+struct SceneFeatures {
+  bool has_transparent_shadows = false;
+  bool has_lamps_with_extent = false;
+  bool has_specular = false;  // some lobe may be sharper than the roughness threshold
+  bool has_emitters = false;
+};
+
+class Snapshot {
+ public:
+  // Nearest surface among those visible to `visibility` (GradusVisibility bits). False: the ray left the scene.
+  bool intersect(const Ray& ray, uint32_t visibility, Hit* hit) const;
+  // Four rays at once (inactive lanes: t_max < t_min); equal results to four calls.
+  void intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const;
+  // Some surface that is visible to shadow rays lies on the segment, transparency ignored.
+  bool occluded(const Ray& ray) const;
+  void occluded4(const Ray rays[4], bool blocked[4]) const;
+  // Transmittance of the segment through transparent surfaces, at most max_transparent of them; 0 if blocked.
+  Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
+  // Geometry at a hit.
+  SurfacePoint surface_point(const Hit& hit) const;
+  // World position of the hit one frame earlier or later: surface motion.
+  Vec3 position_at(const Hit& hit, bool next) const;
+
+  std::vector<InstanceData> instances;
+  std::vector<std::shared_ptr<const MaterialData>> materials;  // 0 = default grey
+  std::shared_ptr<const EmitterTable> emitters;
+  std::shared_ptr<const ImageStore> images;
+  std::shared_ptr<const Accelerator> accelerator;
+  GradusCamera camera{};
+  bool has_camera = false;
+  GradusWorld world{};
+  uint32_t world_material = UINT32_MAX;
+  SceneFeatures features;
+  Vec3 origin{0.0f};    // world = internal + origin: the scene is moved to its centre (float precision)
+  float radius = 1.0f;  // of the bounding sphere
+  uint64_t content_key = 0;
+  std::vector<std::string> warnings;  // made by commit
+};
+
+}  // namespace gradus

@@ -1,0 +1,30 @@
+// What a ray meets, before materials.
+#pragma once
+
+#include "base/types.h"
+
+namespace gradus {
+
+// Raw answer of the traversal; what a path needs to find the point again.
+struct Hit {
+  float t = kInfinity;
+  uint32_t instance = UINT32_MAX;  // index in the snapshot
+  uint32_t triangle = UINT32_MAX;
+  Vec2 barycentric = Vec2(0.0f);  // weights of the 2nd and 3rd corner
+  bool valid() const { return instance != UINT32_MAX; }
+};
+
+// Geometry of a hit, in world space. The position comes from barycentrics, not from origin + t·direction.
+struct SurfacePoint {
+  Vec3 position = Vec3(0.0f);
+  Vec3 geometric_normal = Vec3(0, 0, 1);  // unit; the side from which the corners run counter-clockwise (mirrored instances included)
+  Vec3 shading_normal = Vec3(0, 0, 1);    // unit; interpolated; not flipped towards the viewer
+  float error = 0.0f;                     // bound on the position's rounding error, for offset_origin()
+  Hit hit;
+  uint32_t material = 0;  // index in the snapshot
+};
+
+// An origin on the side of `direction` from which a ray cannot hit the surface of `point` again.
+Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction);
+
+}  // namespace gradus

@@ -1,0 +1,51 @@
+// From a hit to closures: runs the material's node program at a surface point.
+#pragma once
+
+#include "base/types.h"
+#include "bsdf/closures.h"
+#include "scene/surface.h"
+
+namespace gradus {
+
+class Snapshot;
+
+// Kind of ray that arrives: what the Light Path node sees.
+enum RayFlag : uint32_t {
+  kRayCamera = 1,
+  kRayDiffuse = 2,
+  kRayGlossy = 4,
+  kRaySingular = 8,  // Dirac
+  kRayReflection = 16,
+  kRayTransmission = 32,
+  kRayShadow = 64,
+};
+
+struct RayState {
+  uint32_t flags = kRayCamera;
+  float length = 0.0f;
+  uint16_t depth = 0;
+  uint16_t diffuse_depth = 0;
+  uint16_t glossy_depth = 0;
+  uint16_t transmission_depth = 0;
+  uint16_t transparent_depth = 0;
+};
+
+struct ShadeResult {
+  Closures closures;             // finished
+  Rgb emission = Rgb(0.0f);      // radiance towards wo
+  Rgb transparency = Rgb(0.0f);  // weight of the ray that goes straight on
+  Rgb holdout = Rgb(0.0f);
+  bool fallback = false;  // the material holds a replaced node
+};
+
+// wo: towards the previous vertex. roughness_threshold: alpha that separates classes.
+void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+                   ShadeResult* result);
+// Emission alone, for emitter points that light sampling chose.
+Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+// Transparency alone, for shadow rays.
+Rgb shade_transparency(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+// Background radiance from a direction (pointing away from the scene).
+Rgb shade_world(const Snapshot& snapshot, const Vec3& direction, const RayState& ray);
+
+}  // namespace gradus
