@@ -47,7 +47,9 @@ typedef enum GradusError {
 GRADUS_API uint32_t gradus_version(void);
 /* "0.1.0 (commit abc1234)". Static text. */
 GRADUS_API const char* gradus_version_text(void);
-/* Hash of all struct layouts and enum values of this header; the caller compares it with its own. */
+/* Hash of all struct layouts and enum values of this header; the caller compares it with its own. FNV-1a, 64 bit, over the ASCII text
+ * "Name:size:offset,offset,…;" of every struct and then "Name:value,value,…;" of every enum, each in order of declaration, names without
+ * the prefix Gradus, numbers decimal, the ellipsis meaning repetition only: e.g. "DeviceSettings:16:0,4,8;" and "Domain:0,1,2;". */
 GRADUS_API uint64_t gradus_abi_hash(void);
 /* Reads and clears the calling thread's error slot. `text` (may be NULL) stays valid until the thread's next call. */
 GRADUS_API GradusError gradus_error(const char** text);
