@@ -1,0 +1,48 @@
+"""The scenes of the benchmark. Real ones lie beside the project and are skipped, visibly, where they are missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SAMPLES = ROOT / "sample_blends"
+REAL = ROOT.parent / "shared" / "scenes"
+
+
+@dataclass(frozen=True)
+class Scene:
+    name: str
+    path: Path
+    diffuse_interior: bool = False  # counts for the target R <= 0.5
+    own: bool = False  # pictures may be shown
+
+
+SCENES = [
+    Scene("hero", SAMPLES / "hero.blend", own=True),
+    Scene("cornell", SAMPLES / "cornell.blend", diffuse_interior=True, own=True),
+    Scene("glass_and_chrome", SAMPLES / "glass_and_chrome.blend", own=True),
+    Scene("many_lights", SAMPLES / "many_lights.blend", own=True),
+    Scene("door-ajar", REAL / "door-ajar.blend", diffuse_interior=True),
+    Scene("breakfast-room", REAL / "breakfast-room.blend", diffuse_interior=True),
+    Scene("kitchen", REAL / "kitchen.blend"),
+    Scene("bathroom", REAL / "bathroom.blend"),
+    Scene("arena", REAL / "arena.blend"),
+    Scene("material-testball", REAL / "material-testball.blend"),
+    Scene("glass-teapot", REAL / "glass-teapot.blend"),
+    Scene("moving-light", REAL / "moving-light.blend", diffuse_interior=True),
+]
+QUICK = ("cornell", "door-ajar")
+
+
+def select(names: str) -> list[Scene]:
+    """Scenes by name ('a,b'), all for ''. Missing files are named on standard output."""
+    wanted = [n for n in names.split(",") if n]
+    unknown = set(wanted) - {s.name for s in SCENES}
+    if unknown:
+        raise SystemExit(f"unknown scenes: {', '.join(sorted(unknown))}")
+    chosen = [s for s in SCENES if not wanted or s.name in wanted]
+    for scene in chosen:
+        if not scene.path.exists():
+            print(f"SKIP {scene.name}: its file is not here")
+    return [s for s in chosen if s.path.exists()]
