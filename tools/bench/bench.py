@@ -65,7 +65,9 @@ class Worker:
         self._folder.cleanup()
 
 
-def reference(worker: Worker, scene: Scene, engine: str, size: tuple[int, int], samples: int, version: str) -> tuple[np.ndarray, np.ndarray]:
+def reference(
+    worker: Worker, scene: Scene, engine: str, size: tuple[int, int], samples: int, version: str
+) -> tuple[np.ndarray, np.ndarray]:
     """Converged image of an engine and the variance of its mean. Seeds 1000 and up are never used by the runs."""
     content = hashlib.sha256(scene.path.read_bytes()).hexdigest()[:12]
     key = f"{scene.name}-{content}-{engine}-{size[0]}x{size[1]}-{samples}-{version if engine == 'path' else 'cycles'}"
@@ -113,8 +115,8 @@ def bench_scene(scene: Scene, arguments: argparse.Namespace, version: str, deadl
             row = {
                 "scene": scene.name, "mode": mode, "samples": samples, "seed": seed, "width": size[0], "height": size[1],
                 "cpu": round(timing["cpu"], 4), "wall": round(timing["wall"], 4),
-                "relmse": rel_mse(image, mean, variance), "relmse_trimmed": rel_mse_trimmed(image, mean, variance), "smape": smape(image, mean),
-                "reference_samples": arguments.reference, "version": version, "machine": platform.processor() or platform.machine(),
+                "relmse": rel_mse(image, mean, variance), "relmse_trimmed": rel_mse_trimmed(image, mean, variance),
+                "smape": smape(image, mean), "reference_samples": arguments.reference, "version": version, "machine": platform.machine(),
             }  # fmt: skip
             with RESULTS.open("a") as file:
                 file.write(json.dumps(row) + "\n")
