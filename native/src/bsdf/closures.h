@@ -34,21 +34,32 @@ enum class LobeType : uint8_t {
 enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
 
 // One lobe. Frame: normal, and tangent where anisotropic.
+//
+// Which fields count:
+//   Diffuse                alpha_x = Oren-Nayar roughness, 0 = Lambert; multiscatter: energy conserving, f0 = the surface's colour (which
+//                          weight holds, too)
+//   Sheen                  alpha_x = sheen roughness; fresnel Schlick: the grazing term of Blender before 4.0
+//   Ggx…, Dirac…           alpha_x, alpha_y, ior, fresnel; finish() makes a Ggx lobe Dirac where alpha is too small for float
+//   fresnel Dielectric     of ior
+//   fresnel Schlick        mix(f0, f90, s): s follows the dielectric curve of ior, scaled to 0…1, as in Blender 4; ior 1: fifth power
+//   fresnel PrincipledMetal  f0, and f90 = tint at 82 degrees (1 = plain Schlick)
+// Glass reflects with weight·F and transmits with weight·transmission_tint·(1 − F).
 struct Lobe {
   LobeType type = LobeType::Diffuse;
   FresnelType fresnel = FresnelType::None;
   LightPass pass = LightPass::Diffuse;
-  bool multiscatter = false;  // energy lost by single scattering is given back
-  Rgb weight = Rgb(0.0f);     // throughput of the node graph times colour
-  Vec3 normal = Vec3(0, 0, 1);
-  Vec3 tangent = Vec3(1, 0, 0);
-  float alpha_x = 0.0f;  // roughness², after anisotropy; diffuse: Oren-Nayar sigma
+  bool multiscatter = false;     // energy lost by single scattering is given back
+  Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour
+  Vec3 normal = Vec3(0, 0, 1);   // outwards, never flipped towards wo: finish() does that, and inverts ior with it
+  Vec3 tangent = Vec3(1, 0, 0);  // made orthonormal by finish(); free where isotropic
+  float alpha_x = 0.0f;          // roughness², after anisotropy; diffuse: Oren-Nayar sigma
   float alpha_y = 0.0f;
-  float ior = 1.0f;    // of the inside against the outside; the code looks at which side wo is on
+  float ior = 1.0f;    // of the inside against the outside; after finish(): of the far side against that of wo
   Rgb f0 = Rgb(1.0f);  // Schlick
   Rgb f90 = Rgb(1.0f);
   Rgb transmission_tint = Rgb(1.0f);                   // glass lobes
   float sample_weight = 0.0f;                          // filled by Closures::finish()
+  Rgb energy = Rgb(1.0f);                              // multiple scattering, filled by finish()
   ScatterClass scatter_class = ScatterClass::Diffuse;  // reflection side; for GgxGlass the transmission side is T, unless rough (D)
 };
 
@@ -70,6 +81,9 @@ struct BsdfSample {
   uint8_t lobe = 0;  // index of the sampled lobe
 };
 
+// Directional albedo of one lobe by itself, weight included, before finish(): for layering. wo is inside where normal·wo < 0.
+Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo);
+
 inline constexpr int kMaxLobes = 12;
 
 class Closures {
@@ -78,7 +92,8 @@ class Closures {
   void clear() { count_ = 0; }
   Lobe* add();  // nullptr when full
   // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by roughness_threshold
-  // (alpha), drops black ones, fills sampling weights.
+  // (alpha), drops black ones, fills sampling weights. Can be called again for another wo (a shifted path), and must be: all that
+  // follows takes the wo of the last finish().
   void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold);
 
   int count() const { return count_; }
@@ -109,8 +124,22 @@ class Closures {
   Vec3 average_normal() const;
 
  private:
+  // One side (or both) of one lobe in one class.
+  struct Entry {
+    uint8_t lobe = 0;
+    uint8_t sides = 0;
+    bool dirac = false;
+    float probability = 0.0f;  // within the class
+  };
+  void prepare(Lobe* lobe, const Vec3& wo) const;
+  void add_entry(int lobe, uint8_t sides, ScatterClass c, float weight);
+  void normalise(const std::array<float, kScatterClasses>& totals);
+  Rgb evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, float* pdf) const;
+
   std::array<Lobe, kMaxLobes> lobes_;
   int count_ = 0;
+  std::array<std::array<Entry, kMaxLobes>, kScatterClasses> entries_;
+  std::array<int, kScatterClasses> entry_count_{};
   std::array<float, kScatterClasses> class_probability_{};
   std::array<float, kScatterClasses> min_alpha_{};
   std::array<float, kScatterClasses> max_alpha_{};
