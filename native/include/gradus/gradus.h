@@ -320,9 +320,13 @@ GRADUS_API GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uin
 /* Makes what was set the current immutable snapshot, sharing what did not change; builds acceleration structures.
  * `progress` may be NULL; a non-zero *cancel (polled by the library, may be NULL) ends it with CANCELLED within 0.25 s. */
 GRADUS_API GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cancel, float* progress);
-/* Saves the calls that made the current snapshot, images packed, as a .gradus file (contract 7.3). */
-GRADUS_API GradusError gradus_scene_save(GradusScene scene, const char* path);
-GRADUS_API GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene* scene);
+/* From now on keeps what is set (0: forgets it), so that the scene can be saved. Off by default: it doubles the memory of the arrays. */
+GRADUS_API GradusError gradus_scene_record(GradusScene scene, uint32_t enabled);
+/* Saves what was set since recording began as a .gradus file, images packed (contract 7.3). INVALID_OPERATION without recording.
+ * `settings` are saved with it for the tool; may be NULL. */
+GRADUS_API GradusError gradus_scene_save(GradusScene scene, const GradusSettings* settings, const char* path);
+/* The scene is created and committed. *settings (may be NULL) receives the saved settings, or defaults. */
+GRADUS_API GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene* scene, GradusSettings* settings);
 
 /* ------------------------------------------------------------------------------------------------ render */
 
@@ -384,6 +388,8 @@ typedef struct GradusSettings {
   uint32_t use_sky;                /* the world is seen by the camera */
   uint32_t independent_sampler;    /* test switch: independent random numbers in place of the Sobol net (contract 1.2) */
   uint64_t passes;                 /* bit i = GradusPass i is wanted; Combined always is */
+  uint32_t first_sample;           /* samples are numbered first_sample … first_sample + samples - 1, for frames to merge */
+  uint32_t reserved;
 } GradusSettings;
 
 typedef enum GradusPass {
@@ -464,6 +470,9 @@ typedef struct GradusProgress {
 /* Starts rendering the scene's current snapshot on the library's own threads and returns at once. The snapshot is kept:
  * the scene may be edited or released meanwhile. */
 GRADUS_API GradusError gradus_render_start(GradusScene scene, const GradusSettings* settings, GradusRender* render);
+/* The same, going on from the samples of `frame` (same scene and sampling settings): the result of 16 and then 48 samples has the bits of
+ * 64 at once. settings.samples counts from the beginning. The frame itself does not change. */
+GRADUS_API GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFrame frame, GradusRender* render);
 GRADUS_API GradusError gradus_render_poll(GradusRender render, GradusProgress* progress);
 /* Asks it to stop; what was sampled stays readable. */
 GRADUS_API GradusError gradus_render_cancel(GradusRender render);
@@ -483,8 +492,10 @@ GRADUS_API GradusError gradus_render_frame(GradusRender render, GradusFrame* fra
 
 GRADUS_API GradusError gradus_frame_save(GradusFrame frame, const char* path);
 GRADUS_API GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame* frame);
-/* Adds the samples of `other` (same size, scene and settings key, other sample range) to `frame`. */
+/* Adds the samples of `other` (same size, scene and settings key, other sample range) to `frame`. Equal to rendering them together up to
+ * float rounding of the sums; bit equality needs gradus_render_resume. */
 GRADUS_API GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other);
+/* Size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height);
 /* Reconstructs Combined from the planes; RGBA. */
 GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, float* rgba, size_t count);
