@@ -1,0 +1,203 @@
+"""Loads libgradus.so and calls it: `load()` gives the one Library of the process, whose methods raise GradusError.
+
+Every function of gradus.h is a method of Library under its name without the prefix `gradus_`. Structs and enums of abi.py are
+re-exported, so that users of the C API import this module only: native.Mesh, native.Settings, native.Pass …
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from array import array
+from collections.abc import Iterable, Sequence
+from ctypes import byref
+from pathlib import Path
+from typing import Any, TypeVar
+
+from . import abi
+from .abi import (  # noqa: F401
+    VERSION,
+    AlphaMode,
+    Attribute,
+    Camera,
+    CameraType,
+    ColorSpace,
+    DeviceSettings,
+    Domain,
+    Error,
+    Image,
+    ImageSource,
+    ImageTile,
+    Input,
+    Instances,
+    Integrator,
+    Light,
+    LightFlags,
+    LightType,
+    Material,
+    Mesh,
+    MistFalloff,
+    Node,
+    ObjectKind,
+    OptionInfo,
+    OptionType,
+    Pass,
+    Phase,
+    PixelFilter,
+    Progress,
+    Reconstruction,
+    Settings,
+    Struct,
+    Visibility,
+    World,
+)
+
+LIBRARY_NAME = "libgradus.so"
+ENVIRONMENT_VARIABLE = "GRADUS_LIBRARY"
+
+
+class GradusError(Exception):
+    """A call that the library refused, or a library that cannot be used. `code` is an abi.Error, `text` the message for people."""
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+        self.text = text
+
+
+class Library:
+    """A loaded and checked library. Thread-safe; ctypes releases the interpreter lock during calls."""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        if not self.path.is_file():
+            raise GradusError(Error.UNSUPPORTED, f"library not found: {self.path}")
+        try:
+            # RTLD_LOCAL: nothing of ours may enter the host's global scope (architecture, rule 10).
+            self.cdll = ctypes.CDLL(str(self.path), mode=ctypes.RTLD_LOCAL)
+        except OSError as error:
+            raise GradusError(Error.UNSUPPORTED, f"library cannot be loaded: {self.path}: {error}") from error
+        self._check()
+        for name in abi.FUNCTIONS:
+            setattr(self, name.removeprefix("gradus_"), self._bind(name))
+
+    def _check(self) -> None:
+        """Refuses a library of another version before any struct crosses (H1, H5); these two functions never change."""
+        try:
+            version, layout = self._bind("gradus_version")(), self._bind("gradus_abi_hash")()
+        except AttributeError as error:
+            raise GradusError(Error.UNSUPPORTED, f"not a Gradus library: {self.path}: {error}") from error
+        if version != VERSION[0] * 10000 + VERSION[1] * 100 + VERSION[2]:
+            found = f"{version // 10000}.{version // 100 % 100}.{version % 100}"
+            raise GradusError(Error.UNSUPPORTED, f"library {self.path} has version {found}, the add-on needs {'.'.join(map(str, VERSION))}")
+        if layout != abi.layout_hash():
+            raise GradusError(
+                Error.UNSUPPORTED,
+                f"library {self.path} has layout {layout:016x}, the add-on {abi.layout_hash():016x}: install both from one release",
+            )
+        missing = [name for name in abi.FUNCTIONS if not hasattr(self.cdll, name)]
+        if missing:
+            raise GradusError(Error.UNSUPPORTED, f"library {self.path} lacks {', '.join(missing)}")
+
+    def _bind(self, name: str) -> Any:
+        function = getattr(self.cdll, name)
+        function.restype, function.argtypes = abi.FUNCTIONS[name]
+        if name in abi.RETURNS_CODE:
+            function.errcheck = self._raise_on_error
+        return function
+
+    def _raise_on_error(self, code: int, function: Any, _arguments: tuple[Any, ...]) -> int:
+        if code != Error.OK:
+            raise GradusError(code, self.take_error() or f"{function.__name__} failed with code {code}")
+        return code
+
+    def take_error(self) -> str:
+        """Text of this thread's first error not yet read; "" without one."""
+        message = ctypes.c_char_p()
+        self.cdll.gradus_error(byref(message))
+        return (message.value or b"").decode("utf-8", "replace")
+
+    def take_warnings(self, device: int) -> list[str]:
+        """All warnings of the device that nobody has taken yet, oldest first."""
+        warnings: list[str] = []
+        message = ctypes.c_char_p()
+        while True:
+            self.device_warning(device, byref(message))
+            if not message.value:
+                return warnings
+            warnings.append(message.value.decode("utf-8", "replace"))
+
+    def options(self) -> list[OptionInfo]:
+        """The library's table of settings: name, type, default, range, meaning."""
+        infos = []
+        for index in range(self.option_count()):
+            info = OptionInfo()
+            self.option(index, byref(info))
+            infos.append(info)
+        return infos
+
+    def __getattr__(self, name: str) -> Any:
+        # Reached only for what is no function of the header: the bound ones are instance attributes.
+        raise AttributeError(f"gradus_{name} is not in gradus.h")
+
+
+# ------------------------------------------------------------------------------------------------ one library per process
+
+_lock = threading.Lock()
+_libraries: dict[str, Library] = {}
+preferred_path: str = ""
+"""Path set in the add-on's preferences; "" = the library beside the package."""
+
+
+def library_path() -> Path:
+    """Where the library is looked for: the environment wins over the preference, the preference over the package's lib folder."""
+    chosen = os.environ.get(ENVIRONMENT_VARIABLE) or preferred_path
+    return Path(chosen) if chosen else Path(__file__).resolve().parent / "lib" / LIBRARY_NAME
+
+
+def load(path: str | os.PathLike[str] | None = None) -> Library:
+    """The library at `path` (default: library_path()), loaded once. Raises GradusError with a message for people."""
+    key = os.path.realpath(path if path is not None else library_path())
+    with _lock:
+        if key not in _libraries:
+            _libraries[key] = Library(key)
+        return _libraries[key]
+
+
+# ------------------------------------------------------------------------------------------------ arguments
+
+StructT = TypeVar("StructT", bound=Struct)
+
+_CODES = {"f": ctypes.c_float, "i": ctypes.c_int32, "I": ctypes.c_uint32, "Q": ctypes.c_uint64, "B": ctypes.c_uint8}
+
+
+def pointer(values: array | None) -> Any:
+    """Typed pointer to an array('f'|'i'|'I'|'Q'|'B'), which it keeps alive; NULL (None) for None or an empty array.
+
+    Anything else is a TypeError: a wrong item type would be read as garbage, a strided or read-only buffer not at all (H6).
+    """
+    if values is None:
+        return None
+    if not isinstance(values, array) or values.typecode not in _CODES:
+        raise TypeError(f"expected array('f'|'i'|'I'|'Q'|'B'), got {type(values).__name__} {getattr(values, 'typecode', '')}")
+    if not values:
+        return None
+    kind = _CODES[values.typecode]
+    return ctypes.cast((kind * len(values)).from_buffer(values), ctypes.POINTER(kind))
+
+
+def text(value: str | None) -> bytes | None:
+    """UTF-8 for a const char* field; the surrogates of undecodable file names become their original bytes again."""
+    return None if value is None else value.encode("utf-8", "surrogateescape")
+
+
+def text_array(values: Sequence[str]) -> Any:
+    """const char* const*; NULL (None) if empty."""
+    return (ctypes.c_char_p * len(values))(*(text(value) for value in values)) if values else None
+
+
+def struct_array(kind: type[StructT], items: Iterable[StructT]) -> Any:
+    """A C array of structs, NULL (None) if empty; it keeps alive what the items point to."""
+    listed = list(items)
+    return (kind * len(listed))(*listed) if listed else None
