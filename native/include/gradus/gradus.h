@@ -322,11 +322,6 @@ GRADUS_API GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uin
 GRADUS_API GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cancel, float* progress);
 /* From now on keeps what is set (0: forgets it), so that the scene can be saved. Off by default: it doubles the memory of the arrays. */
 GRADUS_API GradusError gradus_scene_record(GradusScene scene, uint32_t enabled);
-/* Saves what was set since recording began as a .gradus file, images packed (contract 7.3). INVALID_OPERATION without recording.
- * `settings` are saved with it for the tool; may be NULL. */
-GRADUS_API GradusError gradus_scene_save(GradusScene scene, const GradusSettings* settings, const char* path);
-/* The scene is created and committed. *settings (may be NULL) receives the saved settings, or defaults. */
-GRADUS_API GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene* scene, GradusSettings* settings);
 
 /* ------------------------------------------------------------------------------------------------ render */
 
@@ -446,6 +441,12 @@ GRADUS_API GradusError gradus_settings_default(GradusSettings* settings);
 /* Sets one option from text ("samples", "16"; enums in any case, '-' = '_'; bool 0 1 true false on off). */
 GRADUS_API GradusError gradus_settings_parse(GradusSettings* settings, const char* name, const char* value);
 GRADUS_API GradusError gradus_pass_info(uint32_t pass, const char** name, uint32_t* channels);
+
+/* Saves what was set since recording began as a .gradus file, images packed (contract 7.3). INVALID_OPERATION without recording.
+ * `settings` are saved with it for the tool; may be NULL. */
+GRADUS_API GradusError gradus_scene_save(GradusScene scene, const GradusSettings* settings, const char* path);
+/* The scene is created and committed. *settings (may be NULL) receives the saved settings, or defaults. */
+GRADUS_API GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene* scene, GradusSettings* settings);
 
 typedef enum GradusPhase {
   GRADUS_PHASE_WAITING = 0,
