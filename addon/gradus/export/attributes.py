@@ -1,0 +1,111 @@
+"""Attributes of meshes: UV maps, colours and generic ones, as floats on points, faces or corners."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass
+from typing import Any
+
+from .. import native
+from .arrays import read
+
+_DOMAINS = {"POINT": 0, "FACE": 1, "CORNER": 2}
+# data type: property, type code in which Blender stores it, channels
+_TYPES = {
+    "FLOAT": ("value", "f", 1),
+    "INT": ("value", "i", 1),
+    "INT8": ("value", "b", 1),
+    "BOOLEAN": ("value", "b", 1),
+    "FLOAT2": ("vector", "f", 2),
+    "FLOAT_VECTOR": ("vector", "f", 3),
+    "FLOAT_COLOR": ("color", "f", 4),
+    "BYTE_COLOR": ("color", "f", 4),  # read as scene-linear
+}
+
+
+@dataclass
+class AttributeArrays:
+    name: str
+    domain: int
+    channels: int
+    data: array
+    is_uv: bool = False
+
+
+def default_uv(mesh: Any) -> str:
+    """Name of the UV map that renders take; geometry nodes deliver maps as plain attributes, so the first of those stands in."""
+    for layer in mesh.uv_layers:
+        if layer.active_render:
+            return layer.name
+    if len(mesh.uv_layers):
+        return mesh.uv_layers[0].name
+    for attribute in mesh.attributes:
+        if attribute.domain == "CORNER" and attribute.data_type == "FLOAT2" and not attribute.name.startswith("."):
+            return attribute.name
+    return ""
+
+
+def default_color(mesh: Any) -> str:
+    """Name of the colour attribute that renders take, for nodes that name none."""
+    layers = mesh.color_attributes
+    index = layers.render_color_index
+    return layers[index].name if 0 <= index < len(layers) else ""
+
+
+def _read_uv(layer: Any) -> array:
+    if hasattr(layer, "uv"):
+        return read(layer.uv, "vector", "f", 2)
+    return read(layer.data, "uv", "f", 2)
+
+
+def _read_generic(attribute: Any, name: str) -> AttributeArrays | None:
+    if attribute.domain not in _DOMAINS or attribute.data_type not in _TYPES:
+        return None
+    prop, typecode, channels = _TYPES[attribute.data_type]
+    data = read(attribute.data, prop, typecode, channels)
+    if typecode != "f":
+        data = array("f", data)
+    is_uv = attribute.data_type == "FLOAT2" and attribute.domain == "CORNER"
+    return AttributeArrays(name, _DOMAINS[attribute.domain], channels, data, is_uv)
+
+
+def read_attributes(mesh: Any, wanted: frozenset[str] | None, uv_name: str) -> list[AttributeArrays]:
+    """Those attributes of `mesh` that are wanted (None = all), and the UV map that renders take. The name "" asks for the render colour."""
+    found = []
+    uv_layers = {layer.name: layer for layer in mesh.uv_layers}
+    for name, layer in uv_layers.items():
+        if name == uv_name or wanted is None or name in wanted:
+            data = _read_uv(layer)
+            if len(data):
+                found.append(AttributeArrays(name, _DOMAINS["CORNER"], 2, data, is_uv=True))
+    for attribute in mesh.attributes:
+        name = attribute.name
+        if name in uv_layers or (name.startswith(".") and (wanted is None or name not in wanted)):
+            continue
+        if name == uv_name or wanted is None or name in wanted:
+            arrays = _read_generic(attribute, name)
+            if arrays is not None and len(arrays.data):
+                found.append(arrays)
+    if wanted is not None and "" in wanted:
+        color = mesh.color_attributes.get(default_color(mesh))
+        arrays = _read_generic(color, "") if color is not None else None
+        if arrays is not None:
+            found.append(arrays)
+    return found
+
+
+def fill_attributes(arrays: list[AttributeArrays]) -> Any:
+    """A ctypes array of native Attributes, or None."""
+    return native.struct_array(
+        native.Attribute,
+        (
+            native.Attribute(
+                domain=values.domain,
+                channels=values.channels,
+                is_uv=values.is_uv,
+                name=native.text(values.name),
+                data=native.pointer(values.data),
+            )
+            for values in arrays
+        ),
+    )

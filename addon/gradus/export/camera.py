@@ -1,0 +1,180 @@
+"""Cameras: Blender's sensor, fit and shift to the window of the full frame on the plane at distance 1.
+
+The formula is the one that Blender's `object.calc_matrix_camera` follows; tests/addon compares both. Shift moves the
+window, so the axis appears at minus the shift.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from dataclasses import dataclass
+from typing import Any
+
+from .. import native
+from .arrays import matrix_values
+from .report import ExportError
+
+_PERSPECTIVE, _ORTHOGRAPHIC = 0, 1
+_MIN_FSTOP = 1e-5
+_DEFAULT_LENS = 35.0  # mm; what Blender takes for objects that are no camera
+_DEFAULT_SENSOR = 32.0  # mm
+_FAR = 1e30
+
+
+@dataclass(frozen=True)
+class ViewOverride:
+    """A view that is no camera object: the viewport's."""
+
+    matrix: tuple[float, ...]  # 16, column-major, view to world, without scale
+    window: tuple[float, float, float, float]  # left, right, bottom, top; as GradusCamera.window
+    type: str  # PERSP or ORTHO
+    clip: tuple[float, float]
+    width: int
+    height: int
+
+    @classmethod
+    def from_view(cls, view_matrix: Any, window_matrix: Any, clip: tuple[float, float], width: int, height: int) -> ViewOverride:
+        """From the matrices of a `region_data`: inverting the projection is exact for every mode of the viewport."""
+        projection = window_matrix
+        m00, m11 = projection[0][0], projection[1][1]
+        if projection[3][2] != 0.0:  # perspective: clip.w = -z
+            kind, x, y = "PERSP", projection[0][2], projection[1][2]
+        else:
+            kind, x, y = "ORTHO", -projection[0][3], -projection[1][3]
+        window = ((x - 1.0) / m00, (x + 1.0) / m00, (y - 1.0) / m11, (y + 1.0) / m11)
+        if kind == "ORTHO" and clip[0] > 0.0:
+            # The viewport's orthographic view sees what is behind its origin, too.
+            clip = (-clip[1], clip[1])
+        return cls(tuple(matrix_values(view_matrix.inverted().normalized())), window, kind, clip, width, height)
+
+
+@dataclass
+class CameraState:
+    """A camera at one moment."""
+
+    matrix: tuple[float, ...]
+    window: tuple[float, float, float, float]
+    type: int = _PERSPECTIVE
+    clip: tuple[float, float] = (0.1, 1000.0)
+    aperture_radius: float = 0.0
+    focus_distance: float = 1.0
+    blades: int = 0
+    blade_rotation: float = 0.0
+    aperture_ratio: float = 1.0
+
+
+def frame_window(
+    extent: float, fit: str, shift: tuple[float, float], width: int, height: int, aspect: tuple[float, float]
+) -> tuple[float, float, float, float]:
+    """Left, right, bottom, top of the frame. extent: size of the fitted side at distance 1 (sensor/lens), or ortho_scale in metres.
+
+    fit: HORIZONTAL or VERTICAL; aspect: the pixel's, x and y.
+    """
+    pixel_height = aspect[1] / aspect[0]
+    view = width if fit == "HORIZONTAL" else pixel_height * height
+    half_x = 0.5 * extent * width / view
+    half_y = 0.5 * extent * height * pixel_height / view
+    x, y = shift[0] * extent, shift[1] * extent
+    return (x - half_x, x + half_x, y - half_y, y + half_y)
+
+
+def resolve_fit(fit: str, width: int, height: int, aspect: tuple[float, float]) -> str:
+    """AUTO fits the longer side of the frame."""
+    if fit != "AUTO":
+        return fit
+    return "HORIZONTAL" if width * aspect[0] >= height * aspect[1] else "VERTICAL"
+
+
+def _focus_distance(dof: Any, matrix: Any) -> float:
+    """Along the view axis."""
+    if dof.focus_object is None:
+        return dof.focus_distance
+    target = dof.focus_object.matrix_world
+    bone = getattr(dof, "focus_subtarget", "")
+    if bone and dof.focus_object.pose is not None and bone in dof.focus_object.pose.bones:
+        target = target @ dof.focus_object.pose.bones[bone].matrix
+    offset = target.translation - matrix.translation
+    return abs(offset.dot(matrix.col[2].to_3d().normalized()))
+
+
+def _set_depth_of_field(state: CameraState, data: Any, matrix: Any) -> None:
+    dof = data.dof
+    if not dof.use_dof:
+        return
+    fstop = max(dof.aperture_fstop, _MIN_FSTOP)
+    state.aperture_radius = 0.5 / fstop if data.type == "ORTHO" else data.lens * 1e-3 / (2.0 * fstop)
+    state.focus_distance = max(_focus_distance(dof, matrix), 1e-5)
+    state.blades = dof.aperture_blades
+    state.blade_rotation = dof.aperture_rotation
+    state.aperture_ratio = dof.aperture_ratio
+
+
+def _camera_matrix(camera: Any, engine: Any, scene: Any) -> Any:
+    """Camera to world without scale; the eye's own in a stereo render."""
+    if engine is not None and scene.render.use_multiview:
+        return engine.camera_model_matrix(camera).normalized()
+    return camera.matrix_world.normalized()
+
+
+def _shift_x(camera: Any, engine: Any, scene: Any) -> float:
+    if engine is not None and scene.render.use_multiview:
+        return engine.camera_shift_x(camera)
+    return camera.data.shift_x
+
+
+def camera_state(camera: Any, scene: Any, width: int, height: int, engine: Any = None) -> CameraState:
+    """The state of a camera object (or a lamp or empty that the scene looks through) at the evaluated frame."""
+    aspect = (scene.render.pixel_aspect_x, scene.render.pixel_aspect_y)
+    matrix = _camera_matrix(camera, engine, scene)
+    values = tuple(matrix_values(matrix))
+    if camera.type != "CAMERA":
+        lens = _DEFAULT_LENS
+        if camera.type == "LIGHT" and camera.data.type == "SPOT":
+            lens = 16.0 / max(math.tan(0.5 * camera.data.spot_size), 1e-6)
+        fit = resolve_fit("AUTO", width, height, aspect)
+        return CameraState(values, frame_window(_DEFAULT_SENSOR / lens, fit, (0.0, 0.0), width, height, aspect), clip=(0.1, _FAR))
+    data = camera.data
+    if data.type not in {"PERSP", "ORTHO"}:
+        kind = {"PANO": "panoramic", "CUSTOM": "custom"}.get(data.type, data.type.lower())
+        raise ExportError(f"Camera '{camera.name}' is {kind}: Gradus renders perspective and orthographic cameras")
+    fit = resolve_fit(data.sensor_fit, width, height, aspect)
+    sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    orthographic = data.type == "ORTHO"
+    extent = data.ortho_scale if orthographic else sensor / data.lens
+    shift = (_shift_x(camera, engine, scene), data.shift_y)
+    state = CameraState(
+        values,
+        frame_window(extent, fit, shift, width, height, aspect),
+        _ORTHOGRAPHIC if orthographic else _PERSPECTIVE,
+        (data.clip_start, data.clip_end),
+    )
+    _set_depth_of_field(state, data, matrix)
+    return state
+
+
+def view_state(view: ViewOverride) -> CameraState:
+    """The state of the viewport."""
+    kind = _ORTHOGRAPHIC if view.type == "ORTHO" else _PERSPECTIVE
+    return CameraState(tuple(view.matrix), view.window, kind, view.clip)
+
+
+def fill_camera(now: CameraState, previous: CameraState | None = None, following: CameraState | None = None) -> native.Camera:
+    """A native Camera; without other moments it is at rest."""
+    struct = native.Camera()
+    previous = previous or now
+    following = following or now
+    struct.type = now.type
+    struct.matrix[:] = array("f", now.matrix)
+    struct.matrix_previous[:] = array("f", previous.matrix)
+    struct.matrix_next[:] = array("f", following.matrix)
+    struct.window[:] = now.window
+    struct.window_previous[:] = previous.window
+    struct.window_next[:] = following.window
+    struct.clip_start, struct.clip_end = now.clip
+    struct.aperture_radius = now.aperture_radius
+    struct.focus_distance = now.focus_distance
+    struct.blades = now.blades
+    struct.blade_rotation = now.blade_rotation
+    struct.aperture_ratio = now.aperture_ratio
+    return struct

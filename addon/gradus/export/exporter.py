@@ -1,0 +1,205 @@
+"""One sync: everything of the rendered frame is read first, then (for vectors) the frames around it, then instances and camera are set."""
+
+from __future__ import annotations
+
+import time
+from array import array
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+from .. import native
+from . import camera, instances, light, mesh, motion, world
+from .curves import evaluated_mesh
+from .instances import Collected, Entry, InstanceKey
+from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
+from .material import Materials, Resources
+from .mesh import MeshArrays
+from .report import ExportError, ExportReport, Poll, Warnings
+from .target import Target
+
+_SKIPPED = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
+
+
+class Exporter:
+    """Keeps a native scene equal to Blender's; what did not change since the last sync is not set again."""
+
+    def __init__(self, library: Any, scene_handle: int) -> None:
+        self._target = Target(library, scene_handle)
+        self._meshes = KeyTable()
+        self._images = KeyTable()
+        self._materials = KeyTable()
+        self._ids = KeyTable()
+
+    def sync(
+        self,
+        depsgraph: Any,
+        engine: Any = None,
+        view: camera.ViewOverride | None = None,
+        is_preview: bool = False,
+        cancelled: Callable[[], bool] | None = None,
+    ) -> ExportReport:
+        """Sets all that the depsgraph shows at its frame. Raises ExportError (text for the user) and Cancelled.
+
+        view: the viewport's, in place of the camera; then and in previews there is no motion.
+        """
+        start = time.perf_counter()
+        run = _Sync(self, depsgraph, engine, view, is_preview, Poll(cancelled))
+        tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
+        for _, table in tables:
+            table.begin()
+        run.run()
+        for kind, table in tables:
+            for key in table.sweep():
+                self._target.remove(kind, key)
+        return ExportReport(*run.size, run.warnings.texts, time.perf_counter() - start)
+
+    def sync_camera(self, depsgraph: Any, view: camera.ViewOverride) -> None:
+        """Sets the viewport's camera alone: for redraws in which nothing but the view changed."""
+        self._target.set_camera(camera.fill_camera(camera.view_state(view)))
+
+
+class _Sync:
+    """The state of one call of Exporter.sync."""
+
+    def __init__(
+        self, exporter: Exporter, depsgraph: Any, engine: Any, view: camera.ViewOverride | None, is_preview: bool, poll: Poll
+    ) -> None:
+        self._depsgraph = depsgraph
+        self._engine = engine
+        self._view = view
+        self._poll = poll
+        self._target = exporter._target
+        self._mesh_keys = exporter._meshes
+        self._ids = exporter._ids
+        self.warnings = Warnings()
+        self._scene = depsgraph.scene_eval
+        self.size = self._resolution()
+        self._wants_motion = view is None and not is_preview and depsgraph.view_layer_eval.use_pass_vector
+        resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
+        self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
+        self._deforming: dict[InstanceKey, tuple[int, MeshArrays]] = {}
+
+    def _resolution(self) -> tuple[int, int]:
+        if self._view is not None:
+            return self._view.width, self._view.height
+        if self._engine is not None and self._engine.resolution_x > 0:
+            return self._engine.resolution_x, self._engine.resolution_y
+        render = self._scene.render
+        percentage = render.resolution_percentage
+        return max(render.resolution_x * percentage // 100, 1), max(render.resolution_y * percentage // 100, 1)
+
+    def run(self) -> None:
+        now = self._camera()
+        collected = instances.collect(self._depsgraph, self._poll)
+        for name, kind in collected.skipped:
+            self.warnings.add(f"Object '{name}' is left out: {_SKIPPED[kind]} are not rendered yet")
+        for entry in collected.surfaces:
+            entry.material_keys = tuple(self._materials.key(material) for material in entry.materials)
+        self._set_world()
+        self._set_lights(collected)
+        mesh_of = self._read_meshes(collected)
+        moments = self._moments()
+        for key, (place, arrays) in self._deforming.items():
+            arrays.motion = motion.mesh_motion(key, arrays, moments)
+            mesh_of[place] = self._set_mesh(arrays)
+        self._set_instances(collected, mesh_of, moments)
+        around = [moment.camera for moment in moments] or [None, None]
+        self._target.set_camera(camera.fill_camera(now, *around))
+
+    def _camera(self) -> camera.CameraState:
+        if self._view is not None:
+            return camera.view_state(self._view)
+        found = getattr(self._engine, "camera_override", None) or self._scene.camera
+        if found is None:
+            raise ExportError(f"Scene '{self._scene.name}' has no camera")
+        return camera.camera_state(found, self._scene, *self.size, self._engine)
+
+    def _moments(self) -> list[motion.Moment]:
+        if not self._wants_motion:
+            return []
+        deforming = {key: arrays for key, (_, arrays) in self._deforming.items()}
+        return motion.read_moments(self._depsgraph, self._engine, deforming, self.size, self._poll)
+
+    # Meshes
+
+    def _read_meshes(self, collected: Collected) -> dict[int, int]:
+        """Keys by place; those of deforming meshes follow when the frames around have been read."""
+        keys: dict[int, int] = {}
+        wanted = frozenset(self._materials.attribute_names)
+        for entry in collected.surfaces:
+            place = entry.place
+            if place in keys:
+                continue
+            self._poll()
+            keys[place] = 0
+            arrays = self._read_mesh(entry, wanted)
+            if arrays is None:
+                continue
+            if self._wants_motion and motion.may_deform(entry):
+                self._deforming[entry.key] = (place, arrays)
+            else:
+                keys[place] = self._set_mesh(arrays)
+        return keys
+
+    def _read_mesh(self, entry: Entry, wanted: frozenset[str]) -> MeshArrays | None:
+        original = entry.object.original
+        undeformed = None
+        if original.type == "MESH" and (original.modifiers or getattr(original.data, "shape_keys", None) is not None):
+            undeformed = original.data
+        with evaluated_mesh(entry.object, entry.data) as evaluated:
+            if evaluated is None or len(evaluated.polygons) == 0:
+                return None
+            return mesh.read_mesh(evaluated, wanted, undeformed)
+
+    def _set_mesh(self, arrays: MeshArrays) -> int:
+        key = self._mesh_keys.key(arrays.content_hash())
+        if self._mesh_keys.changed(key, True):
+            struct, _keep = mesh.fill_mesh(arrays)
+            try:
+                self._target.set_mesh(key, struct)
+            except Exception:
+                self._mesh_keys.forget(key)
+                raise
+        return key
+
+    def _set_instances(self, collected: Collected, mesh_of: dict[int, int], moments: list[motion.Moment]) -> None:
+        arrays = instances.instance_arrays(collected, mesh_of, self._ids.key)
+        if moments:
+            arrays.previous, arrays.following = (motion.instance_motion(arrays.entries, arrays.matrices, moment) for moment in moments)
+        struct, _keep = instances.fill_instances(arrays)
+        self._target.set_instances(struct)
+
+    # Lights and the world
+
+    def _set_lights(self, collected: Collected) -> None:
+        records = native.struct_array(native.Light, (self._light(entry, collected.matrices) for entry in collected.lights))
+        self._target.set_lights(records, len(collected.lights))
+
+    def _light(self, entry: Entry, matrices: array) -> native.Light:
+        data = entry.data
+        matrix = matrices[16 * entry.index : 16 * entry.index + 16]
+        record = native.Light()
+        scale = tuple(sum(value * value for value in matrix[4 * axis : 4 * axis + 3]) ** 0.5 for axis in range(2))
+        state = light.light_state(data, scale, bpy.app.version)
+        emission = light.constant_emission(data)
+        if emission is None:
+            record.material = self._materials.key(data, "LIGHT")
+            emission = (1.0, 1.0, 1.0)
+        record.strength[:] = [strength * factor for strength, factor in zip(state.strength, emission, strict=True)]
+        record.type, record.flags, record.visibility = state.type, state.flags, entry.visibility
+        record.matrix[:] = matrix
+        record.radius, record.angle, record.spread = state.radius, state.angle, state.spread
+        record.size[:] = state.size
+        record.cone, record.blend = state.cone, state.blend
+        record.sun_radiance_per_irradiance = state.sun_radiance_per_irradiance
+        record.max_bounces = state.max_bounces
+        record.pass_index = entry.pass_index
+        record.name = native.text(entry.name)
+        return record
+
+    def _set_world(self) -> None:
+        found = self._scene.world
+        key = self._materials.key(found, "WORLD")
+        self._target.set_world(world.fill_world(found, key))

@@ -1,0 +1,75 @@
+"""Materials, worlds and light trees as node programs; and what those programs ask of the exporter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .. import native
+from . import image as images
+from .keys import KeyTable
+from .report import Warnings
+from .target import Target
+
+
+class Resources:
+    """What the node translation asks for: keys of images."""
+
+    def __init__(self, target: Target, keys: KeyTable, frame: int, abspath: Callable[..., str], warnings: Warnings) -> None:
+        self._target = target
+        self._keys = keys
+        self._abspath = abspath
+        self._warnings = warnings
+        self.frame = frame
+
+    def image(self, image: Any, image_user: Any = None) -> int:
+        """The key of an image at the rendered frame; sets it if it is new or has changed."""
+        if image is None:
+            return 0
+        state = images.image_state(image, image_user, self.frame, self._abspath)
+        file = state.tiles[0].path if image.source == "SEQUENCE" and state.tiles else ""
+        key = self._keys.key((image.as_pointer(), file))
+        if self._keys.changed(key, images.content(state)):
+            struct, _keep = images.fill_image(state)
+            self._target.set_image(key, struct)
+        return key
+
+    def warn(self, text: str) -> None:
+        self._warnings.add(text)
+
+
+class Materials:
+    """Programs by material, each translated once a sync."""
+
+    def __init__(self, target: Target, keys: KeyTable, resources: Resources, poll: Callable[[], None], warnings: Warnings) -> None:
+        self._target = target
+        self._keys = keys
+        self._resources = resources
+        self._poll = poll
+        self._warnings = warnings
+        self._done: dict[tuple[str, int], int] = {}
+        self.attribute_names: set[str] = set()
+
+    def key(self, block: Any, kind: str = "MATERIAL") -> int:
+        """The key of a material (kind MATERIAL), world (WORLD) or light (LIGHT); 0 for None: the default grey, or black."""
+        if block is None:
+            return 0
+        pointer = block.original.as_pointer()
+        place = (kind, pointer)
+        key = self._done.get(place)
+        if key is None:
+            self._poll()
+            key = self._done[place] = self._keys.key(place)
+            self._translate(key, block, kind)
+        return key
+
+    def _translate(self, key: int, block: Any, kind: str) -> None:
+        from .. import nodes  # the translation is large: loaded with the first material
+
+        program = nodes.translate(block, kind, self._resources)
+        for text in program.warnings:
+            self._warnings.add(text)
+        self.attribute_names.update(program.attribute_names)
+        if self._keys.changed(key, program.content()):
+            struct, _keep = program.to_native(native)
+            self._target.set_material(key, struct)

@@ -1,0 +1,44 @@
+"""The world: its program, mist, ambient occlusion distance and how it is sampled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .. import native
+from .instances import ALL_RAYS, CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME
+
+_MIST = {"QUADRATIC": 0, "LINEAR": 1, "INVERSE_QUADRATIC": 2}
+_IMPORTANCE = {"NONE": 0, "AUTOMATIC": 1, "MANUAL": 2}
+# Where Cycles keeps the visibility of the world.
+_CYCLES_VISIBILITY = (("camera", CAMERA), ("diffuse", DIFFUSE), ("glossy", GLOSSY), ("transmission", TRANSMISSION), ("scatter", VOLUME))
+
+
+def world_visibility(world: Any) -> int:
+    """Kinds of ray that see the world."""
+    switches = getattr(world, "cycles_visibility", None)
+    bits = ALL_RAYS
+    for name, bit in _CYCLES_VISIBILITY:
+        if not getattr(switches, name, True):
+            bits &= ~bit
+    return bits
+
+
+def fill_world(world: Any, material: int) -> native.World:
+    """A native World; `world` may be None: black, and no mist."""
+    struct = native.World()
+    struct.visibility = ALL_RAYS
+    struct.importance = 1
+    struct.mist_depth = 1.0
+    if world is None:
+        return struct
+    struct.visibility = world_visibility(world)
+    struct.material = material
+    cycles = getattr(world, "cycles", None)
+    struct.importance = _IMPORTANCE.get(getattr(cycles, "sampling_method", "AUTOMATIC"), 1)
+    struct.map_size = getattr(cycles, "sample_map_resolution", 1024)
+    mist = world.mist_settings
+    struct.mist_start = mist.start
+    struct.mist_depth = mist.depth
+    struct.mist_falloff = _MIST.get(mist.falloff, 0)
+    struct.ao_distance = max(world.light_settings.distance, 0.0)
+    return struct
