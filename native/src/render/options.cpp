@@ -1,0 +1,192 @@
+#include "render/options.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "base/error.h"
+
+namespace gradus {
+namespace {
+
+// Lower case and '-' as '_', by ASCII alone: no locale may change a name.
+std::string canonical(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (c == '-') c = '_';
+  }
+  return result;
+}
+
+std::vector<std::string> choices_of(const Option& option) {
+  std::istringstream stream(option.choices);
+  std::vector<std::string> names;
+  for (std::string name; stream >> name;) names.push_back(name);
+  return names;
+}
+
+std::string number(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
+  return std::string(text, end);
+}
+
+Error refused(const Option& option, std::string_view text, const std::string& allowed) {
+  return invalid_argument(std::string(option.name) + " = " + std::string(text) + ": expected " + allowed);
+}
+
+void check_range(const Option& option, double value) {
+  if (value >= option.minimum && value <= option.maximum) return;  // NaN fails
+  std::string allowed = "at least " + number(option.minimum);
+  if (option.maximum < 2e9) allowed = number(option.minimum) + " to " + number(option.maximum);
+  throw refused(option, number(value), allowed);
+}
+
+double parse_bool(const Option& option, const std::string& text) {
+  if (text == "1" || text == "true" || text == "on") return 1;
+  if (text == "0" || text == "false" || text == "off") return 0;
+  throw refused(option, text, "one of 0 1 true false on off");
+}
+
+double parse_number(const Option& option, const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);  // no locale: the point is the decimal sign everywhere
+  if (error != std::errc() || stop != end) throw refused(option, text, "a number");
+  if (option.type == GRADUS_OPTION_INT && value != std::floor(value)) throw refused(option, text, "a whole number");
+  check_range(option, value);
+  return value;
+}
+
+bool is_signed(const Option& option) { return option.minimum < 0; }
+
+}  // namespace
+
+const Option* find_option(std::string_view name) {
+  const std::string wanted = canonical(name);
+  for (const Option& option : options()) {
+    if (wanted == option.name) return &option;
+  }
+  return nullptr;
+}
+
+double get_option(const GradusSettings& settings, const Option& option) {
+  const auto* from = reinterpret_cast<const unsigned char*>(&settings) + option.offset;
+  uint32_t bits;
+  std::memcpy(&bits, from, sizeof(bits));
+  if (option.type == GRADUS_OPTION_FLOAT) {
+    float value;
+    std::memcpy(&value, &bits, sizeof(value));
+    return value;
+  }
+  return is_signed(option) ? double(int32_t(bits)) : double(bits);
+}
+
+void set_option(GradusSettings* settings, const Option& option, double value) {
+  auto* to = reinterpret_cast<unsigned char*>(settings) + option.offset;
+  if (option.type == GRADUS_OPTION_FLOAT) {
+    const float single = static_cast<float>(value);
+    std::memcpy(to, &single, sizeof(single));
+  } else {
+    const uint32_t bits = is_signed(option) ? static_cast<uint32_t>(static_cast<int32_t>(value)) : static_cast<uint32_t>(value);
+    std::memcpy(to, &bits, sizeof(bits));
+  }
+}
+
+GradusSettings default_settings() {
+  GradusSettings settings{};
+  settings.struct_size = sizeof(settings);
+  for (const Option& option : options()) set_option(&settings, option, option.default_value);
+  settings.passes = uint64_t{1} << GRADUS_PASS_COMBINED;
+  return settings;
+}
+
+double parse_option(const Option& option, std::string_view text) {
+  const std::string value = canonical(text);
+  if (option.type == GRADUS_OPTION_BOOL) return parse_bool(option, value);
+  if (option.type != GRADUS_OPTION_ENUM) return parse_number(option, std::string(text));
+  const std::vector<std::string> names = choices_of(option);
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (value == names[i]) return double(i);
+  }
+  throw refused(option, text, "one of " + std::string(option.choices));
+}
+
+void check_settings(const GradusSettings& settings) {
+  for (const Option& option : options()) {
+    const double value = get_option(settings, option);
+    if (!(value >= option.minimum && value <= option.maximum) && std::strcmp(option.name, "samples") == 0 && value == 0) {
+      throw invalid_argument("0 samples: there is nothing to render");
+    }
+    // A maximum given in double may lie just beside its float.
+    if (option.type == GRADUS_OPTION_FLOAT && std::abs(value - option.minimum) <= 1e-6 * std::abs(option.minimum)) continue;
+    check_range(option, value);
+  }
+}
+
+std::string choice_name(const Option& option, uint32_t value) {
+  const std::vector<std::string> names = choices_of(option);
+  return value < names.size() ? names[value] : std::to_string(value);
+}
+
+nlohmann::json settings_to_json(const GradusSettings& settings) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const Option& option : options()) {
+    const double value = get_option(settings, option);
+    switch (option.type) {
+      case GRADUS_OPTION_BOOL:
+        json[option.name] = value != 0;
+        break;
+      case GRADUS_OPTION_ENUM:
+        json[option.name] = choice_name(option, static_cast<uint32_t>(value));
+        break;
+      case GRADUS_OPTION_INT:
+        json[option.name] = static_cast<int64_t>(value);
+        break;
+      case GRADUS_OPTION_FLOAT:
+        json[option.name] = value;
+        break;  // every float is a double: nothing is lost
+    }
+  }
+  json["region"] = settings.region;
+  json["passes"] = settings.passes;
+  return json;
+}
+
+GradusSettings settings_from_json(const nlohmann::json& json) {
+  GradusSettings settings = default_settings();
+  for (const Option& option : options()) {
+    const auto found = json.find(option.name);
+    if (found == json.end()) continue;
+    if (found->is_boolean()) {
+      set_option(&settings, option, found->get<bool>() ? 1 : 0);
+    } else if (found->is_string()) {
+      set_option(&settings, option, parse_option(option, found->get<std::string>()));
+    } else if (found->is_number()) {
+      const double value = found->get<double>();
+      if (option.type != GRADUS_OPTION_FLOAT) check_range(option, value);
+      set_option(&settings, option, value);
+    }
+  }
+  if (const auto region = json.find("region"); region != json.end() && region->is_array() && region->size() == 4) {
+    for (size_t i = 0; i < 4; ++i) settings.region[i] = region->at(i).get<uint32_t>();
+  }
+  if (const auto passes = json.find("passes"); passes != json.end()) settings.passes = passes->get<uint64_t>();
+  return settings;
+}
+
+uint64_t sampling_key(const GradusSettings& settings) {
+  uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over the raw values
+  for (const Option& option : options()) {
+    if (!option.sampling) continue;
+    const auto* bytes = reinterpret_cast<const unsigned char*>(&settings) + option.offset;
+    for (size_t i = 0; i < sizeof(uint32_t); ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  }
+  return hash;
+}
+
+}  // namespace gradus

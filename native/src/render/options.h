@@ -1,0 +1,49 @@
+// THE table of render options: name, place, default, range, choices and meaning of every scalar of GradusSettings. The C API, the
+// command line, the add-on's properties and the stats take theirs from here.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "gradus/gradus.h"
+
+namespace gradus {
+
+struct Option {
+  const char* name;
+  GradusOptionType type;
+  size_t offset;  // in GradusSettings
+  double default_value;
+  double minimum;
+  double maximum;
+  const char* choices;  // enum: names in order of value, separated by spaces; "" otherwise
+  const char* doc;
+  bool sampling;  // changes what is sampled: part of the sampling key (contract 7.2)
+};
+
+std::span<const Option> options();
+const Option* find_option(std::string_view name);
+
+double get_option(const GradusSettings& settings, const Option& option);
+// No check of the range. Never for an option that lies beyond an older caller's struct_size.
+void set_option(GradusSettings* settings, const Option& option, double value);
+
+GradusSettings default_settings();
+// Throws invalid_argument naming option, value and what is allowed.
+double parse_option(const Option& option, std::string_view text);
+// Throws invalid_argument for the first value outside its range.
+void check_settings(const GradusSettings& settings);
+// Name of an enum's value in lower case, as in the table.
+std::string choice_name(const Option& option, uint32_t value);
+
+// All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default).
+nlohmann::json settings_to_json(const GradusSettings& settings);
+GradusSettings settings_from_json(const nlohmann::json& json);
+// Hash of what determines a sample's value: size, seed, frame, integrator, bounces and the like, not how many samples are taken.
+uint64_t sampling_key(const GradusSettings& settings);
+
+}  // namespace gradus

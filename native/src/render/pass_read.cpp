@@ -1,0 +1,129 @@
+#include "render/pass_read.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+#include "render/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// Depth of a pixel that sees nothing, as in Blender.
+constexpr float kFarDepth = 1e10f;
+
+const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
+  for (const PassPlane& plane : frame.passes) {
+    if (plane.pass == pass) return &plane;
+  }
+  return nullptr;
+}
+
+template <class Function>
+void for_pixels(const Frame& frame, const Region& region, Function&& function) {
+  size_t out = 0;
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    for (int32_t x = region.x0; x < region.x1; ++x) function(frame.index(x, y), out++);
+  }
+}
+
+uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
+
+float inverse_count(const Frame& frame, size_t i) {
+  const uint32_t n = samples_at(frame, i);
+  return n > 0 ? 1.0f / static_cast<float>(n) : 0.0f;
+}
+
+void read_noisy(const Frame& frame, const Region& region, float* pixels) {
+  const float exposure = frame.settings.film_exposure;
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    Radiance sum(0.0f);
+    for (const ComponentPlanes& component : frame.components) sum += component.primal[0][i] + component.primal[1][i];
+    const Radiance mean = sum * inverse_count(frame, i);
+    float* p = pixels + 4 * out;
+    for (int c = 0; c < 3; ++c) p[c] = exposure * mean[c];
+    p[3] = frame.channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (samples_at(frame, i) > 0 ? 1.0f : 0.0f);
+  });
+}
+
+// Forward difference of the noisy image's expectation, of all components together.
+void read_gradient(const Frame& frame, const Region& region, bool vertical, float* pixels) {
+  std::fill_n(pixels, size_t(region.area()) * 3, 0.0f);
+  if (!frame.gradients) return;
+  const float exposure = frame.settings.film_exposure;
+  for (int component = 0; component < int(frame.components.size()); ++component) {
+    const GradientImages images = read_images(frame, component, false);
+    const std::vector<float>& plane = vertical ? images.dy : images.dx;
+    for_pixels(frame, region, [&](size_t i, size_t out) {
+      for (int c = 0; c < 3; ++c) pixels[3 * out + c] += exposure * plane[i * images.channels + c];
+    });
+  }
+}
+
+void read_variance_pass(const Frame& frame, const Region& region, float* pixels) {
+  const std::vector<float> variance = read_variance(frame);
+  const float scale = frame.settings.film_exposure * frame.settings.film_exposure;
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    for (int c = 0; c < 3; ++c) pixels[3 * out + c] = scale * variance[i * frame.channels + c];
+  });
+}
+
+void read_derived(const Frame& frame, uint32_t pass, const Region& region, float* pixels) {
+  switch (pass) {
+    case GRADUS_PASS_GRADIENT_X:
+      return read_gradient(frame, region, false, pixels);
+    case GRADUS_PASS_GRADIENT_Y:
+      return read_gradient(frame, region, true, pixels);
+    case GRADUS_PASS_VARIANCE:
+      return read_variance_pass(frame, region, pixels);
+    case GRADUS_PASS_SAMPLE_COUNT:
+      return for_pixels(frame, region, [&](size_t i, size_t out) { pixels[out] = static_cast<float>(samples_at(frame, i)); });
+    default:
+      return for_pixels(frame, region, [&](size_t i, size_t out) { pixels[out] = frame.fallback[i] * inverse_count(frame, i); });
+  }
+}
+
+// Sum of radiance over sum of colours; their product is the radiance again, as Cycles' compositing expects.
+void read_light(const Frame& frame, const PassPlane& light, const PassPlane& color, const Region& region, float* pixels) {
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    for (int c = 0; c < 3; ++c) {
+      const float divisor = color.values[3 * i + c];
+      pixels[3 * out + c] = divisor > 0.0f ? frame.settings.film_exposure * light.values[3 * i + c] / divisor : 0.0f;
+    }
+  });
+}
+
+void read_stored(const Frame& frame, const PassInfo& info, const PassPlane& plane, const Region& region, float* pixels) {
+  const float scale = info.kind == PassKind::Radiance ? frame.settings.film_exposure : 1.0f;
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    float factor = 1.0f;
+    if (info.kind == PassKind::Weighted) {
+      factor = plane.weight[i] > 0.0f ? 1.0f / plane.weight[i] : 0.0f;
+    } else if (info.kind != PassKind::First) {
+      factor = scale * inverse_count(frame, i);
+    }
+    for (uint32_t c = 0; c < info.channels; ++c) pixels[info.channels * out + c] = factor * plane.values[info.channels * i + c];
+    if (info.pass == GRADUS_PASS_DEPTH && pixels[out] == 0.0f) pixels[out] = kFarDepth;
+  });
+}
+
+}  // namespace
+
+bool has_pass(const Frame& frame, uint32_t pass) {
+  const PassInfo& info = pass_info(pass);
+  if (pass == GRADUS_PASS_FALLBACK) return !frame.fallback.empty();
+  if (info.kind == PassKind::Image || info.kind == PassKind::Derived) return true;
+  return find_plane(frame, pass) != nullptr;
+}
+
+void read_frame_pass(const Frame& frame, uint32_t pass, const Region& region, float* pixels) {
+  const PassInfo& info = pass_info(pass);
+  if (!has_pass(frame, pass)) throw invalid_operation("pass " + std::string(info.name) + " was not asked for when the render began");
+  if (info.kind == PassKind::Image) return read_noisy(frame, region, pixels);
+  if (info.kind == PassKind::Derived) return read_derived(frame, pass, region, pixels);
+  const PassPlane* plane = find_plane(frame, pass);
+  if (info.kind == PassKind::Light) return read_light(frame, *plane, *find_plane(frame, info.color), region, pixels);
+  read_stored(frame, info, *plane, region, pixels);
+}
+
+}  // namespace gradus

@@ -1,0 +1,17 @@
+// Reading passes out of a frame: means, quotients and differences of its sums, cropped to what is delivered.
+#pragma once
+
+#include <cstdint>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// Writes width·height·channels floats of `region` (inside the frame's region; row 0 is the bottom). Combined is the noisy image here.
+// Throws invalid_operation with the pass's name if the frame has no plane for it. Pixels without samples are 0.
+void read_frame_pass(const Frame& frame, uint32_t pass, const Region& region, float* pixels);
+
+// Whether the frame can give the pass.
+bool has_pass(const Frame& frame, uint32_t pass);
+
+}  // namespace gradus

@@ -1,0 +1,96 @@
+#include "render/pass_table.h"
+
+#include <string>
+
+#include "base/error.h"
+
+namespace gradus {
+namespace {
+
+constexpr uint32_t kNone = GRADUS_PASS_COUNT;
+
+// clang-format off
+constexpr PassInfo kPasses[] = {
+    {GRADUS_PASS_COMBINED,              "Combined",              4, PassKind::Image,    kNone},
+    {GRADUS_PASS_NOISY_IMAGE,           "Noisy Image",           4, PassKind::Image,    kNone},
+    {GRADUS_PASS_DEPTH,                 "Depth",                 1, PassKind::First,    kNone},
+    {GRADUS_PASS_MIST,                  "Mist",                  1, PassKind::Average,  kNone},
+    {GRADUS_PASS_NORMAL,                "Normal",                3, PassKind::Average,  kNone},
+    {GRADUS_PASS_POSITION,              "Position",              3, PassKind::Average,  kNone},
+    {GRADUS_PASS_UV,                    "UV",                    3, PassKind::Average,  kNone},
+    {GRADUS_PASS_VECTOR,                "Vector",                4, PassKind::Weighted, kNone},
+    {GRADUS_PASS_OBJECT_INDEX,          "Object Index",          1, PassKind::First,    kNone},
+    {GRADUS_PASS_MATERIAL_INDEX,        "Material Index",        1, PassKind::First,    kNone},
+    {GRADUS_PASS_EMISSION,              "Emission",              3, PassKind::Radiance, kNone},
+    {GRADUS_PASS_ENVIRONMENT,           "Environment",           3, PassKind::Radiance, kNone},
+    {GRADUS_PASS_DIFFUSE_DIRECT,        "Diffuse Direct",        3, PassKind::Light,    GRADUS_PASS_DIFFUSE_COLOR},
+    {GRADUS_PASS_DIFFUSE_INDIRECT,      "Diffuse Indirect",      3, PassKind::Light,    GRADUS_PASS_DIFFUSE_COLOR},
+    {GRADUS_PASS_DIFFUSE_COLOR,         "Diffuse Color",         3, PassKind::Color,    kNone},
+    {GRADUS_PASS_GLOSSY_DIRECT,         "Glossy Direct",         3, PassKind::Light,    GRADUS_PASS_GLOSSY_COLOR},
+    {GRADUS_PASS_GLOSSY_INDIRECT,       "Glossy Indirect",       3, PassKind::Light,    GRADUS_PASS_GLOSSY_COLOR},
+    {GRADUS_PASS_GLOSSY_COLOR,          "Glossy Color",          3, PassKind::Color,    kNone},
+    {GRADUS_PASS_TRANSMISSION_DIRECT,   "Transmission Direct",   3, PassKind::Light,    GRADUS_PASS_TRANSMISSION_COLOR},
+    {GRADUS_PASS_TRANSMISSION_INDIRECT, "Transmission Indirect", 3, PassKind::Light,    GRADUS_PASS_TRANSMISSION_COLOR},
+    {GRADUS_PASS_TRANSMISSION_COLOR,    "Transmission Color",    3, PassKind::Color,    kNone},
+    {GRADUS_PASS_AMBIENT_OCCLUSION,     "Ambient Occlusion",     3, PassKind::Average,  kNone},
+    {GRADUS_PASS_DENOISING_NORMAL,      "Denoising Normal",      3, PassKind::Average,  kNone},
+    {GRADUS_PASS_DENOISING_ALBEDO,      "Denoising Albedo",      3, PassKind::Average,  kNone},
+    {GRADUS_PASS_DENOISING_DEPTH,       "Denoising Depth",       1, PassKind::Average,  kNone},
+    {GRADUS_PASS_SAMPLE_COUNT,          "Debug Sample Count",    1, PassKind::Derived,  kNone},
+    {GRADUS_PASS_GRADIENT_X,            "Gradient X",            3, PassKind::Derived,  kNone},
+    {GRADUS_PASS_GRADIENT_Y,            "Gradient Y",            3, PassKind::Derived,  kNone},
+    {GRADUS_PASS_VARIANCE,              "Variance",              3, PassKind::Derived,  kNone},
+    {GRADUS_PASS_FALLBACK,              "Fallback",              1, PassKind::Derived,  kNone},
+};
+// clang-format on
+
+constexpr bool is_in_order() {
+  for (uint32_t i = 0; i < std::size(kPasses); ++i) {
+    if (kPasses[i].pass != i) return false;
+  }
+  return std::size(kPasses) == GRADUS_PASS_COUNT;
+}
+static_assert(is_in_order(), "one row per GradusPass, in order");
+
+bool is_stored(const PassInfo& info) { return info.kind != PassKind::Image && info.kind != PassKind::Derived; }
+
+}  // namespace
+
+const PassInfo& pass_info(uint32_t pass) {
+  if (pass >= GRADUS_PASS_COUNT) throw invalid_argument("there is no pass " + std::to_string(pass));
+  return kPasses[pass];
+}
+
+uint64_t needed_passes(uint64_t passes) {
+  for (const PassInfo& info : kPasses) {
+    if (wants(passes, info.pass) && info.color != kNone) passes |= uint64_t{1} << info.color;
+  }
+  return passes;
+}
+
+std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
+  std::vector<PassPlane> planes;
+  const uint64_t needed = needed_passes(passes);
+  for (const PassInfo& info : kPasses) {
+    if (!wants(needed, info.pass) || !is_stored(info)) continue;
+    PassPlane& plane = planes.emplace_back();
+    plane.pass = info.pass;
+    plane.channels = info.channels;
+    plane.first_sample_only = info.kind == PassKind::First;
+    plane.skips_transparent = info.kind == PassKind::Weighted;
+    plane.values.assign(pixels * info.channels, 0.0f);
+    if (plane.skips_transparent) plane.weight.assign(pixels, 0.0f);
+  }
+  return planes;
+}
+
+uint64_t pass_bytes_per_pixel(uint64_t passes) {
+  uint64_t floats = 0;
+  const uint64_t needed = needed_passes(passes);
+  for (const PassInfo& info : kPasses) {
+    if (wants(needed, info.pass) && is_stored(info)) floats += info.channels + (info.kind == PassKind::Weighted ? 1 : 0);
+  }
+  return floats * sizeof(float);
+}
+
+}  // namespace gradus

@@ -1,0 +1,44 @@
+// THE native table of passes: names, channels, and which stored plane a pass is read from. The integrator fills the planes that
+// make_pass_planes() creates; frames are read through render/pass_read.h.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// How a pass comes out of a frame.
+enum class PassKind : uint8_t {
+  Image,     // Combined, Noisy Image
+  Derived,   // gradients, variance, counts: from the frame's own planes
+  Radiance,  // sum of radiance; the film's exposure applies
+  Light,     // sum of radiance, divided by its colour pass when read (contract 6.5)
+  Color,     // sum of albedos
+  Average,   // sum of a quantity over all samples, misses count as 0
+  Weighted,  // sum over those samples that have it, divided by their number
+  First,     // value of the first sample
+};
+
+struct PassInfo {
+  uint32_t pass;
+  const char* name;
+  uint32_t channels;  // as delivered, and as stored
+  PassKind kind;
+  uint32_t color;  // Light: the colour pass it is divided by; GRADUS_PASS_COUNT otherwise
+};
+
+// Throws invalid_argument for a number that is no pass.
+const PassInfo& pass_info(uint32_t pass);
+
+inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
+
+// `passes` plus what they need: the colours that light passes are divided by.
+uint64_t needed_passes(uint64_t passes);
+// The planes that an integrator fills, zeroed, in order of pass number. pixels: of the frame's region.
+std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels);
+// Bytes of these planes per pixel.
+uint64_t pass_bytes_per_pixel(uint64_t passes);
+
+}  // namespace gradus
