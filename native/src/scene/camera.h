@@ -1,6 +1,8 @@
 // Camera: film position to ray, and world position to film, at the frame's time or one frame before or after (for vectors).
 #pragma once
 
+#include <array>
+
 #include "base/types.h"
 #include "gradus/gradus.h"
 
@@ -11,6 +13,7 @@ enum class Shutter { Now, Previous, Next };
 class Camera {
  public:
   Camera() = default;
+  // Matrices that cannot be inverted become the identity. desc: in the space of the rays wanted, see Snapshot::camera.
   Camera(const GradusCamera& desc, uint32_t width, uint32_t height);
 
   // film: pixels of the full frame, origin at the lower left corner, pixel centres at +0.5. lens: [0,1)², ignored by pinholes.
@@ -29,7 +32,20 @@ class Camera {
   float pixel_spread() const;
 
  private:
+  // Pose and window at one time.
+  struct Pose {
+    Mat3 axes{1.0f};  // camera to world
+    Mat3 inverse{1.0f};
+    Vec3 position{0.0f};
+    std::array<float, 4> window{-1.0f, 1.0f, -1.0f, 1.0f};
+  };
+  static Pose make_pose(const float* matrix, const float* window);
+  const Pose& pose(Shutter when) const { return poses_[static_cast<int>(when)]; }
+  Vec2 lens_point(const Vec2& u) const;
+  bool to_film(const Pose& pose, const Vec3& local, Vec2* film) const;
+
   GradusCamera desc_{};
+  std::array<Pose, 3> poses_;
   uint32_t width_ = 0;
   uint32_t height_ = 0;
 };

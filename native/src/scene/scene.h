@@ -18,7 +18,7 @@ class Scene {
  public:
   explicit Scene(std::shared_ptr<Device> device);
   ~Scene();
-  // Copies the arrays. Throws std::invalid_argument with a text that names the mesh where the arrays contradict each other;
+  // Copies the arrays. Throws Error INVALID_ARGUMENT with a text that names the mesh where the arrays contradict each other;
   // broken values (NaN, zero areas) are kept out later, with one warning (contract: broken data costs the broken object).
   void set_mesh(uint64_t key, const GradusMesh& mesh);
   void set_image(uint64_t key, const GradusImage& image);
@@ -28,13 +28,14 @@ class Scene {
   void set_camera(const GradusCamera& camera);
   void set_world(const GradusWorld& world);
   void remove(GradusObjectKind kind, uint64_t key);
-  // Throws Cancelled when *cancel becomes non-zero.
+  // Throws Error CANCELLED when *cancel becomes non-zero (the snapshot before stays); progress runs from 0 to 1 and never falls.
   void commit(const volatile int32_t* cancel, float* progress);
   std::shared_ptr<const Snapshot> snapshot() const;  // of the last commit; nullptr before
   const std::shared_ptr<Device>& device() const { return device_; }
 
+  struct State;  // scene/scene_state.h
+
  private:
-  struct State;
   std::unique_ptr<State> state_;
   std::shared_ptr<Device> device_;
 };

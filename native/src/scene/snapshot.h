@@ -17,8 +17,11 @@ struct MaterialData;  // shading/material.h: compiled node program and flags
 class ImageStore;     // scene/image_store.h
 struct Accelerator;   // scene/accelerator.h: Embree scenes
 
+// Matrices lead to and from the snapshot's internal space (Snapshot::origin). A mirrored instance keeps outside outside: normals are
+// transformed by the inverse transpose, and geometric normals point to where the corners run counter-clockwise in the mesh.
 struct InstanceData {
   std::shared_ptr<const MeshData> mesh;
+  const Vec3* flat_positions = nullptr;  // vertices in internal space where the mesh lies in the top level; owned by the accelerator
   Mat4 to_world{1.0f};
   Mat4 to_local{1.0f};
   Mat3 normal_to_world{1.0f};
@@ -42,6 +45,8 @@ struct SceneFeatures {
   bool has_emitters = false;
 };
 
+// All positions that go in and come out are in internal space: world = internal + origin. The camera and the lamps are moved alike, so
+// that an integrator never notices; what shows world coordinates (Position pass, Geometry node) adds the origin.
 class Snapshot {
  public:
   // Nearest surface among those visible to `visibility` (GradusVisibility bits). False: the ray left the scene.
@@ -58,12 +63,15 @@ class Snapshot {
   // World position of the hit one frame earlier or later: surface motion.
   Vec3 position_at(const Hit& hit, bool next) const;
 
+  // Material (index in `materials`) of a triangle of an instance.
+  uint32_t material_of(uint32_t instance, uint32_t triangle) const;
+
   std::vector<InstanceData> instances;
   std::vector<std::shared_ptr<const MaterialData>> materials;  // 0 = default grey
   std::shared_ptr<const EmitterTable> emitters;
   std::shared_ptr<const ImageStore> images;
   std::shared_ptr<const Accelerator> accelerator;
-  GradusCamera camera{};
+  GradusCamera camera{};  // in internal space
   bool has_camera = false;
   GradusWorld world{};
   uint32_t world_material = UINT32_MAX;

@@ -14,12 +14,12 @@ struct Hit {
   bool valid() const { return instance != UINT32_MAX; }
 };
 
-// Geometry of a hit, in world space. The position comes from barycentrics, not from origin + t·direction.
+// Geometry of a hit, in the snapshot's internal space. The position comes from barycentrics, not from origin + t·direction.
 struct SurfacePoint {
   Vec3 position = Vec3(0.0f);
   Vec3 geometric_normal = Vec3(0, 0, 1);  // unit; the side from which the corners run counter-clockwise (mirrored instances included)
   Vec3 shading_normal = Vec3(0, 0, 1);    // unit; interpolated; not flipped towards the viewer
-  float error = 0.0f;                     // bound on the position's rounding error, for offset_origin()
+  float error = 0.0f;                     // bound on the rounding error along the geometric normal, for offset_origin()
   Hit hit;
   uint32_t material = 0;  // index in the snapshot
 };

@@ -1,0 +1,84 @@
+#include "scene/material_source.h"
+
+#include "base/error.h"
+#include "base/hash.h"
+
+namespace gradus {
+
+namespace {
+
+class Check {
+ public:
+  explicit Check(const std::string& name) : name_(name) {}
+  void that(bool good, const char* text) const {
+    if (!good) throw invalid_argument("material '" + name_ + "': " + text);
+  }
+
+ private:
+  const std::string& name_;
+};
+
+void check_arrays(const GradusMaterial& d, const Check& check) {
+  constexpr size_t kMaxElements = size_t(1) << 26;
+  check.that(d.node_count < kMaxElements && d.input_count < kMaxElements && d.float_count < kMaxElements && d.name_count < kMaxElements,
+             "too many elements");
+  check.that(d.node_count == 0 || d.nodes, "nodes missing");
+  check.that(d.input_count == 0 || d.inputs, "inputs missing");
+  check.that(d.float_count == 0 || d.floats, "floats missing");
+  check.that(d.name_count == 0 || d.names, "names missing");
+  check.that(d.surface >= -1 && d.surface < int64_t(d.node_count), "the surface node is out of range");
+}
+
+void check_node(const GradusMaterial& d, uint32_t i, const Check& check) {
+  const GradusNode& node = d.nodes[i];
+  check.that(uint64_t(node.first_input) + node.input_count <= d.input_count, "a node's inputs are out of range");
+  check.that(uint64_t(node.first_float) + node.float_count <= d.float_count, "a node's floats are out of range");
+  for (uint32_t k = 0; k < node.input_count; ++k) {
+    const int32_t source = d.inputs[node.first_input + k].node;
+    check.that(source >= -1 && source < int64_t(i), "an input refers to a node that is not an earlier one");
+  }
+}
+
+void hash_nodes(const std::vector<GradusNode>& nodes, const std::vector<GradusInput>& inputs, ContentHash* hash) {
+  for (const GradusNode& n : nodes) {
+    for (const uint32_t v : {n.op, n.mode, n.first_input, n.input_count, n.first_float, n.float_count}) hash->value(v);
+    hash->value(n.resource);
+  }
+  for (const GradusInput& in : inputs) {
+    hash->value(in.node);
+    hash->value(in.output);
+    for (const float v : in.value) hash->value(v);
+  }
+}
+
+}  // namespace
+
+MaterialSource::MaterialSource(const GradusMaterial& d) : desc_(d), name_(d.name ? d.name : "") {
+  const Check check(name_);
+  check_arrays(d, check);
+  for (uint32_t i = 0; i < d.node_count; ++i) check_node(d, i, check);
+  nodes_.assign(d.nodes, d.nodes + d.node_count);
+  inputs_.assign(d.inputs, d.inputs + d.input_count);
+  floats_.assign(d.floats, d.floats + d.float_count);
+  for (uint32_t i = 0; i < d.name_count; ++i) names_.emplace_back(d.names[i] ? d.names[i] : "");
+  for (const std::string& name : names_) name_pointers_.push_back(name.c_str());
+  ContentHash hash;
+  hash_nodes(nodes_, inputs_, &hash);
+  hash.array(floats_);
+  for (const std::string& name : names_) hash.value(name);
+  for (const uint32_t v : {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
+    hash.value(v);
+  content_hash_ = hash.result();
+}
+
+GradusMaterial MaterialSource::view() const {
+  GradusMaterial d = desc_;
+  d.nodes = nodes_.data();
+  d.inputs = inputs_.data();
+  d.floats = floats_.data();
+  d.names = name_pointers_.data();
+  d.name = name_.c_str();
+  return d;
+}
+
+}  // namespace gradus

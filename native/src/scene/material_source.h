@@ -1,0 +1,33 @@
+// Owning copy of a GradusMaterial, so that it can be compiled at commit, when the images it names are known.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gradus/gradus.h"
+
+namespace gradus {
+
+class MaterialSource {
+ public:
+  // Throws Error INVALID_ARGUMENT, with the material's name, where arrays are missing or a node's ranges exceed them.
+  explicit MaterialSource(const GradusMaterial& desc);
+  MaterialSource(const MaterialSource&) = delete;
+  MaterialSource& operator=(const MaterialSource&) = delete;
+  // Pointers into this object; valid as long as it.
+  GradusMaterial view() const;
+  uint64_t content_hash() const { return content_hash_; }
+  const std::string& name() const { return name_; }
+
+ private:
+  GradusMaterial desc_{};
+  std::vector<GradusNode> nodes_;
+  std::vector<GradusInput> inputs_;
+  std::vector<float> floats_;
+  std::vector<std::string> names_;
+  std::vector<const char*> name_pointers_;
+  std::string name_;
+  uint64_t content_hash_ = 0;
+};
+
+}  // namespace gradus

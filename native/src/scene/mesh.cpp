@@ -1,0 +1,72 @@
+#include "scene/mesh.h"
+
+#include <algorithm>
+
+namespace gradus {
+
+namespace {
+
+uint32_t element(const MeshData& mesh, GradusDomain domain, uint32_t triangle, uint32_t k) {
+  const size_t i = size_t(triangle) * 3 + k;
+  if (domain == GRADUS_DOMAIN_POINT) return mesh.triangle_vertices[i];
+  if (domain == GRADUS_DOMAIN_CORNER) return mesh.triangle_corners[i];
+  return mesh.face(triangle);
+}
+
+std::array<Vec3, 3> positions_of_key(const MeshData& mesh, uint32_t triangle, uint32_t key) {
+  const Vec3* p = mesh.positions.data() + size_t(key) * mesh.vertex_count;
+  const uint32_t* v = mesh.triangle_vertices.data() + size_t(triangle) * 3;
+  return {p[v[0]], p[v[1]], p[v[2]]};
+}
+
+}  // namespace
+
+std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle) { return positions_of_key(mesh, triangle, mesh.rest_key); }
+
+std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangle, float time) {
+  const auto& times = mesh.key_times;
+  if (times.size() < 2 || time <= times.front()) return positions_of_key(mesh, triangle, 0);
+  if (time >= times.back()) return positions_of_key(mesh, triangle, uint32_t(times.size()) - 1);
+  const auto after = uint32_t(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  const float f = (time - times[after - 1]) / (times[after] - times[after - 1]);
+  std::array<Vec3, 3> a = positions_of_key(mesh, triangle, after - 1);
+  const std::array<Vec3, 3> b = positions_of_key(mesh, triangle, after);
+  for (size_t i = 0; i < 3; ++i) a[i] += (b[i] - a[i]) * f;
+  return a;
+}
+
+bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 3>* normals) {
+  if (mesh.normals.empty() || mesh.normal_domain == GRADUS_DOMAIN_FACE) return false;
+  for (uint32_t k = 0; k < 3; ++k) (*normals)[k] = mesh.normals[element(mesh, mesh.normal_domain, triangle, k)];
+  return true;
+}
+
+const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& name) {
+  for (const MeshAttribute& a : mesh.attributes)
+    if (a.name == name) return &a;
+  return nullptr;
+}
+
+const MeshAttribute* default_uv_map(const MeshData& mesh) {
+  return mesh.default_uv < 0 ? nullptr : &mesh.attributes[size_t(mesh.default_uv)];
+}
+
+std::array<Vec4, 3> corner_values(const MeshData& mesh, const MeshAttribute& attribute, uint32_t triangle) {
+  std::array<Vec4, 3> values;
+  for (uint32_t k = 0; k < 3; ++k) {
+    values[k] = Vec4(0, 0, 0, 1);
+    const float* v = attribute.data.data() + size_t(element(mesh, attribute.domain, triangle, k)) * attribute.channels;
+    for (uint32_t c = 0; c < attribute.channels; ++c) values[k][int(c)] = v[c];
+  }
+  return values;
+}
+
+std::array<Vec3, 3> corner_generated(const MeshData& mesh, uint32_t triangle) {
+  std::array<Vec3, 3> p = triangle_positions(mesh, triangle);
+  if (!mesh.generated_points.empty())
+    for (uint32_t k = 0; k < 3; ++k) p[k] = mesh.generated_points[element(mesh, GRADUS_DOMAIN_POINT, triangle, k)];
+  for (Vec3& v : p) v = (v - mesh.generated_location) / (2.0f * mesh.generated_size) + 0.5f;
+  return p;
+}
+
+}  // namespace gradus

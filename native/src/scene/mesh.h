@@ -1,0 +1,76 @@
+// A triangle mesh in the layout that Blender hands over: values per vertex, per corner and per face, triangles by corners.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+
+namespace gradus {
+
+struct MeshAttribute {
+  std::string name;
+  GradusDomain domain = GRADUS_DOMAIN_POINT;
+  uint32_t channels = 1;
+  bool is_uv = false;
+  std::vector<float> data;  // channels per element; finite
+};
+
+inline constexpr uint32_t kDroppedVertex = UINT32_MAX;
+
+// Immutable once made. Positions may hold NaN; triangles that use such vertices are dropped, so that no hit ever lies on one.
+struct MeshData {
+  std::string name;
+  uint32_t vertex_count = 0;
+  uint32_t triangle_count = 0;
+  std::vector<float> key_times;             // one per key, ascending
+  uint32_t rest_key = 0;                    // the key at time 0 (or nearest to it): what is rendered
+  std::vector<Vec3> positions;              // key after key, and one element of padding (Embree reads 16 bytes)
+  std::vector<uint32_t> triangle_vertices;  // 3 per triangle; kDroppedVertex three times: dropped
+  std::vector<uint32_t> triangle_corners;   // 3 per triangle
+  std::vector<uint32_t> triangle_faces;     // empty: one face per triangle
+  std::vector<uint32_t> face_materials;     // slots; empty: all 0
+  GradusDomain normal_domain = GRADUS_DOMAIN_FACE;
+  std::vector<Vec3> normals;  // empty: flat
+  std::vector<MeshAttribute> attributes;
+  int32_t default_uv = -1;  // index in attributes
+  Vec3 generated_location{0.0f};
+  Vec3 generated_size{1.0f};
+  std::vector<Vec3> generated_points;  // empty: positions of the rest key
+  Vec3 lower{0.0f}, upper{0.0f};       // bounds of the triangles kept, rest key; lower > upper: there are none
+  uint32_t dropped_triangles = 0;
+  uint64_t content_hash = 0;
+
+  const Vec3* rest_positions() const { return positions.data() + size_t(rest_key) * vertex_count; }
+  bool is_dropped(uint32_t triangle) const { return triangle_vertices[size_t(triangle) * 3] == kDroppedVertex; }
+  uint32_t face(uint32_t triangle) const { return triangle_faces.empty() ? triangle : triangle_faces[triangle]; }
+  uint32_t material_slot(uint32_t triangle) const { return face_materials.empty() ? 0 : face_materials[face(triangle)]; }
+};
+
+// Copies and checks. Throws Error INVALID_ARGUMENT that names the mesh for counts and indices that contradict each other.
+std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc);
+
+// barycentric: weights of the 2nd and 3rd corner, as in Hit.
+template <class T>
+T interpolate(const std::array<T, 3>& v, const Vec2& barycentric) {
+  return v[0] * (1.0f - barycentric.x - barycentric.y) + v[1] * barycentric.x + v[2] * barycentric.y;
+}
+
+// Local vertex positions of a triangle at a time (frames relative to the one rendered), linear between keys.
+std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle);
+std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangle, float time);
+// Local shading normals of the corners, not normalised; false: the mesh is flat there.
+bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 3>* normals);
+
+// nullptr: there is none of that name (or, for the default UV map, none at all).
+const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& name);
+const MeshAttribute* default_uv_map(const MeshData& mesh);
+// Values of an attribute at the corners of a triangle (face domain: three times the same). Channels that it lacks are 0, the fourth 1.
+std::array<Vec4, 3> corner_values(const MeshData& mesh, const MeshAttribute& attribute, uint32_t triangle);
+// Generated texture coordinates at the corners, 0..1 over the texture space.
+std::array<Vec3, 3> corner_generated(const MeshData& mesh, uint32_t triangle);
+
+}  // namespace gradus

@@ -1,0 +1,139 @@
+// From the instances as set to those of a snapshot: broken ones are left out, and the scene is moved to its centre where it is far away.
+#include <cmath>
+
+#include "base/hash.h"
+#include "scene/scene_state.h"
+
+namespace gradus {
+
+namespace {
+
+// A scene further from the origin than this many radii is moved: below, positions keep 18 bits within the scene.
+constexpr double kFarRadii = 64.0;
+// Columns of a matrix that are closer to a plane than this (relative volume) have no inverse worth having in float.
+constexpr double kMinVolume = 1e-10;
+
+bool is_usable(const Mat4& m) {
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      if (!(std::fabs(m[i][j]) < 1e15f)) return false;
+  const glm::dmat3 axes{glm::dmat4(m)};
+  const double sizes = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
+  return sizes > 1e-45 && std::fabs(glm::determinant(axes)) > kMinVolume * sizes;
+}
+
+struct Bounds {
+  glm::dvec3 lower{1e300}, upper{-1e300};
+  void add(const glm::dvec3& p) {
+    lower = glm::min(lower, p);
+    upper = glm::max(upper, p);
+  }
+  bool empty() const { return lower.x > upper.x; }
+  glm::dvec3 centre() const { return (lower + upper) * 0.5; }
+  double radius() const { return glm::length(upper - lower) * 0.5; }
+};
+
+void add_box(const MeshData& mesh, const glm::dmat4& m, Bounds* bounds) {
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec4 corner((i & 1 ? mesh.upper : mesh.lower).x, (i & 2 ? mesh.upper : mesh.lower).y, (i & 4 ? mesh.upper : mesh.lower).z,
+                            1);
+    bounds->add(glm::dvec3(m * corner));
+  }
+}
+
+// Snapped to a coarse grid, so that an animated scene keeps its origin, and so that subtracting it is exact.
+Vec3 choose_origin(const Bounds& bounds) {
+  if (bounds.empty()) return Vec3(0.0f);
+  const glm::dvec3 c = bounds.centre();
+  const double far = std::max(std::fabs(c.x), std::max(std::fabs(c.y), std::fabs(c.z)));
+  const double radius = std::max(bounds.radius(), 1e-6);
+  if (far < kFarRadii * radius) return Vec3(0.0f);
+  const double grid = std::exp2(std::ceil(std::log2(radius)));
+  return Vec3(glm::round(c / grid) * grid);
+}
+
+// Warnings about left out instances: one in all for each kind, with the first name.
+struct LeftOut {
+  size_t count = 0;
+  std::string first;
+  void add(const InstanceArrays& arrays, size_t i) {
+    if (count++ == 0) first = arrays.name(i);
+  }
+  void warn(const char* what, std::vector<std::string>* warnings) const {
+    if (count == 0) return;
+    warnings->push_back(count == 1 ? "object '" + first + "' was left out: " + what
+                                   : std::to_string(count) + " objects were left out, the first is '" + first + "': " + what);
+  }
+};
+
+std::vector<size_t> choose_usable(const Scene::State& state, Snapshot* snapshot) {
+  const InstanceArrays& a = state.instances;
+  std::vector<size_t> usable;
+  usable.reserve(a.count);
+  LeftOut broken, unknown;
+  for (size_t i = 0; i < a.count; ++i) {
+    const auto mesh = state.meshes.find(a.meshes[i]);
+    if (mesh == state.meshes.end()) {
+      unknown.add(a, i);
+    } else if (!is_usable(a.matrices[i])) {
+      broken.add(a, i);
+    } else if (mesh->second->dropped_triangles < mesh->second->triangle_count) {
+      usable.push_back(i);
+    }
+  }
+  broken.warn("its matrix is singular or not finite", &snapshot->warnings);
+  unknown.warn("it names a mesh that does not exist", &snapshot->warnings);
+  return usable;
+}
+
+Mat4 moved(const Mat4& m, const Vec3& origin) { return Mat4(internal_matrix(m, origin)); }
+
+void set_matrices(const InstanceArrays& a, size_t i, const Vec3& origin, InstanceData* out) {
+  const glm::dmat4 m = internal_matrix(a.matrices[i], origin);
+  out->to_world = Mat4(m);
+  out->to_local = Mat4(glm::inverse(m));
+  out->normal_to_world = Mat3(glm::transpose(glm::inverse(glm::dmat3(m))));
+  out->mirrored = glm::determinant(glm::dmat3(m)) < 0.0;
+  const bool previous = !a.matrices_previous.empty() && is_usable(a.matrices_previous[i]);
+  const bool next = !a.matrices_next.empty() && is_usable(a.matrices_next[i]);
+  out->to_world_previous = previous ? moved(a.matrices_previous[i], origin) : out->to_world;
+  out->to_world_next = next ? moved(a.matrices_next[i], origin) : out->to_world;
+}
+
+void set_values(const InstanceArrays& a, size_t i, InstanceData* out) {
+  if (!a.visibility.empty()) out->visibility = a.visibility[i];
+  if (!a.random_ids.empty()) out->random_id = a.random_ids[i];
+  if (!a.pass_indices.empty()) out->pass_index = a.pass_indices[i];
+  if (!a.colors.empty()) out->color = a.colors[i];
+  if (!a.generated.empty()) out->generated = a.generated[i];
+  if (!a.uvs.empty()) out->uv = a.uvs[i];
+}
+
+}  // namespace
+
+glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin) {
+  glm::dmat4 m(matrix);
+  m[3] -= glm::dvec4(glm::dvec3(origin), 0.0);
+  m[0].w = m[1].w = m[2].w = 0.0;
+  m[3].w = 1.0;
+  return m;
+}
+
+std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapshot) {
+  const InstanceArrays& a = state.instances;
+  std::vector<size_t> usable = choose_usable(state, snapshot);
+  Bounds bounds;
+  for (const size_t i : usable) add_box(*state.meshes.at(a.meshes[i]), internal_matrix(a.matrices[i], Vec3(0.0f)), &bounds);
+  snapshot->origin = choose_origin(bounds);
+  snapshot->radius = bounds.empty() ? 1.0f : float(std::max(bounds.radius(), 1e-6));
+  snapshot->instances.resize(usable.size());
+  for (size_t k = 0; k < usable.size(); ++k) {
+    InstanceData& out = snapshot->instances[k];
+    out.mesh = state.meshes.at(a.meshes[usable[k]]);
+    set_matrices(a, usable[k], snapshot->origin, &out);
+    set_values(a, usable[k], &out);
+  }
+  return usable;
+}
+
+}  // namespace gradus

@@ -1,0 +1,89 @@
+#include "scene/scene.h"
+
+#include "base/error.h"
+#include "scene/scene_state.h"
+
+namespace gradus {
+
+namespace {
+
+using Lock = std::lock_guard<std::mutex>;
+
+constexpr size_t kMaxLights = size_t(1) << 24;
+
+}  // namespace
+
+Scene::Scene(std::shared_ptr<Device> device) : state_(std::make_unique<State>()), device_(std::move(device)) {}
+
+Scene::~Scene() = default;
+
+void Scene::set_mesh(uint64_t key, const GradusMesh& mesh) {
+  std::shared_ptr<const MeshData> made = make_mesh(mesh);
+  const Lock lock(state_->mutex);
+  std::shared_ptr<const MeshData>& slot = state_->meshes[key];
+  // Equal content keeps the object, and with it what was built from it.
+  if (!slot || slot->content_hash != made->content_hash) slot = std::move(made);
+}
+
+void Scene::set_image(uint64_t key, const GradusImage& image) {
+  ImageSource source = copy_image_source(image);
+  const Lock lock(state_->mutex);
+  state_->images[key] = {std::move(source), nullptr};
+}
+
+void Scene::set_material(uint64_t key, const GradusMaterial& material) {
+  if (key == 0) throw invalid_argument("material: key 0 is the default grey");
+  auto source = std::make_shared<const MaterialSource>(material);
+  const Lock lock(state_->mutex);
+  state_->materials[key] = std::move(source);
+}
+
+void Scene::set_instances(const GradusInstances& instances) {
+  InstanceArrays copy = copy_instances(instances);
+  const Lock lock(state_->mutex);
+  state_->instances = std::move(copy);
+}
+
+void Scene::set_lights(const GradusLight* lights, size_t count) {
+  if (count >= kMaxLights || (count && !lights)) throw invalid_argument("lights: missing, or too many");
+  std::vector<LightSource> copies(count);
+  for (size_t i = 0; i < count; ++i) {
+    if (lights[i].type > GRADUS_LIGHT_ELLIPSE) throw invalid_argument("light " + std::to_string(i) + ": unknown type");
+    copies[i].desc = lights[i];
+    copies[i].name = lights[i].name ? lights[i].name : "";
+    copies[i].desc.name = nullptr;
+  }
+  const Lock lock(state_->mutex);
+  state_->lights = std::move(copies);
+}
+
+void Scene::set_camera(const GradusCamera& camera) {
+  if (camera.type > GRADUS_CAMERA_ORTHOGRAPHIC) throw invalid_argument("camera: unknown type");
+  const Lock lock(state_->mutex);
+  state_->camera = camera;
+  state_->has_camera = true;
+}
+
+void Scene::set_world(const GradusWorld& world) {
+  if (world.mist_falloff > GRADUS_MIST_INVERSE_QUADRATIC || world.importance > 2)
+    throw invalid_argument("world: unknown falloff or importance");
+  const Lock lock(state_->mutex);
+  state_->world = world;
+  state_->has_world = true;
+}
+
+void Scene::remove(GradusObjectKind kind, uint64_t key) {
+  const Lock lock(state_->mutex);
+  size_t removed = 0;
+  if (kind == GRADUS_KIND_MESH) removed = state_->meshes.erase(key);
+  if (kind == GRADUS_KIND_IMAGE) removed = state_->images.erase(key);
+  if (kind == GRADUS_KIND_MATERIAL) removed = state_->materials.erase(key);
+  if (removed == 0) throw invalid_argument("remove: there is no object with this key");
+}
+
+std::shared_ptr<const Snapshot> Scene::snapshot() const {
+  const Lock lock(state_->mutex);
+  return state_->current;
+}
+
+}  // namespace gradus

@@ -1,0 +1,68 @@
+// What a Scene keeps between calls; private to scene/.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "base/hash.h"
+#include "scene/accelerator.h"
+#include "scene/image_store.h"
+#include "scene/instance_arrays.h"
+#include "scene/material_source.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+
+namespace gradus {
+
+// A lamp as set; the pointers of `desc` are null.
+struct LightSource {
+  GradusLight desc{};
+  std::string name;
+};
+
+struct LoadedImage {
+  ImageSource source;
+  std::shared_ptr<const Image> image;  // null: to be loaded by the next commit
+};
+
+struct Scene::State {
+  mutable std::mutex mutex;
+  std::unordered_map<uint64_t, std::shared_ptr<const MeshData>> meshes;
+  std::map<uint64_t, LoadedImage> images;
+  std::map<uint64_t, std::shared_ptr<const MaterialSource>> materials;
+  InstanceArrays instances;
+  std::vector<LightSource> lights;
+  GradusCamera camera{};
+  bool has_camera = false;
+  GradusWorld world{};
+  bool has_world = false;
+
+  std::shared_ptr<const Snapshot> current;
+  MeshSceneCache mesh_scenes;
+};
+
+// Progress of a commit: tells the caller, and whether to go on. Called from Embree's threads, too.
+class CommitMonitor {
+ public:
+  CommitMonitor(const volatile int32_t* cancel, float* progress) : cancel_(cancel), progress_(progress) {}
+  bool go_on() const { return !cancel_ || *cancel_ == 0; }
+  void check() const;  // throws Error CANCELLED
+  // fraction of the step that runs from `first` to `last`.
+  BuildProgress step(float first, float last) const;
+  void report(float fraction) const;
+
+ private:
+  const volatile int32_t* cancel_;
+  float* progress_;
+};
+
+// Exact matrix of an instance in internal space.
+glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin);
+
+// Fills instances (without materials), origin, radius and warnings; returns the index in InstanceArrays of each.
+std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapshot);
+
+}  // namespace gradus

@@ -1,0 +1,137 @@
+#include "scene/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "scene/mesh.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+namespace {
+
+// gamma(n) = n·u / (1 - n·u), the bound of n rounded operations (Higham; pbrt-v4 section 6.8.1).
+constexpr float kUnitRoundoff = std::numeric_limits<float>::epsilon() * 0.5f;
+constexpr float gamma_bound(int n) { return float(n) * kUnitRoundoff / (1.0f - float(n) * kUnitRoundoff); }
+
+float largest(const Vec3& v) { return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z))); }
+
+// The next ray's plane equation is computed from the corners relative to its origin: rounding grows with the size of the triangle,
+// and once more where two short edges are nearly parallel, because the normal comes from them.
+float plane_error(const std::array<Vec3, 3>& p) {
+  const Vec3 e[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
+  float squares[3] = {glm::dot(e[0], e[0]), glm::dot(e[1], e[1]), glm::dot(e[2], e[2])};
+  const float area = glm::length(glm::cross(e[0], e[1]));
+  std::sort(squares, squares + 3);
+  const float size = std::sqrt(squares[2]);
+  const float conditioning = std::sqrt(squares[0]) * (std::sqrt(squares[1]) / area);
+  return gamma_bound(8) * size * std::clamp(conditioning, 1.0f, 1e4f);
+}
+
+std::array<Vec3, 3> corners(const InstanceData& instance, uint32_t triangle) {
+  if (!instance.flat_positions) return triangle_positions(*instance.mesh, triangle);
+  const uint32_t* v = instance.mesh->triangle_vertices.data() + size_t(triangle) * 3;
+  return {instance.flat_positions[v[0]], instance.flat_positions[v[1]], instance.flat_positions[v[2]]};
+}
+
+// |m|·v + |t|, the size of the terms that an affine transformation adds up.
+Vec3 magnitudes(const Mat4& m, const Vec3& v) {
+  return glm::abs(Vec3(m[0])) * v.x + glm::abs(Vec3(m[1])) * v.y + glm::abs(Vec3(m[2])) * v.z + glm::abs(Vec3(m[3]));
+}
+
+Vec3 normal_of(const std::array<Vec3, 3>& p) { return glm::cross(p[1] - p[0], p[2] - p[0]); }
+
+// Unit vector, also where the square of the length leaves float's range; `fallback` where there is none.
+Vec3 safe_normalize(const Vec3& v, const Vec3& fallback) {
+  const float scale = largest(v);
+  if (!(scale > 0.0f) || !is_finite(scale)) return fallback;
+  return glm::normalize(v / scale);
+}
+
+// Squares of coordinates beyond 1e19 leave float's range: scaled down first.
+Vec3 unit_normal_of(std::array<Vec3, 3> p) {
+  const Vec3 base = p[0];
+  float scale = 0.0f;
+  for (Vec3& v : p) {
+    v -= base;
+    scale = std::max(scale, largest(v));
+  }
+  if (scale > 0.0f)
+    for (Vec3& v : p) v /= scale;
+  return safe_normalize(normal_of(p), Vec3(0, 0, 1));
+}
+
+// Linear in the barycentrics; where the mesh is flat or its normals are broken, the geometric normal.
+Vec3 shading_normal(const InstanceData& instance, const Hit& hit, const Vec3& geometric) {
+  std::array<Vec3, 3> n;
+  if (!triangle_normals(*instance.mesh, hit.triangle, &n)) return geometric;
+  return safe_normalize(instance.normal_to_world * interpolate(n, hit.barycentric), geometric);
+}
+
+void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
+  const std::array<Vec3, 3> p = corners(instance, hit.triangle);
+  const std::array<Vec3, 3> sizes = {glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])};
+  point->position = interpolate(p, hit.barycentric);
+  point->geometric_normal = unit_normal_of(p) * (instance.mirrored ? -1.0f : 1.0f);
+  const Vec3 error = gamma_bound(7) * interpolate(sizes, hit.barycentric);
+  point->error = glm::dot(glm::abs(point->geometric_normal), error) + plane_error(p);
+}
+
+void place_instanced(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
+  const std::array<Vec3, 3> p = corners(instance, hit.triangle);
+  const Vec3 local = interpolate(p, hit.barycentric);
+  const Vec3 local_size = interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
+  point->position = Vec3(instance.to_world * Vec4(local, 1.0f));
+  point->geometric_normal = safe_normalize(instance.normal_to_world * unit_normal_of(p), Vec3(0, 0, 1));
+  // There: corners, sum, matrix. And back: Embree takes the next ray into the mesh's space, with rounding of its own there.
+  const Mat4 linear(instance.to_world[0], instance.to_world[1], instance.to_world[2], Vec4(0.0f));
+  const Vec3 back = magnitudes(instance.to_local, glm::abs(point->position));
+  const Vec3 error = magnitudes(instance.to_world, local_size) * gamma_bound(8) + magnitudes(linear, back) * gamma_bound(8) +
+                     magnitudes(linear, Vec3(plane_error(p)));
+  point->error = glm::dot(glm::abs(point->geometric_normal), error);
+}
+
+// The float next to v in the direction of `up`.
+float step_away(float v, float direction) {
+  if (direction == 0.0f) return v;
+  return std::nextafter(v, direction > 0.0f ? kInfinity : -kInfinity);
+}
+
+}  // namespace
+
+uint32_t Snapshot::material_of(uint32_t instance, uint32_t triangle) const {
+  const InstanceData& data = instances[instance];
+  if (data.materials.empty()) return 0;
+  // Blender shows the last slot where a face names one that does not exist.
+  return data.materials[std::min<size_t>(data.mesh->material_slot(triangle), data.materials.size() - 1)];
+}
+
+SurfacePoint Snapshot::surface_point(const Hit& hit) const {
+  const InstanceData& instance = instances[hit.instance];
+  SurfacePoint point;
+  point.hit = hit;
+  if (instance.flat_positions)
+    place_flat(instance, hit, &point);
+  else
+    place_instanced(instance, hit, &point);
+  point.shading_normal = shading_normal(instance, hit, point.geometric_normal);
+  point.material = material_of(hit.instance, hit.triangle);
+  return point;
+}
+
+Vec3 Snapshot::position_at(const Hit& hit, bool next) const {
+  const InstanceData& instance = instances[hit.instance];
+  const Vec3 local = interpolate(triangle_positions_at(*instance.mesh, hit.triangle, next ? 1.0f : -1.0f), hit.barycentric);
+  return Vec3((next ? instance.to_world_next : instance.to_world_previous) * Vec4(local, 1.0f));
+}
+
+// pbrt-v4 section 6.8.6: along the geometric normal by the bound, then one float further so that rounding the sum cannot undo it.
+Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction) {
+  const Vec3 n = point.geometric_normal;
+  const Vec3 offset = n * (glm::dot(n, direction) < 0.0f ? -point.error : point.error);
+  const Vec3 p = point.position + offset;
+  return Vec3(step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z));
+}
+
+}  // namespace gradus

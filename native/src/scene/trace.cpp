@@ -1,0 +1,130 @@
+// Ray queries of a snapshot. Embree's internal assertions abort on rays that are not finite, and NaN makes traversal slow: such rays
+// are misses and never reach it.
+#include <embree3/rtcore.h>
+
+#include "scene/accelerator.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+namespace {
+
+// A segment that can meet anything: comparisons are false for NaN.
+bool traceable(const Ray& ray) {
+  const float sum = ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
+  return is_finite(ray.origin) && sum > 0.0f && is_finite(sum) && ray.t_min < kInfinity && ray.t_min <= ray.t_max;
+}
+
+void set_ray(const Ray& ray, uint32_t mask, RTCRay* r) {
+  r->org_x = ray.origin.x;
+  r->org_y = ray.origin.y;
+  r->org_z = ray.origin.z;
+  r->tnear = ray.t_min < 0.0f ? 0.0f : ray.t_min;
+  r->dir_x = ray.direction.x;
+  r->dir_y = ray.direction.y;
+  r->dir_z = ray.direction.z;
+  r->time = 0.0f;
+  r->tfar = ray.t_max;
+  r->mask = mask;
+  r->id = 0;
+  r->flags = 0;
+}
+
+template <class Packet>
+void set_lane(const Ray& ray, uint32_t mask, int i, Packet* r) {
+  r->org_x[i] = ray.origin.x;
+  r->org_y[i] = ray.origin.y;
+  r->org_z[i] = ray.origin.z;
+  r->tnear[i] = ray.t_min < 0.0f ? 0.0f : ray.t_min;
+  r->dir_x[i] = ray.direction.x;
+  r->dir_y[i] = ray.direction.y;
+  r->dir_z[i] = ray.direction.z;
+  r->time[i] = 0.0f;
+  r->tfar[i] = ray.t_max;
+  r->mask[i] = mask;
+  r->id[i] = 0;
+  r->flags[i] = 0;
+}
+
+// A triangle in the top level carries the instance as its geometry id; within an instanced mesh scene that id is 0.
+uint32_t instance_of(unsigned instance_id, unsigned geometry_id) {
+  return instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id;
+}
+
+bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
+  if (!traceable(ray)) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay r;
+  set_ray(ray, mask, &r);
+  rtcOccluded1(accelerator.scene, &context, &r);
+  return r.tfar < 0.0f;
+}
+
+}  // namespace
+
+bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit) {
+  *hit = Hit();
+  if (!traceable(ray)) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query;
+  set_ray(ray, mask, &query.ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(accelerator.scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit->t = query.ray.tfar;
+  hit->instance = instance_of(query.hit.instID[0], query.hit.geomID);
+  hit->triangle = query.hit.primID;
+  hit->barycentric = Vec2(query.hit.u, query.hit.v);
+  return true;
+}
+
+bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask) { return blocked_by(accelerator, ray, mask); }
+
+bool Snapshot::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
+  return trace_nearest(*accelerator, ray, visibility & kMaskVisibility, hit);
+}
+
+bool Snapshot::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }
+
+void Snapshot::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const {
+  alignas(16) int valid[4];
+  RTCRayHit4 query;
+  for (int i = 0; i < 4; ++i) {
+    hits[i] = Hit();
+    const bool trace = traceable(rays[i]);
+    valid[i] = trace ? -1 : 0;
+    set_lane(trace ? rays[i] : Ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), -1.0f}, visibility & kMaskVisibility, i, &query.ray);
+    query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect4(valid, accelerator->scene, &context, &query);
+  for (int i = 0; i < 4; ++i) {
+    if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    hits[i].t = query.ray.tfar[i];
+    hits[i].instance = instance_of(query.hit.instID[0][i], query.hit.geomID[i]);
+    hits[i].triangle = query.hit.primID[i];
+    hits[i].barycentric = Vec2(query.hit.u[i], query.hit.v[i]);
+  }
+}
+
+void Snapshot::occluded4(const Ray rays[4], bool blocked[4]) const {
+  alignas(16) int valid[4];
+  RTCRay4 query;
+  for (int i = 0; i < 4; ++i) {
+    const bool trace = traceable(rays[i]);
+    valid[i] = trace ? -1 : 0;
+    set_lane(trace ? rays[i] : Ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), -1.0f}, GRADUS_VISIBLE_SHADOW, i, &query);
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded4(valid, accelerator->scene, &context, &query);
+  for (int i = 0; i < 4; ++i) blocked[i] = valid[i] && query.tfar[i] < 0.0f;
+}
+
+}  // namespace gradus

@@ -1,0 +1,33 @@
+// Shadow rays through transparent surfaces.
+#include "scene/accelerator.h"
+#include "scene/snapshot.h"
+#include "shading/shade.h"
+
+namespace gradus {
+
+Rgb Snapshot::transmittance(const Ray& ray, uint32_t max_transparent) const {
+  if (!features.has_transparent_shadows) return occluded(ray) ? Rgb(0.0f) : Rgb(1.0f);
+  // What is opaque for sure decides most rays, and no material has to run.
+  if (trace_any(*accelerator, ray, kMaskOpaqueShadow)) return Rgb(0.0f);
+  Rgb through(1.0f);
+  Ray rest = ray;
+  RayState state;
+  state.flags = kRayShadow;
+  Hit hit;
+  for (uint32_t n = 0; trace_nearest(*accelerator, rest, kMaskTransparentShadow, &hit); ++n) {
+    if (n >= max_transparent) return Rgb(0.0f);
+    const SurfacePoint point = surface_point(hit);
+    state.length = hit.t;
+    state.transparent_depth = uint16_t(n);
+    through *= shade_transparency(*this, point, -rest.direction, state);
+    if (is_black(through)) return Rgb(0.0f);
+    // The end stays where it was: subtract what the step really was, the offset included.
+    const Vec3 next = offset_origin(point, rest.direction);
+    rest.t_max -= glm::dot(next - rest.origin, rest.direction);
+    rest.origin = next;
+    rest.t_min = 0.0f;
+  }
+  return through;
+}
+
+}  // namespace gradus

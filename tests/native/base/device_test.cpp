@@ -1,0 +1,45 @@
+#include "base/device.h"
+
+#include <atomic>
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include "base/fpu.h"
+
+namespace gradus {
+namespace {
+
+TEST(Device, TasksFlushDenormalsAndTheCallerKeepsItsState) {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  settings.threads = 2;
+  Device device(settings);
+  ASSERT_FALSE(FlushDenormals::active());
+  std::atomic<int> without{0};
+  device.arena().execute([&] {
+    tbb::parallel_for(0, 1000, [&](int) {
+      if (!FlushDenormals::active()) ++without;
+    });
+  });
+  EXPECT_EQ(without, 0);
+  EXPECT_FALSE(FlushDenormals::active());
+}
+
+TEST(Device, WarnsOnceAndInOrder) {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  Device device(settings);
+  device.warn("a");
+  device.warn("b");
+  device.warn("a");
+  std::string text;
+  EXPECT_TRUE(device.take_warning(&text));
+  EXPECT_EQ(text, "a");
+  EXPECT_TRUE(device.take_warning(&text));
+  EXPECT_EQ(text, "b");
+  EXPECT_FALSE(device.take_warning(&text));
+}
+
+}  // namespace
+}  // namespace gradus

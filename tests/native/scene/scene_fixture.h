@@ -1,0 +1,144 @@
+// Small scenes for tests, built through gradus::Scene as the C API would.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "base/device.h"
+#include "scene/scene.h"
+#include "scene/snapshot.h"
+
+namespace gradus::test {
+
+inline std::shared_ptr<Device> test_device() {
+  static const auto device = [] {
+    GradusDeviceSettings settings{};
+    settings.struct_size = sizeof(settings);
+    settings.threads = 2;
+    return std::make_shared<Device>(settings);
+  }();
+  return device;
+}
+
+// Triangle soup: positions 3 per vertex, triangles of vertices.
+struct Soup {
+  std::string name = "mesh";
+  std::vector<Vec3> positions;
+  std::vector<int32_t> vertices;  // of corners; triangle i has corners 3i..3i+2
+
+  void triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    for (const Vec3& p : {a, b, c}) {
+      vertices.push_back(int32_t(positions.size()));
+      positions.push_back(p);
+    }
+  }
+};
+
+// Keeps the arrays of a GradusMesh alive.
+class MeshDesc {
+ public:
+  explicit MeshDesc(Soup soup) : soup_(std::move(soup)) {
+    corners_.resize(soup_.vertices.size());
+    for (uint32_t i = 0; i < corners_.size(); ++i) corners_[i] = i;
+    desc.struct_size = sizeof(desc);
+    desc.key_count = 1;
+    desc.vertex_count = soup_.positions.size();
+    desc.positions = soup_.positions.empty() ? nullptr : &soup_.positions[0].x;
+    desc.corner_count = soup_.vertices.size();
+    desc.corner_vertices = soup_.vertices.data();
+    desc.triangle_count = soup_.vertices.size() / 3;
+    desc.triangle_corners = corners_.data();
+    desc.normal_domain = GRADUS_DOMAIN_FACE;
+    for (float& s : desc.generated_size) s = 1.0f;
+    desc.name = soup_.name.c_str();
+  }
+  MeshDesc(const MeshDesc&) = delete;
+  GradusMesh desc{};
+
+ private:
+  Soup soup_;
+  std::vector<uint32_t> corners_;
+};
+
+inline Mat4 translation(const Vec3& t) {
+  Mat4 m(1.0f);
+  m[3] = Vec4(t, 1.0f);
+  return m;
+}
+
+inline Mat4 scaling(const Vec3& s) {
+  Mat4 m(1.0f);
+  for (int i = 0; i < 3; ++i) m[i][i] = s[i];
+  return m;
+}
+
+class TestScene {
+ public:
+  TestScene() : scene(test_device()) {}
+
+  void mesh(uint64_t key, const Soup& soup) { scene.set_mesh(key, MeshDesc(soup).desc); }
+  void instance(uint64_t mesh_key, const Mat4& matrix = Mat4(1.0f), uint32_t visibility = GRADUS_VISIBLE_ALL, uint64_t material = 0) {
+    meshes_.push_back(mesh_key);
+    matrices_.push_back(matrix);
+    visibility_.push_back(visibility);
+    first_.push_back(uint32_t(materials_.size()));
+    count_.push_back(1);
+    materials_.push_back(material);
+  }
+  std::shared_ptr<const Snapshot> commit() {
+    GradusInstances instances{};
+    instances.struct_size = sizeof(instances);
+    instances.count = meshes_.size();
+    instances.meshes = meshes_.data();
+    instances.matrices = matrices_.empty() ? nullptr : &matrices_[0][0][0];
+    instances.visibility = visibility_.data();
+    instances.material_first = first_.data();
+    instances.material_count = count_.data();
+    instances.materials = materials_.data();
+    instances.materials_size = materials_.size();
+    scene.set_instances(instances);
+    scene.commit(nullptr, nullptr);
+    return scene.snapshot();
+  }
+
+  Scene scene;
+
+ private:
+  std::vector<uint64_t> meshes_, materials_;
+  std::vector<Mat4> matrices_;
+  std::vector<uint32_t> visibility_, first_, count_;
+};
+
+// Closed sphere of 2·rings·segments - 2·segments triangles.
+inline Soup sphere(const Vec3& centre, float radius, int rings, int segments) {
+  Soup soup;
+  const auto vertex = [&](int r, int s) -> Vec3 {
+    if (r == 0) return centre + Vec3(0, 0, radius);
+    if (r == rings) return centre - Vec3(0, 0, radius);
+    const double theta = 3.14159265358979 * r / rings, phi = 2 * 3.14159265358979 * (s % segments) / segments;
+    return centre + Vec3(glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) * double(radius));
+  };
+  for (int r = 0; r <= rings; ++r)
+    for (int s = 0; s < segments; ++s) soup.positions.push_back(vertex(r, s));
+  const auto id = [&](int r, int s) { return r == 0 || r == rings ? r * segments : r * segments + s % segments; };
+  for (int r = 0; r < rings; ++r)
+    for (int s = 0; s < segments; ++s) {
+      if (r > 0) soup.vertices.insert(soup.vertices.end(), {id(r, s), id(r + 1, s), id(r, s + 1)});
+      if (r + 1 < rings) soup.vertices.insert(soup.vertices.end(), {id(r, s + 1), id(r + 1, s), id(r + 1, s + 1)});
+    }
+  return soup;
+}
+
+inline Vec3 random_direction(std::mt19937& random) {
+  std::normal_distribution<float> normal;
+  Vec3 v;
+  do v = Vec3(normal(random), normal(random), normal(random));
+  while (glm::dot(v, v) < 1e-6f);
+  return glm::normalize(v);
+}
+
+}  // namespace gradus::test
