@@ -1,0 +1,48 @@
+# Everyday commands; the work is done by the scripts in tools/. `make help` lists them.
+SCENE ?= sample_blends/hero.blend
+FRAMES ?= 1
+OUT ?= out
+ARGS ?=
+BLENDER ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help build render test test-full test-native test-addon bench bench-quick package format lint clean
+
+help:           ## this list
+	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
+
+build:          ## the library (into addon/gradus/lib) and the tool
+	@tools/build.sh
+
+render:         ## a picture: SCENE=my.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 32" BLENDER=/path/to/blender
+	@SCENE='$(SCENE)' FRAMES='$(FRAMES)' OUT='$(OUT)' ARGS='$(ARGS)' BLENDER='$(BLENDER)' tools/render.sh
+
+test:           ## all tests that every change must pass; last line: N passed, N failed
+	@tools/test.sh all
+
+test-full:      ## and those that take longer
+	@tools/test.sh --full all
+
+test-native:    ## only the tests of the library
+	@tools/test.sh native
+
+test-addon:     ## only those in Blender 3.4, 4.5 and 5.0: HOSTS=bpy45 TESTS=tests/addon/x_test.py
+	@tools/test.sh addon
+
+bench:          ## error against CPU time, all scenes; interrupted runs go on: SCENES=a,b MINUTES=60
+	@tools/bench.sh
+
+bench-quick:    ## the same for two scenes, in under five minutes
+	@tools/bench.sh --quick
+
+package:        ## dist/gradus-<version>.zip, for Blender 3.4 to 5.0
+	@tools/build.sh package
+
+format:         ## clang-format and ruff format
+	@tools/lint.sh format
+
+lint:           ## clang-format, clang-tidy and ruff, without changing anything
+	@tools/lint.sh check
+
+clean:          ## what was built here; environments and the cache stay
+	@rm -rf build build-* dist addon/gradus/lib

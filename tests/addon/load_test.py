@@ -1,0 +1,30 @@
+"""The add-on and the library load, and unload, in every host."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from pathlib import Path
+
+import bpy
+
+
+def test_register_twice(addon: object) -> None:
+    for _ in range(2):
+        addon.unregister()
+        assert not hasattr(bpy.types.Scene, "gradus")
+        addon.register()
+        assert hasattr(bpy.types.Scene, "gradus")
+
+
+def test_version_answers(library: ctypes.CDLL) -> None:
+    version = library.gradus_version()
+    text = library.gradus_version_text().decode()
+    assert text.startswith(f"{version // 10000}.{version // 100 % 100}.{version % 100} ")
+
+
+def test_h4_only_gradus_symbols_are_exported(library_path: Path) -> None:
+    lines = subprocess.run(["nm", "-D", "--defined-only", library_path], check=True, capture_output=True, text=True).stdout.splitlines()
+    names = {line.split()[-1].partition("@")[0] for line in lines}
+    assert "gradus_version" in names
+    assert {name for name in names if not name.startswith("gradus_")} == set()

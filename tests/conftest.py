@@ -1,0 +1,91 @@
+"""What tests in a host share. They run inside Blender 3.4 and inside the bpy modules (tools/test.py starts them).
+
+Fixtures: `host_version`, `library`, `scene`, `render`, `blender` (3.4 only), `shared_scenes`; the add-on is registered throughout.
+Temporary folders are pytest's `tmp_path`.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import bpy
+import pytest
+from support import application, images
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leaves out what belongs to another host or to the long run; skips, visibly, what lacks the shared scenes."""
+    out = []
+    for item in list(items):
+        if "blender" in getattr(item, "fixturenames", ()) or item.get_closest_marker("application"):
+            wrong_host = bpy.app.module if hasattr(bpy.app, "module") else False
+        else:
+            wrong_host = False
+        if wrong_host or (item.get_closest_marker("full") and os.environ.get("GRADUS_TEST_FULL") != "1"):
+            out.append(item)
+    items[:] = [item for item in items if item not in out]
+    config.hook.pytest_deselected(items=out)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def addon() -> Iterator[object]:
+    """The add-on, registered once for the process."""
+    import gradus
+
+    gradus.register()
+    yield gradus
+    gradus.unregister()
+
+
+@pytest.fixture(scope="session")
+def host_version() -> tuple[int, int, int]:
+    return tuple(bpy.app.version)
+
+
+@pytest.fixture(scope="session")
+def library_path() -> Path:
+    return ROOT / "addon" / "gradus" / "lib" / "libgradus.so"
+
+
+@pytest.fixture(scope="session")
+def library(library_path: Path) -> ctypes.CDLL:
+    """The library as ctypes sees it without the add-on's declarations."""
+    library = ctypes.CDLL(str(library_path))
+    library.gradus_version.restype = ctypes.c_uint32
+    library.gradus_version_text.restype = ctypes.c_char_p
+    return library
+
+
+@pytest.fixture
+def scene() -> bpy.types.Scene:
+    """An empty scene in an empty file: 64×36 pixels, 4 samples, view transform Standard, engine Gradus."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    scene = bpy.context.scene
+    images.prepare(scene)
+    return scene
+
+
+@pytest.fixture
+def render(tmp_path: Path) -> Callable[..., images.Passes]:
+    """render(scene, frame=1, **settings): the passes of a frame, see support/images.py."""
+    return lambda scene, **settings: images.render(scene, tmp_path, **settings)
+
+
+@pytest.fixture
+def blender() -> Callable[..., application.Outcome]:
+    """blender(*arguments, limit=120, env={}): runs Blender as an application of its own; see support/application.py."""
+    return application.run
+
+
+@pytest.fixture(scope="session")
+def shared_scenes() -> Path:
+    """The folder of real scenes that lies beside some checkouts."""
+    for folder in (ROOT.parent / "shared" / "scenes", Path(os.environ.get("GRADUS_SHARED", "/nonexistent")) / "scenes"):
+        if folder.is_dir():
+            return folder
+    pytest.skip("needs ../shared/scenes")

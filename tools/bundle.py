@@ -1,0 +1,92 @@
+"""Puts the library and every library it needs side by side, so that nothing of the host process is taken by accident.
+
+    bundle.py LIBRARY FOLDER
+
+All that libgradus.so needs, beyond what every system has, is copied into FOLDER, finds its neighbours by $ORIGIN, and gets a soname that
+no library of Blender has: libOpenColorIO.so.2.1 becomes libgradus_OpenColorIO.so.2.1. TBB keeps its soname: two copies of TBB in one process
+would be two thread pools, and the one loaded first serves both. Nothing is done when FOLDER is up to date.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+# The C and C++ run-time libraries must be the process's own; they are there wherever Blender runs.
+BASE = ("linux-vdso", "ld-linux", "libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libstdc++.so", "libgcc_s.so")
+SHARED_WITH_HOST = ("libtbb.so",)
+
+
+def run(*command: str | Path) -> str:
+    return subprocess.run([str(part) for part in command], check=True, capture_output=True, text=True).stdout
+
+
+def needed(library: Path) -> list[str]:
+    """The sonames that a library asks for, without the base ones."""
+    return [name for name in run("patchelf", "--print-needed", library).split() if not name.startswith(BASE)]
+
+
+def resolved(library: Path) -> dict[str, Path]:
+    """Where the loader finds each soname of the closure."""
+    found = {}
+    for line in run("ldd", library).splitlines():
+        name, arrow, rest = line.strip().partition(" => ")
+        if not arrow or name.startswith(BASE):
+            continue
+        if rest.startswith("not found"):
+            raise SystemExit(f"bundle: {library.name} needs {name}, which is not there")
+        found[name] = Path(rest.rsplit(" (", 1)[0])
+    return found
+
+
+def private_name(soname: str) -> str:
+    return soname if soname.startswith(SHARED_WITH_HOST) else "libgradus_" + soname.removeprefix("lib")
+
+
+def place(source: Path, target: Path, soname: str | None) -> None:
+    shutil.copyfile(source, target)
+    target.chmod(0o755)
+    run("strip", "--strip-unneeded", target)
+    renames = [argument for name in needed(target) for argument in ("--replace-needed", name, private_name(name)) if private_name(name) != name]
+    # One change per call: patchelf 0.14 loses some of them when they come together.
+    run("patchelf", "--set-rpath", "$ORIGIN", target)
+    if soname:
+        run("patchelf", "--set-soname", soname, target)
+    if renames:
+        run("patchelf", *renames, target)
+
+
+def bundle(library: Path, folder: Path) -> None:
+    """Fills a new folder and moves its files into place: a process that has the old ones mapped keeps them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".new-", dir=folder) as name:
+        new = Path(name)
+        place(library.resolve(), new / "libgradus.so", None)
+        for soname, path in resolved(library).items():
+            place(path.resolve(), new / private_name(soname), private_name(soname))
+        for old in folder.glob("*.so*"):
+            if not (new / old.name).exists():
+                old.unlink()
+        for file in new.iterdir():
+            os.replace(file, folder / file.name)
+
+
+def main() -> int:
+    library, folder = Path(sys.argv[1]), Path(sys.argv[2])
+    state = library.stat()
+    stamp = f"{state.st_size} {state.st_mtime_ns} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}\n"
+    marker = folder / ".stamp"
+    if marker.exists() and marker.read_text() == stamp and (folder / "libgradus.so").exists():
+        return 0
+    bundle(library, folder)
+    marker.write_text(stamp)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
