@@ -2,9 +2,9 @@
 
     bundle.py LIBRARY FOLDER
 
-All that libgradus.so needs, beyond what every system has, is copied into FOLDER, finds its neighbours by $ORIGIN, and gets a soname that
-no library of Blender has: libOpenColorIO.so.2.1 becomes libgradus_OpenColorIO.so.2.1. TBB keeps its soname: two copies of TBB in one process
-would be two thread pools, and the one loaded first serves both. Nothing is done when FOLDER is up to date.
+All that libgradus.so needs, beyond what every system has, is copied into FOLDER, finds its neighbours by $ORIGIN, and gets a soname
+that no library of Blender has: libOpenColorIO.so.2.1 becomes libgradus_OpenColorIO.so.2.1. TBB keeps its soname: two copies of TBB in
+one process would be two thread pools, and the one loaded first serves both. Nothing is done when FOLDER is up to date.
 """
 
 from __future__ import annotations
@@ -52,7 +52,8 @@ def place(source: Path, target: Path, soname: str | None) -> None:
     shutil.copyfile(source, target)
     target.chmod(0o755)
     run("strip", "--strip-unneeded", target)
-    renames = [argument for name in needed(target) for argument in ("--replace-needed", name, private_name(name)) if private_name(name) != name]
+    foreign = [name for name in needed(target) if private_name(name) != name]
+    renames = [argument for name in foreign for argument in ("--replace-needed", name, private_name(name))]
     # One change per call: patchelf 0.14 loses some of them when they come together.
     run("patchelf", "--set-rpath", "$ORIGIN", target)
     if soname:

@@ -9,8 +9,10 @@ costs that file, which then counts as one failure, and the rest goes on.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -42,7 +44,9 @@ class Result:
 def run(command: list[str], limit: float, environment: dict[str, str]) -> tuple[int, str]:
     """Exit code (124: over the limit) and output. What it started ends with it."""
     with tempfile.TemporaryFile() as out:
-        process = subprocess.Popen(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True)
+        process = subprocess.Popen(
+            command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True
+        )
         try:
             code = process.wait(limit)
         except subprocess.TimeoutExpired:
@@ -54,10 +58,8 @@ def run(command: list[str], limit: float, environment: dict[str, str]) -> tuple[
 
 
 def kill_group(process: subprocess.Popen) -> None:
-    try:
-        os.killpg(process.pid, 9)
-    except ProcessLookupError:
-        pass
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
     process.wait()
 
 
@@ -147,6 +149,8 @@ def main() -> int:
     options = parser.parse_args()
 
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("BLENDER_", "PYTEST_", "MAKE", "MFLAGS"))}
+    # Blender's Python takes its modules from beside the first python3.11 in PATH: that must be the system's, not a version manager's.
+    environment["PATH"] = "/usr/bin:/bin:" + environment.get("PATH", "")
     environment |= {"PYTHONDONTWRITEBYTECODE": "1", "GRADUS_TEST_FULL": "1" if options.full else "0"}
     jobs = []
     if options.what in ("all", "native"):
