@@ -181,7 +181,7 @@ class _Sync:
         data = entry.data
         matrix = matrices[16 * entry.index : 16 * entry.index + 16]
         record = native.Light()
-        scale = tuple(sum(value * value for value in matrix[4 * axis : 4 * axis + 3]) ** 0.5 for axis in range(2))
+        scale = tuple(sum(value * value for value in matrix[4 * axis : 4 * axis + 3]) ** 0.5 for axis in range(3))
         state = light.light_state(data, scale, bpy.app.version)
         emission = light.constant_emission(data)
         if emission is None:

@@ -66,18 +66,22 @@ def _round(light: Any, power: tuple[float, float, float], version: tuple[int, ..
     """Point and spot: P/(4 pi) W/sr."""
     radius = max(light.shadow_soft_size, 0.0)
     intensity = _scaled(power, 0.25 / math.pi)
-    if not getattr(light, "normalize", True) and radius > 0.0:
-        intensity = _scaled(power, radius * radius)  # radiance energy/pi over the disk
+    if not getattr(light, "normalize", True):
+        # Radiance energy/pi over the disk; without a radius energy/pi is the intensity (measured in 4.5 and 5.0).
+        intensity = _scaled(power, radius * radius if radius > 0.0 else 1.0 / math.pi)
     state = LightState(POINT, intensity, radius=radius)
     if _is_disk(light, version):
         state.flags |= DISK_FACING
     return state
 
 
-def _spot(light: Any, power: tuple[float, float, float], version: tuple[int, ...]) -> LightState:
+def _spot(light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]) -> LightState:
     state = _round(light, power, version)
     state.type = SPOT
     state.cone = light.spot_size
+    if version >= (4, 0, 0) and scale[2] > 0.0 and light.spot_size < math.pi:
+        # From 4.0 on scale widens or narrows the cone; unequal x and y, an elliptic cone, become their geometric mean.
+        state.cone = 2.0 * math.atan(math.tan(0.5 * light.spot_size) * math.sqrt(scale[0] * scale[1]) / scale[2])
     state.blend = light.spot_blend
     if version < (4, 0, 0):
         state.flags |= SPOT_COSINE
@@ -99,10 +103,12 @@ def sun_radiance(angle: float, version: tuple[int, ...]) -> float:
 
 def _sun(light: Any, power: tuple[float, float, float], version: tuple[int, ...]) -> LightState:
     angle = min(max(light.angle, 0.0), math.pi)
+    if not getattr(light, "normalize", True) and angle > 0.0:
+        power = _scaled(power, math.pi * math.sin(0.5 * angle) ** 2)  # energy is the radiance
     return LightState(SUN, power, angle=angle, sun_radiance_per_irradiance=sun_radiance(angle, version))
 
 
-def _area(light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, float]) -> LightState:
+def _area(light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]) -> LightState:
     """Area lights: radiance; the true area, scale included."""
     round_shape = light.shape in {"DISK", "ELLIPSE"}
     height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
@@ -117,15 +123,15 @@ def _area(light: Any, power: tuple[float, float, float], version: tuple[int, ...
     return LightState(ELLIPSE if round_shape else RECTANGLE, _scaled(power, factor), size=size, spread=getattr(light, "spread", math.pi))
 
 
-def light_state(light: Any, scale: tuple[float, float], version: tuple[int, ...]) -> LightState:
-    """light: evaluated light data; scale: lengths of the object's x and y axes; version: of the running Blender."""
+def light_state(light: Any, scale: tuple[float, ...], version: tuple[int, ...]) -> LightState:
+    """light: evaluated light data; scale: lengths of the object's axes; version: of the running Blender."""
     power = _power(light)
     if light.type == "AREA":
         state = _area(light, power, version, scale)
     elif light.type == "SUN":
         state = _sun(light, power, version)
     elif light.type == "SPOT":
-        state = _spot(light, power, version)
+        state = _spot(light, power, version, scale)
     else:
         state = _round(light, power, version)
     state.flags |= _flags(light, version)

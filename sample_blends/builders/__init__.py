@@ -1,0 +1,1 @@
+"""The sample scenes, one module for each family."""
