@@ -1,0 +1,129 @@
+"""`make render`: renders frames of a .blend with Gradus in Blender, and says where the pictures are and what they took.
+
+Reads SCENE, FRAMES (1, 1-24 or 1,5,9-12), OUT, ARGS (options of the add-on, as after "--") and BLENDER from the environment.
+Exit code 1 unless every picture is there.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+class RenderError(Exception):
+    """What the user is told."""
+
+
+def frame_ranges(text: str) -> list[tuple[int, int]]:
+    ranges = []
+    for part in text.replace("..", "-").split(","):
+        match = re.fullmatch(r"\s*(-?\d+)(?:-(-?\d+))?\s*", part)
+        if not match:
+            raise RenderError(f"FRAMES={text}: expected numbers and ranges like 1-24 or 1,5,9-12")
+        first = int(match.group(1))
+        ranges.append((first, int(match.group(2) or first)))
+        if ranges[-1][1] < first:
+            raise RenderError(f"FRAMES={text}: {part} ends before it starts")
+    return ranges
+
+
+def frame_name(frame: int) -> str:
+    """As Blender writes it: at least four characters, the sign among them."""
+    return f"{frame:04d}"
+
+
+def scripts_folder() -> Path:
+    """A scripts folder with our add-on and nothing else: the user's settings are neither used nor changed."""
+    folder = ROOT / "build" / "scripts"
+    link = folder / "addons"
+    if not link.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        link.unlink(missing_ok=True)
+        link.symlink_to(Path("..") / ".." / "addon", target_is_directory=True)
+    return folder
+
+
+def command(blender: str, scene: Path, arguments: list[str]) -> list[str]:
+    script = str(ROOT / "tools" / "render_output.py")
+    head = [blender, "-b", str(scene), "--factory-startup", "-noaudio", "--addons", "gradus", "-E", "GRADUS"]
+    return [*head, "--python-exit-code", "1", "--python", script, "--", *arguments]
+
+
+def stats_of(path: Path) -> list[dict]:
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def timing(frames: int, wall: float, stats: list[dict]) -> str:
+    def seconds(phase: str) -> float:
+        return sum(entry.get("seconds", {}).get(phase, 0.0) for entry in stats)
+
+    line = f"{frames} frame{'s' if frames > 1 else ''} in {wall:.1f} s"
+    phases = [f"{phase} {seconds(phase):.2f}" for phase in ("export", "build", "sample", "reconstruct", "upload")]
+    samples = {round(entry["samples"]) for entry in stats if "samples" in entry}
+    counts = f"; {min(samples)}{f'-{max(samples)}' if len(samples) > 1 else ''} samples per pixel" if samples else ""
+    return line + (f" ({', '.join(phases)} s{counts})" if stats else "")
+
+
+def render() -> None:
+    scene = Path(os.environ.get("SCENE") or "sample_blends/hero.blend")
+    if not scene.is_file():
+        raise RenderError(f"SCENE={scene}: no such file")
+    ranges = frame_ranges(os.environ.get("FRAMES") or "1")
+    out = Path(os.environ.get("OUT") or "out").absolute()
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RenderError(f"OUT={out}: {error.strerror}") from error
+    blender = os.environ.get("BLENDER") or "/usr/bin/blender"
+    prefix = out / f"{scene.stem}_"
+    names = [f"{prefix}{frame_name(frame)}" for first, last in ranges for frame in range(first, last + 1)]
+    files = [Path(name + suffix) for name in names for suffix in (".png", ".exr")]
+    for file in files:
+        file.unlink(missing_ok=True)  # an old picture must not pass for a new one
+
+    with tempfile.TemporaryDirectory(prefix="gradus-render-") as folder:
+        stats = Path(folder) / "stats.jsonl"
+        arguments = shlex.split(os.environ.get("ARGS") or "")
+        if not any(argument.partition("=")[0] == "--gradus-stats" for argument in arguments):
+            arguments += ["--gradus-stats", str(stats)]
+        environment = os.environ | {
+            "BLENDER_USER_SCRIPTS": str(scripts_folder()),
+            "GRADUS_RENDER_OUT": str(prefix),
+            "GRADUS_RENDER_FRAMES": json.dumps(ranges),
+        }
+        start = time.monotonic()
+        try:
+            code = subprocess.run(command(blender, scene, arguments), env=environment, stdin=subprocess.DEVNULL, check=False).returncode
+        except OSError as error:
+            raise RenderError(f"BLENDER={blender}: {error.strerror}") from error
+        wall = time.monotonic() - start
+        missing = [file for file in files if not file.exists() or file.stat().st_size == 0]
+        if code != 0 or missing:
+            absent = f"; not written: {', '.join(map(str, missing[:6]))}{' …' if len(missing) > 6 else ''}" if missing else ""
+            raise RenderError(f"Blender ended with code {code}{absent}")
+        print(f"render: {names[0]}.png and .exr" + (f" … {names[-1]}.png and .exr" if len(names) > 1 else ""))
+        print(f"render: {timing(len(names), wall, stats_of(stats))}")
+
+
+def main() -> int:
+    try:
+        render()
+    except RenderError as error:
+        print(f"render: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Sets up, builds and renders; see render.py for the variables. Debian's Blender is installed only if no other one is named.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+[ -n "${BLENDER:-}" ] || tools/setup/setup blender
+tools/build.sh library
+exec /usr/bin/python3 tools/render.py
