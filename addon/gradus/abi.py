@@ -402,6 +402,8 @@ class Settings(Struct):
         ("use_sky", c_uint32),
         ("independent_sampler", c_uint32),
         ("passes", c_uint64),
+        ("first_sample", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -492,14 +494,16 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_scene_set_world": (c_int, [Scene, POINTER(World)]),
     "gradus_scene_remove": (c_int, [Scene, c_uint32, c_uint64]),
     "gradus_scene_commit": (c_int, [Scene, POINTER(c_int32), POINTER(c_float)]),
-    "gradus_scene_save": (c_int, [Scene, c_char_p]),
-    "gradus_scene_load": (c_int, [Device, c_char_p, POINTER(Scene)]),
+    "gradus_scene_record": (c_int, [Scene, c_uint32]),
+    "gradus_scene_save": (c_int, [Scene, POINTER(Settings), c_char_p]),
+    "gradus_scene_load": (c_int, [Device, c_char_p, POINTER(Scene), POINTER(Settings)]),
     "gradus_option_count": (c_uint32, []),
     "gradus_option": (c_int, [c_uint32, POINTER(OptionInfo)]),
     "gradus_settings_default": (c_int, [POINTER(Settings)]),
     "gradus_settings_parse": (c_int, [POINTER(Settings), c_char_p, c_char_p]),
     "gradus_pass_info": (c_int, [c_uint32, POINTER(c_char_p), POINTER(c_uint32)]),
     "gradus_render_start": (c_int, [Scene, POINTER(Settings), POINTER(Render)]),
+    "gradus_render_resume": (c_int, [Scene, POINTER(Settings), Frame, POINTER(Render)]),
     "gradus_render_poll": (c_int, [Render, POINTER(Progress)]),
     "gradus_render_cancel": (c_int, [Render]),
     "gradus_render_wait": (c_int, [Render, c_double]),

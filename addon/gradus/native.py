@@ -137,9 +137,18 @@ class Library:
             infos.append(info)
         return infos
 
+    def call(self, name: str, *arguments: Any) -> int:
+        """gradus_<name>(*arguments), for callers that go through a table of names."""
+        return getattr(self, name)(*arguments)
+
     def __getattr__(self, name: str) -> Any:
-        # Reached only for what is no function of the header: the bound ones are instance attributes.
+        # Functions are instance attributes and never get here; the declarations are reachable through the library, too.
+        if name in _DECLARED:
+            return getattr(abi, name)
         raise AttributeError(f"gradus_{name} is not in gradus.h")
+
+
+_DECLARED = frozenset(kind.__name__ for kind in (*abi.STRUCTS, *abi.ENUMS))
 
 
 # ------------------------------------------------------------------------------------------------ one library per process

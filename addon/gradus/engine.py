@@ -1,0 +1,84 @@
+"""The RenderEngine: a thin shim. Each method is one call into renderer.py or viewport.py inside one try/except that reports."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+from . import renderer, viewport
+from .failure import Failure, user_text
+
+
+class GradusRenderEngine(bpy.types.RenderEngine):
+    """No __init__: in Blender 4.5 and 5.0 it would run twice on one object. State is in class-level defaults."""
+
+    bl_idname = "GRADUS"
+    bl_label = "Gradus"
+    bl_use_preview = True
+    bl_use_postprocess = True
+    bl_use_eevee_viewport = True
+    bl_use_shading_nodes_custom = False  # True would hide the shader nodes of Cycles from the Add menu
+    bl_use_gpu_context = False
+    bl_use_custom_freestyle = False
+    bl_use_spherical_stereo = False
+
+    job: renderer.Job | None = None
+    view: viewport.View | None = None
+    failed = False
+
+    def __del__(self) -> None:
+        self.free()
+        parent = getattr(super(), "__del__", None)
+        if parent is not None:
+            parent()
+
+    def free(self) -> None:
+        """Tolerates half-built objects: Blender deletes engines that never rendered."""
+        self._drop_job()
+        view = getattr(self, "view", None)
+        if view is not None:
+            self.view = None
+            view.free()
+
+    def _drop_job(self) -> None:
+        job = getattr(self, "job", None)
+        if job is not None:
+            self.job = None
+            job.free()
+
+    def update_render_passes(self, scene: bpy.types.Scene | None = None, renderlayer: bpy.types.ViewLayer | None = None) -> None:
+        self._guard(lambda: renderer.register_passes(self, scene, renderlayer))
+
+    def update(self, data: bpy.types.BlendData, depsgraph: bpy.types.Depsgraph) -> None:
+        self.failed = False
+        self._guard(lambda: renderer.update(self, data, depsgraph))
+
+    def render(self, depsgraph: bpy.types.Depsgraph) -> None:
+        if not self.failed:
+            self._guard(lambda: renderer.render(self, depsgraph))
+
+    def render_frame_finish(self) -> None:
+        self._guard(lambda: renderer.frame_finished(self))
+
+    def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        self._guard(lambda: viewport.update(self, context, depsgraph))
+
+    def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
+        self._guard(lambda: viewport.draw(self, context, depsgraph))
+
+    def _guard(self, action: Callable[[], Any]) -> None:
+        """Only report({'ERROR'}) makes a failed render visible: else Blender writes a blank frame and ends with code 0."""
+        try:
+            action()
+        except Exception as error:
+            self.failed = True
+            self._drop_job()
+            text = f"Gradus: {user_text(error)}"
+            if not isinstance(error, Failure):
+                traceback.print_exc()
+            self.report({"ERROR"}, text)
+            if not bpy.app.background:
+                self.error_set(text)

@@ -1,0 +1,18 @@
+"""Failures that the user is told about, and how any exception is put into words."""
+
+from __future__ import annotations
+
+
+class Failure(Exception):
+    """No right picture can be made; the text says why, and what to do where that is known."""
+
+
+def user_text(error: BaseException) -> str:
+    """One line for report(): never empty, since an empty report is shown as nothing."""
+    if isinstance(error, MemoryError):
+        return "out of memory"
+    text = " ".join(str(error).split())
+    known = isinstance(error, Failure) or type(error).__name__ in ("GradusError", "ExportError", "OptionError")
+    if known and text:
+        return text
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -1,0 +1,63 @@
+"""Checks around the files that Blender writes itself: a full disk gives short files and exit code 0 there (contract 9.3)."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .failure import Failure
+
+MARGIN_BYTES = 1 << 20
+"""Metadata, and what else writes to the disk meanwhile."""
+
+
+def nearest_folder(path: str) -> Path:
+    """The folder of `path`, or its nearest parent that exists: Blender makes the missing ones."""
+    folder = Path(path).absolute().parent
+    while not folder.is_dir() and folder != folder.parent:
+        folder = folder.parent
+    return folder
+
+
+def require_space(path: str, needed: int) -> None:
+    """Raises Failure if the file system of `path` has less than `needed` bytes free."""
+    folder = nearest_folder(path)
+    try:
+        free = shutil.disk_usage(folder).free
+    except OSError as error:
+        raise Failure(f"output folder {folder}: {error.strerror}") from error
+    if free < needed + MARGIN_BYTES:
+        raise Failure(f"not enough space in {folder}: {free >> 20} MiB free, {(needed + MARGIN_BYTES) >> 20} MiB needed")
+
+
+def require_whole(path: str) -> None:
+    """Raises Failure if the file of the frame before is missing or empty."""
+    try:
+        size = os.path.getsize(path)
+    except OSError as error:
+        raise Failure(f"the frame before was not written: {path}: {error.strerror}") from error
+    if size == 0:
+        raise Failure(f"the frame before was not written: {path} is empty")
+
+
+@dataclass
+class FrameFiles:
+    """Follows the frames of one animation. `previous`: the file that must be there when the next frame starts."""
+
+    previous: str = ""
+
+    def before_frame(self, render: Any, frame: int, frame_bytes: int) -> None:
+        """`frame_bytes`: size of the passes in memory; no format that Blender writes needs more."""
+        previous, self.previous = self.previous, ""
+        if previous:
+            require_whole(previous)
+        path = render.frame_path(frame=frame)
+        if path:
+            require_space(path, frame_bytes)
+
+    def after_frame(self, render: Any, frame: int) -> None:
+        if not render.is_movie_format and not render.use_multiview:
+            self.previous = render.frame_path(frame=frame)

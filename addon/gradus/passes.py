@@ -1,0 +1,116 @@
+"""THE table of passes: Blender's names, channels and switches, and the native plane. Registration, the settings mask and the upload
+are all made from list_passes(). No Blender here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from .abi import Pass
+
+LONG_NAMES_SINCE = (5, 0, 0)
+
+
+@dataclass(frozen=True)
+class PassInfo:
+    """A pass as Blender knows it. `switch`: property of the view layer, or of view_layer.gradus where it starts with "gradus."."""
+
+    plane: Pass
+    name: str
+    long_name: str  # from Blender 5.0 on
+    ids: str  # one letter per channel
+    kind: str  # VALUE, VECTOR or COLOR
+    switch: str  # "" = always, "reconstructed" = whenever Combined is a reconstruction
+
+    @property
+    def channels(self) -> int:
+        return len(self.ids)
+
+    def blender_name(self, version: tuple[int, ...]) -> str:
+        return self.long_name if version >= LONG_NAMES_SINCE else self.name
+
+
+def _same(plane: Pass, name: str, ids: str, kind: str, switch: str) -> PassInfo:
+    return PassInfo(plane, name, name, ids, kind, switch)
+
+
+def _light(plane: Pass, name: str, long_name: str, switch: str) -> PassInfo:
+    return PassInfo(plane, name, long_name, "RGB", "COLOR", switch)
+
+
+TABLE: tuple[PassInfo, ...] = (
+    _same(Pass.COMBINED, "Combined", "RGBA", "COLOR", ""),
+    _same(Pass.NOISY_IMAGE, "Noisy Image", "RGBA", "COLOR", "reconstructed"),
+    _same(Pass.DEPTH, "Depth", "Z", "VALUE", "use_pass_z"),
+    _same(Pass.MIST, "Mist", "Z", "VALUE", "use_pass_mist"),
+    _same(Pass.POSITION, "Position", "XYZ", "VECTOR", "use_pass_position"),
+    _same(Pass.NORMAL, "Normal", "XYZ", "VECTOR", "use_pass_normal"),
+    _same(Pass.VECTOR, "Vector", "XYZW", "VECTOR", "use_pass_vector"),
+    _same(Pass.UV, "UV", "UVA", "VECTOR", "use_pass_uv"),
+    PassInfo(Pass.OBJECT_INDEX, "IndexOB", "Object Index", "X", "VALUE", "use_pass_object_index"),
+    PassInfo(Pass.MATERIAL_INDEX, "IndexMA", "Material Index", "X", "VALUE", "use_pass_material_index"),
+    _light(Pass.DIFFUSE_DIRECT, "DiffDir", "Diffuse Direct", "use_pass_diffuse_direct"),
+    _light(Pass.DIFFUSE_INDIRECT, "DiffInd", "Diffuse Indirect", "use_pass_diffuse_indirect"),
+    _light(Pass.DIFFUSE_COLOR, "DiffCol", "Diffuse Color", "use_pass_diffuse_color"),
+    _light(Pass.GLOSSY_DIRECT, "GlossDir", "Glossy Direct", "use_pass_glossy_direct"),
+    _light(Pass.GLOSSY_INDIRECT, "GlossInd", "Glossy Indirect", "use_pass_glossy_indirect"),
+    _light(Pass.GLOSSY_COLOR, "GlossCol", "Glossy Color", "use_pass_glossy_color"),
+    _light(Pass.TRANSMISSION_DIRECT, "TransDir", "Transmission Direct", "use_pass_transmission_direct"),
+    _light(Pass.TRANSMISSION_INDIRECT, "TransInd", "Transmission Indirect", "use_pass_transmission_indirect"),
+    _light(Pass.TRANSMISSION_COLOR, "TransCol", "Transmission Color", "use_pass_transmission_color"),
+    _light(Pass.EMISSION, "Emit", "Emission", "use_pass_emit"),
+    _light(Pass.ENVIRONMENT, "Env", "Environment", "use_pass_environment"),
+    _light(Pass.AMBIENT_OCCLUSION, "AO", "Ambient Occlusion", "use_pass_ambient_occlusion"),
+    _same(Pass.DENOISING_NORMAL, "Denoising Normal", "XYZ", "VECTOR", "gradus.use_pass_denoising"),
+    _same(Pass.DENOISING_ALBEDO, "Denoising Albedo", "RGB", "COLOR", "gradus.use_pass_denoising"),
+    _same(Pass.DENOISING_DEPTH, "Denoising Depth", "Z", "VALUE", "gradus.use_pass_denoising"),
+    _same(Pass.SAMPLE_COUNT, "Debug Sample Count", "X", "VALUE", "gradus.use_pass_sample_count"),
+    _same(Pass.GRADIENT_X, "Gradient X", "RGB", "COLOR", "gradus.use_pass_gradients"),
+    _same(Pass.GRADIENT_Y, "Gradient Y", "RGB", "COLOR", "gradus.use_pass_gradients"),
+    _same(Pass.VARIANCE, "Variance", "RGB", "COLOR", "gradus.use_pass_variance"),
+    _same(Pass.FALLBACK, "Fallback", "X", "VALUE", "option"),
+)
+
+GROUPS: dict[str, tuple[Pass, ...]] = {
+    "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y),
+    "DENOISING": (Pass.DENOISING_NORMAL, Pass.DENOISING_ALBEDO, Pass.DENOISING_DEPTH),
+    "ALL": tuple(info.plane for info in TABLE),
+}
+"""Names that `--gradus-passes` takes besides those of single planes."""
+
+
+def is_reconstructed(integrator: str, reconstruction: str) -> bool:
+    """Whether Combined is a reconstruction, so that the sampled image becomes a pass of its own (contract 6.1). Identifiers of
+    settings.py; AUTO means GRADIENT and L2 (contract 5.1)."""
+    return integrator != "PATH" and reconstruction != "NONE"
+
+
+def list_passes(view_layer: Any, reconstructed: bool, extra: Iterable[Pass] = ()) -> Iterator[PassInfo]:
+    """The passes of a view layer. `extra`: planes asked for on the command line."""
+    wanted = frozenset(extra)
+    for info in TABLE:
+        if info.plane in wanted or _is_on(info.switch, view_layer, reconstructed):
+            yield info
+
+
+def _is_on(switch: str, view_layer: Any, reconstructed: bool) -> bool:
+    if not switch:
+        return True
+    if switch == "reconstructed":
+        return reconstructed
+    if switch.startswith("gradus."):
+        return bool(getattr(view_layer.gradus, switch.removeprefix("gradus.")))
+    return bool(getattr(view_layer, switch, False))
+
+
+def mask(infos: Iterable[PassInfo]) -> int:
+    """GradusSettings.passes: one bit for each plane."""
+    bits = 0
+    for info in infos:
+        bits |= 1 << info.plane
+    return bits
+
+
+def by_name(infos: Iterable[PassInfo], version: tuple[int, ...]) -> dict[str, PassInfo]:
+    return {info.blender_name(version): info for info in infos}

@@ -1,0 +1,60 @@
+"""One way to hand pixels to Blender, for all versions: a single foreach_set of one array('f') for all passes of a layer.
+
+Blender reads an array.array as one block of memory; a ctypes array, or one call per pass, costs a hundred times as much in some version.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from array import array
+from collections.abc import Iterable
+from typing import Any
+
+from .abi import Pass
+from .passes import PassInfo
+
+FLOAT_BYTES = 4
+
+
+class PassBuffer:
+    """Memory for all passes of a render layer in Blender's order, one after the other; reused between refreshes."""
+
+    def __init__(self) -> None:
+        self._values = array("f")
+        self._layout: list[tuple[PassInfo | None, int, int]] = []  # pass, first float, floats
+
+    def prepare(self, passes: Iterable[Any], infos: dict[str, PassInfo], width: int, height: int) -> None:
+        """Lays the buffer out for `passes` (name, channels), which Blender keeps in this order. What is not in `infos` stays 0."""
+        self._layout = []
+        total = 0
+        for render_pass in passes:
+            count = width * height * render_pass.channels
+            info = infos.get(render_pass.name)
+            if info is not None and info.channels != render_pass.channels:
+                info = None
+            self._layout.append((info, total, count))
+            total += count
+        if len(self._values) != total:
+            self._values = array("f", bytes(FLOAT_BYTES * total))
+
+    def fill(self, read: Any, only: frozenset[Pass] | None = None) -> None:
+        """Lets `read(plane, pointer, float count)` write every pass in place, or those in `only`."""
+        if not self._values:
+            return
+        memory = (ctypes.c_float * len(self._values)).from_buffer(self._values)
+        base = ctypes.addressof(memory)
+        for info, first, count in self._layout:
+            if info is not None and (only is None or info.plane in only):
+                target = ctypes.cast(base + FLOAT_BYTES * first, ctypes.POINTER(ctypes.c_float))
+                read(int(info.plane), target, count)
+        del memory
+
+    def upload(self, layer: Any) -> None:
+        """Too short an array would be written in part and too long a one accepted: so the size is checked here."""
+        passes = layer.passes
+        if len(passes) != len(self._layout):
+            raise ValueError(f"the layer has {len(passes)} passes, the buffer {len(self._layout)}")
+        passes.foreach_set("rect", self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)

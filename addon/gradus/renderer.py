@@ -1,0 +1,317 @@
+"""Final renders and previews: what engine.py's update() and render() do."""
+
+from __future__ import annotations
+
+import ctypes
+import time
+from ctypes import byref
+from typing import Any
+
+import bpy
+
+from . import compat, frame_store, native, options, output, passes, pixels, settings, stats, store
+from .export import Cancelled as ExportCancelled
+from .failure import Failure
+from .native import Error, GradusError, Phase
+from .store import FINAL, POLL_SECONDS, PREVIEW, Cancelled, Key, Session
+
+VERSION = bpy.app.version
+_files = output.FrameFiles()
+
+
+# ------------------------------------------------------------------------------------------------ settings
+
+
+def active_passes(scene: Any, view_layer: Any, overrides: options.Overrides) -> list[passes.PassInfo]:
+    """Passes of the layer, with the command line's wishes."""
+    integrator = overrides.value("integrator") or scene.gradus.integrator
+    reconstruction = overrides.value("reconstruction") or scene.gradus.reconstruction
+    reconstructed = passes.is_reconstructed(integrator.upper(), reconstruction.upper())
+    return list(passes.list_passes(view_layer, reconstructed, overrides.passes))
+
+
+def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
+    """Also called by the interface at any time: cheap, and without the library."""
+    if scene is None or view_layer is None:
+        return
+    for info in active_passes(scene, view_layer, options.current()):
+        engine.register_pass(scene, view_layer, info.blender_name(VERSION), info.channels, info.ids, info.kind)
+
+
+def host_value(name: str, scene: Any, overrides: options.Overrides) -> Any:
+    """A setting that the library does not have."""
+    return overrides.host.get(name, getattr(scene.gradus, name))
+
+
+def native_settings(library: native.Library, scene: Any, view_layer: Any, overrides: options.Overrides) -> native.Settings:
+    """Everything but size, region and passes."""
+    result = native.Settings()
+    library.settings_default(byref(result))
+    settings.fill(result, scene.gradus)
+    if view_layer.samples > 0:
+        result.samples = view_layer.samples
+    result.frame = scene.frame_current
+    result.film_transparent = scene.render.film_transparent
+    result.use_sky = view_layer.use_sky
+    result.alpha_threshold = view_layer.pass_alpha_threshold
+    result.threads = overrides.threads or compat.fixed_threads(scene.render)
+    for name, text in overrides.native:
+        library.settings_parse(byref(result), native.text(name), native.text(text))
+    return result
+
+
+def limit_preview(result: native.Settings, samples: int) -> None:
+    """Previews must not take the machine from the user, nor from a render that runs at the same time."""
+    result.samples = min(result.samples, samples)
+    result.threads = max(1, store.process_cpu_threads() // 2)
+
+
+def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
+    """x0, y0, x1, y1 of the border in the full frame, rounded as Blender does it (float32 products, truncated)."""
+    if not render.use_border:
+        return 0, 0, width, height
+    x0, x1 = (int(compat.as_float32(value * width)) for value in (render.border_min_x, render.border_max_x))
+    y0, y1 = (int(compat.as_float32(value * height)) for value in (render.border_min_y, render.border_max_y))
+    return max(x0, 0), max(y0, 0), min(x1, width), min(y1, height)
+
+
+# ------------------------------------------------------------------------------------------------ one view layer
+
+
+class Job:
+    """What update() prepares and render() finishes, for one view layer of one frame."""
+
+    def __init__(self, engine: Any, depsgraph: Any) -> None:
+        self.engine = engine
+        self.depsgraph = depsgraph
+        self.scene = depsgraph.scene_eval
+        self.layer = depsgraph.view_layer_eval
+        self.is_preview = engine.is_preview
+        self.overrides = options.Overrides() if self.is_preview else options.current()
+        self.clock = stats.Clock()
+        self.warnings: list[str] = []
+        self.cancelled = False
+        self.infos = active_passes(self.scene, self.layer, self.overrides)
+        self.views = compat.view_names(self.scene.render)
+        kind, space = (PREVIEW, id(self)) if self.is_preview else (FINAL, 0)
+        self.key = Key(kind, self.scene.name_full, self.layer.name, space)
+        self.session: Session | None = None
+        self.settings: native.Settings | None = None
+        self.buffer = pixels.PassBuffer()
+
+    def prepare(self) -> None:
+        """Extraction, under Blender's draw lock: nobody edits meanwhile."""
+        library = native.load()
+        self.settings = native_settings(library, self.scene, self.layer, self.overrides)
+        self.settings.passes = passes.mask(self.infos)
+        if self.is_preview:
+            limit_preview(self.settings, host_value("preview_samples", self.scene, self.overrides))
+        self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
+        self.export(self.views[0])
+
+    def export(self, view: str) -> None:
+        if view:
+            self.engine.active_view_set(view)
+        with self.clock.phase("export"):
+            report = self.session.exporter.sync(self.depsgraph, self.engine, None, self.is_preview, self.engine.test_break)
+        self.settings.width, self.settings.height = report.width, report.height
+        self.warn(report.warnings)
+
+    def warn(self, texts: list[str]) -> None:
+        for text in self.session.take_new_warnings(texts):
+            self.warnings.append(text)
+            if not self.is_preview:
+                self.engine.report({"WARNING"}, f"Gradus: {text}")
+
+    def free(self) -> None:
+        if self.is_preview:
+            store.release(self.key)
+        self.session = None
+
+
+def update(engine: Any, _data: Any, depsgraph: Any) -> None:
+    job = Job(engine, depsgraph)
+    engine.job = job
+    if not job.is_preview:
+        _check_output(engine, job)
+    try:
+        job.prepare()
+    except ExportCancelled:
+        job.cancelled = True
+
+
+def _check_output(engine: Any, job: Job) -> None:
+    """In the background every frame becomes a file; in the window only those of an animation."""
+    if not (bpy.app.background or engine.is_animation):
+        return
+    channels = sum(info.channels for info in job.infos)
+    frame_bytes = engine.resolution_x * engine.resolution_y * channels * pixels.FLOAT_BYTES
+    if not engine.is_animation:
+        _files.previous = ""
+    _files.before_frame(job.scene.render, job.scene.frame_current, frame_bytes)
+
+
+def render(engine: Any, depsgraph: Any) -> None:
+    job = engine.job
+    if job is None:
+        raise Failure("render() without update()")
+    try:
+        for index, view in enumerate(job.views):
+            if index > 0 and not job.cancelled:
+                job.export(view)
+            _render_view(job, view)
+    except (Cancelled, ExportCancelled):
+        job.cancelled = True
+        _empty_result(job)
+    finally:
+        if job.is_preview:
+            job.free()
+    if engine.is_animation and not job.is_preview and not job.cancelled:
+        _files.after_frame(job.scene.render, job.scene.frame_current)
+
+
+def frame_finished(engine: Any) -> None:
+    engine.job = None
+
+
+def _empty_result(job: Job) -> None:
+    """A cancelled render without a result at all would crash Blender's multilayer writer."""
+    result = job.engine.begin_result(0, 0, job.engine.resolution_x, job.engine.resolution_y, layer=job.layer.name)
+    if result is not None:
+        job.engine.end_result(result)
+
+
+def _render_view(job: Job, view: str) -> None:
+    if job.cancelled:
+        raise Cancelled
+    engine = job.engine
+    engine.update_stats("", "Gradus: building the scene")
+    with job.clock.phase("build"):
+        job.session.commit(engine.test_break)
+    _save_scene(job)
+    result = engine.begin_result(0, 0, job.settings.width, job.settings.height, layer=job.layer.name, view=view)
+    if result is None:
+        raise Failure("the render border leaves nothing to render")
+    try:
+        width, height = result.resolution_x, result.resolution_y
+        x0, y0, _, _ = region_of(job.scene.render, job.settings.width, job.settings.height)
+        job.settings.region[:] = [x0, y0, x0 + width, y0 + height]
+        job.buffer.prepare(result.layers[0].passes, passes.by_name(job.infos, VERSION), width, height)
+        _sample(job, view, result)
+    finally:
+        # Also after a failure, which the caller reports: an open result would stay in memory.
+        engine.end_result(result)
+
+
+def _save_scene(job: Job) -> None:
+    if job.overrides.save_scene:
+        path = job.overrides.save_scene.replace("%f", str(job.scene.frame_current))
+        job.session.library.scene_save(job.session.scene, byref(job.settings), native.text(path))
+
+
+def _sample(job: Job, view: str, result: Any) -> None:
+    library = job.session.library
+    handle = ctypes.c_uint64()
+    library.render_start(job.session.scene, byref(job.settings), byref(handle))
+    try:
+        _wait(job, handle.value, result)
+        _deliver(job, view, handle.value, result)
+    finally:
+        library.render_release(handle.value)
+
+
+def _wait(job: Job, handle: int, result: Any) -> None:
+    """Until the library is done; a cancelled render ends well, too: what it has so far is delivered."""
+    library, engine = job.session.library, job.engine
+    progress = native.Progress()
+    display = _Display(job, handle, result)
+    running = True
+    while running:
+        try:
+            library.render_wait(handle, POLL_SECONDS)
+            running = False
+        except GradusError as error:
+            if error.code == Error.CANCELLED:
+                job.cancelled = True
+                running = False
+            elif error.code != Error.INVALID_OPERATION:
+                raise
+        if running and not job.cancelled and engine.test_break():
+            job.cancelled = True
+            library.render_cancel(handle)
+        library.render_poll(handle, byref(progress))
+        display.show(progress)
+
+
+class _Display:
+    """Progress text, bar and picture: often enough to be lively, seldom enough to cost nothing."""
+
+    TEXT_SECONDS = 1.0
+    FIRST_REFRESH, LONGEST_REFRESH = 0.5, 16.0  # s between pictures; each one waits longer than the one before
+
+    def __init__(self, job: Job, handle: int, result: Any) -> None:
+        self.job, self.handle, self.result = job, handle, result
+        self.start = time.monotonic()
+        self.next_text = self.start
+        self.refresh = self.FIRST_REFRESH
+        self.next_refresh = self.start + self.refresh
+        self.version = 0
+
+    def show(self, progress: native.Progress) -> None:
+        engine, now = self.job.engine, time.monotonic()
+        engine.update_progress(progress.fraction)
+        if now >= self.next_text:
+            self.next_text = now + self.TEXT_SECONDS
+            engine.update_stats("", self._text(progress))
+            engine.update_memory_stats(memory_used=progress.memory_bytes / 2**20, memory_peak=progress.peak_memory_bytes / 2**20)
+        if not bpy.app.background and progress.version != self.version and now >= self.next_refresh:
+            self.version = progress.version
+            self._picture()
+            self.next_refresh = time.monotonic() + self.refresh
+            if now - self.start > 5.0:
+                self.refresh = min(2.0 * self.refresh, self.LONGEST_REFRESH)
+
+    def _text(self, progress: native.Progress) -> str:
+        if progress.phase == Phase.RECONSTRUCTING:
+            return "Gradus: reconstructing"
+        return f"Gradus: sample {progress.samples_done}/{self.job.settings.samples}"
+
+    def _picture(self) -> None:
+        _read(self.job, self.handle, frozenset((passes.Pass.COMBINED, passes.Pass.NOISY_IMAGE)))
+        self.job.buffer.upload(self.result.layers[0])
+        self.job.engine.update_result(self.result)
+
+
+def _read(job: Job, handle: int, only: frozenset[passes.Pass] | None = None) -> None:
+    job.buffer.fill(lambda plane, target, count: job.session.library.render_read_pass(handle, plane, target, count), only)
+
+
+def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
+    with job.clock.phase("upload"):
+        _read(job, handle)
+        job.buffer.upload(result.layers[0])
+    if job.is_preview or job.cancelled:
+        return
+    library = job.session.library
+    job.warn([])
+    folder = host_value("frame_store", job.scene, job.overrides)
+    if folder:
+        frame_store.save(library, handle, bpy.path.abspath(folder), job.scene, job.layer, view)
+    text = ctypes.c_char_p()
+    library.render_stats(handle, byref(text))
+    host = {"frame": job.scene.frame_current, "layer": job.layer.name, "scene": job.scene.name, "view": view}
+    summary = stats.complete((text.value or b"").decode("utf-8", "replace"), host, job.clock, job.warnings)
+    store.summaries[(job.scene.name, job.layer.name)] = summary
+    _stamp(job.engine, summary)
+    if job.overrides.stats:
+        stats.append(job.overrides.stats, summary)
+
+
+def _stamp(engine: Any, summary: dict[str, Any]) -> None:
+    """Metadata of the file: how the picture was made (I9)."""
+    stamped = engine.get_result()
+    if stamped is None or not hasattr(stamped, "stamp_data_add_field"):
+        return
+    for name in ("version", "integrator", "reconstruction", "seed", "samples"):
+        if name in summary:
+            stamped.stamp_data_add_field(f"gradus.{name}", str(summary[name]))

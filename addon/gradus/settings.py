@@ -1,0 +1,168 @@
+"""THE table of settings: Blender properties, command-line options and native settings are made from it; a test compares it with
+the library's own table (gradus_option). No Blender here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+BOOL, INT, FLOAT, ENUM, TEXT, FOLDER = "BOOL", "INT", "FLOAT", "ENUM", "TEXT", "FOLDER"
+
+MAX_INT = 2147483647
+MAX_FLOAT = 3.4e38
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One setting of a scene. `native`: the field of GradusSettings with the same name takes it."""
+
+    name: str
+    kind: str
+    default: Any
+    label: str
+    doc: str
+    minimum: float = 0
+    maximum: float = MAX_INT
+    soft_maximum: float | None = None
+    precision: int = 3
+    choices: tuple[tuple[str, str, str, int], ...] = ()  # identifier, label, meaning, native value
+    native: bool = True
+    unit: str = "NONE"
+
+    def value_of(self, identifier: str) -> int:
+        """Native value of an enum identifier; KeyError if there is none."""
+        return {choice[0]: choice[3] for choice in self.choices}[identifier]
+
+
+# Identifiers that exist in the library but are refused or unfinished there do not appear: a menu promises what it shows.
+INTEGRATORS = (
+    ("AUTO", "Automatic", "Gradient-domain path tracing with the reconstruction that suits it", 0),
+    ("PATH", "Path", "Plain path tracing: the reference", 1),
+    ("GRADIENT", "Gradient", "Path tracing that also samples the differences between neighbouring pixels", 2),
+)
+RECONSTRUCTIONS = (
+    ("AUTO", "Automatic", "L2 for gradients, none for plain path tracing", 0),
+    ("NONE", "None", "Deliver the sampled image", 1),
+    ("L2", "L2", "Least squares: unbiased; outliers may leave small dipoles, and single values may be negative", 2),
+    ("L1", "L1", "Least absolute deviations: robust to outliers, without dipoles; biased, it may darken", 4),
+)
+FILTERS = (
+    ("BOX", "Box", "Box of the given width", 0),
+    ("GAUSSIAN", "Gaussian", "Gauss curve of the given width", 1),
+    ("BLACKMAN_HARRIS", "Blackman-Harris", "Cycles' default: smooth and compact", 2),
+)
+
+SETTINGS: tuple[Setting, ...] = (
+    Setting(
+        "samples", INT, 64, "Samples", "Most samples per pixel; the offset paths of a gradient belong to their sample", 1, 16777216, 4096
+    ),
+    Setting("min_samples", INT, 0, "Min Samples", "Least samples per pixel before a tile may stop; 0 = automatic", 0, 16777216, 4096),
+    Setting(
+        "noise_threshold",
+        FLOAT,
+        0.01,
+        "Noise Threshold",
+        "Stop where the estimated relative error is below it; 0 = off, unbiased. The same number leaves less noise than in Cycles",
+        0,
+        MAX_FLOAT,
+        1,
+        4,
+    ),
+    Setting(
+        "time_limit",
+        FLOAT,
+        0.0,
+        "Time Limit",
+        "Seconds of sampling for each frame and view layer, 0 = no limit; the image so far is reconstructed and delivered",
+        0,
+        MAX_FLOAT,
+        3600,
+        1,
+    ),
+    Setting("seed", INT, 0, "Seed", "Another seed gives another noise pattern", 0, MAX_INT),
+    Setting("use_animated_seed", BOOL, True, "Animated Seed", "A different noise pattern for each frame", 0, 1),
+    Setting("integrator", ENUM, "AUTO", "Integrator", "How light is sampled", choices=INTEGRATORS),
+    Setting("reconstruction", ENUM, "AUTO", "Reconstruction", "How the image is made from samples and gradients", choices=RECONSTRUCTIONS),
+    Setting(
+        "reconstruction_alpha",
+        FLOAT,
+        0.2,
+        "Primal Weight",
+        "Weight of the sampled image against its gradients in the reconstruction",
+        1e-3,
+        1e3,
+        1,
+    ),
+    Setting("max_bounces", INT, 12, "Total", "Most bounces of a path", 0, 1024, 128),
+    Setting("diffuse_bounces", INT, 4, "Diffuse", "Most diffuse bounces of a path", 0, 1024, 128),
+    Setting("glossy_bounces", INT, 4, "Glossy", "Most glossy bounces of a path", 0, 1024, 128),
+    Setting("transmission_bounces", INT, 12, "Transmission", "Most transmission bounces of a path", 0, 1024, 128),
+    Setting("volume_bounces", INT, 0, "Volume", "Most volume scattering events of a path", 0, 1024, 128),
+    Setting("transparent_max_bounces", INT, 8, "Transparent", "Most transparent surfaces that a ray passes", 0, 1024, 128),
+    Setting(
+        "clamp_direct", FLOAT, 0.0, "Direct Light", "Largest direct radiance of a sample, 0 = off: clamping is bias", 0, MAX_FLOAT, 100
+    ),
+    Setting(
+        "clamp_indirect",
+        FLOAT,
+        0.0,
+        "Indirect Light",
+        "Largest indirect radiance of a sample, 0 = off: clamping is bias",
+        0,
+        MAX_FLOAT,
+        100,
+    ),
+    Setting("pixel_filter", ENUM, "BLACKMAN_HARRIS", "Pixel Filter", "How samples around a pixel count for it", choices=FILTERS),
+    Setting("filter_width", FLOAT, 1.5, "Filter Width", "Width of the pixel filter in pixels", 0.01, 10, 10, 2),
+    Setting("film_exposure", FLOAT, 1.0, "Exposure", "Factor on all radiance that is delivered", 0, MAX_FLOAT, 10),
+    Setting(
+        "roughness_threshold",
+        FLOAT,
+        0.1,
+        "Roughness Threshold",
+        "Lobes with a smaller alpha (roughness squared) count as specular: 0.1 is a roughness of 0.316",
+        0,
+        1,
+        1,
+    ),
+    Setting("strict", BOOL, False, "Strict", "Missing or broken image files end the render with an error in place of a warning", 0, 1),
+    Setting(
+        "preview_samples",
+        INT,
+        32,
+        "Preview Samples",
+        "Samples per pixel of the rendered viewport and of material, world and light previews",
+        1,
+        1024,
+        1024,
+        native=False,
+    ),
+    Setting(
+        "frame_store",
+        FOLDER,
+        "",
+        "Frame Store",
+        "Folder in which raw frames are kept (samples, gradients, half-buffers) for the command-line tool; empty = none",
+        native=False,
+    ),
+)
+
+BY_NAME = {setting.name: setting for setting in SETTINGS}
+
+TEST_SWITCHES = ("independent_sampler", "first_sample")
+"""Native settings that exist on the command line only."""
+
+FROM_BLENDER = ("width", "height", "frame", "film_transparent", "use_sky", "alpha_threshold", "threads")
+"""Native settings that Blender's own properties give."""
+
+
+def fill(settings: Any, properties: Any) -> None:
+    """Copies the scene's values (attributes of `properties`) into a native.Settings."""
+    for setting in native_settings():
+        value = getattr(properties, setting.name)
+        setattr(settings, setting.name, setting.value_of(value) if setting.kind == ENUM else value)
+
+
+def native_settings() -> Iterator[Setting]:
+    return (setting for setting in SETTINGS if setting.native)

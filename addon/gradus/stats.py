@@ -1,0 +1,57 @@
+"""The stats object of a delivered frame (contract 7.1): the library's, completed by what only the host knows. No Blender here."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import time
+from contextlib import contextmanager
+from typing import Any
+
+
+class Clock:
+    """Wall and CPU seconds by phase; a phase may be entered more than once."""
+
+    def __init__(self) -> None:
+        self.wall: dict[str, float] = {}
+        self.cpu: dict[str, float] = {}
+        self._start = time.perf_counter()
+        self._cpu_start = time.process_time()
+
+    @contextmanager
+    def phase(self, name: str) -> Any:
+        wall, cpu = time.perf_counter(), time.process_time()
+        try:
+            yield
+        finally:
+            self.wall[name] = self.wall.get(name, 0.0) + time.perf_counter() - wall
+            self.cpu[name] = self.cpu.get(name, 0.0) + time.process_time() - cpu
+
+    def total(self) -> float:
+        return time.perf_counter() - self._start
+
+    def total_cpu(self) -> float:
+        return time.process_time() - self._cpu_start
+
+
+def complete(native_json: str, host: dict[str, Any], clock: Clock, warnings: list[str]) -> dict[str, Any]:
+    """The whole object. `host`: frame, layer, scene, view."""
+    stats = {**json.loads(native_json or "{}"), **host}
+    for field, measured in (("seconds", clock.wall), ("cpu_seconds", clock.cpu)):
+        stats[field] = {**stats.get(field, {}), **{name: round(value, 6) for name, value in measured.items()}}
+    stats["seconds"]["total"] = round(clock.total(), 6)
+    stats["process_cpu"] = round(clock.total_cpu(), 6)
+    stats["peak_memory_bytes"] = max(int(stats.get("peak_memory_bytes", 0)), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+    stats["warnings"] = [*stats.get("warnings", []), *(text for text in warnings if text not in stats.get("warnings", []))]
+    return stats
+
+
+def append(path: str, stats: dict[str, Any]) -> None:
+    """One line, in one write: renders of several processes may share the file."""
+    line = json.dumps(stats, separators=(",", ":"), ensure_ascii=False) + "\n"
+    handle = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+    try:
+        os.write(handle, line.encode("utf-8"))
+    finally:
+        os.close(handle)

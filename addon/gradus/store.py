@@ -1,0 +1,179 @@
+"""What outlives an engine object: the native device, and one native scene for each (kind, scene, view layer, space) (contract 7.4).
+
+Blender makes an engine object per frame, and more of them for every change of a pass switch; nothing heavy may hang on those.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from collections.abc import Callable
+from ctypes import byref
+from typing import Any, NamedTuple
+
+import bpy
+
+from . import color, compat, native
+from .export import Exporter
+
+FINAL, PREVIEW, VIEWPORT = "FINAL", "PREVIEW", "VIEWPORT"
+POLL_SECONDS = 0.05
+
+
+class Cancelled(Exception):
+    """The user stopped the render."""
+
+
+class Key(NamedTuple):
+    kind: str
+    scene: str
+    layer: str
+    space: int  # of the viewport or preview: which engine; 0 for final renders
+
+
+class Session:
+    """A native scene, and the exporter that keeps it equal to Blender's."""
+
+    def __init__(self, library: native.Library, device: int, record: bool = False) -> None:
+        self.library = library
+        self.device = device
+        handle = ctypes.c_uint64()
+        library.scene_create(device, byref(handle))
+        self.scene = handle.value
+        if record:
+            library.scene_record(self.scene, 1)
+        self.exporter = Exporter(library, self.scene)
+        self.reported: set[str] = set()
+
+    def commit(self, cancelled: Callable[[], bool]) -> None:
+        """Builds the snapshot on another thread, asking `cancelled` meanwhile. Raises Cancelled or GradusError."""
+        cancel, progress = ctypes.c_int32(0), ctypes.c_float(0.0)
+        failures: list[BaseException] = []
+
+        def work() -> None:
+            try:
+                self.library.scene_commit(self.scene, byref(cancel), byref(progress))
+            except BaseException as error:  # handed to the thread that waits
+                failures.append(error)
+
+        thread = threading.Thread(target=work, name="gradus-commit", daemon=True)
+        thread.start()
+        while thread.is_alive():
+            thread.join(POLL_SECONDS)
+            if cancelled():
+                cancel.value = 1
+        if cancel.value:
+            raise Cancelled
+        if failures:
+            raise failures[0]
+
+    def take_new_warnings(self, texts: list[str]) -> list[str]:
+        """Those of `texts` and of the device that this session has not reported yet: every missing file is named once."""
+        fresh = []
+        for text in [*texts, *self.library.take_warnings(self.device)]:
+            if text not in self.reported:
+                self.reported.add(text)
+                fresh.append(text)
+        return fresh
+
+    def free(self) -> None:
+        scene, self.scene = self.scene, 0
+        if scene:
+            self.library.scene_release(scene)
+
+
+_lock = threading.RLock()
+_sessions: dict[Key, Session] = {}
+_devices: dict[tuple[str, int], int] = {}
+summaries: dict[tuple[str, str], dict[str, Any]] = {}
+"""(scene, layer) -> stats of the last final render, for the panels."""
+
+
+def device(library: native.Library, threads: int = 0) -> int:
+    """The device for Blender's present colour configuration; threads count for the first caller."""
+    path = compat.color_config_path()
+    with _lock:
+        key = (path, threads)
+        if key not in _devices:
+            settings = native.DeviceSettings(threads=threads, color_config=native.text(path) or None)
+            handle = ctypes.c_uint64()
+            library.device_create(byref(settings), byref(handle))
+            color.hand_over(library, handle.value, path, compat.bundled_python_packages())
+            _devices[key] = handle.value
+        return _devices[key]
+
+
+def acquire(key: Key, threads: int = 0, record: bool = False) -> Session:
+    """The session of `key`, made if there is none."""
+    library = native.load()
+    with _lock:
+        if key not in _sessions:
+            _sessions[key] = Session(library, device(library, threads), record)
+        return _sessions[key]
+
+
+def release(key: Key) -> None:
+    with _lock:
+        session = _sessions.pop(key, None)
+    if session is not None:
+        session.free()
+
+
+def release_kind(kind: str) -> None:
+    with _lock:
+        keys = [key for key in _sessions if key.kind == kind]
+    for key in keys:
+        release(key)
+
+
+def clear() -> None:
+    """Frees all sessions and devices."""
+    with _lock:
+        keys = list(_sessions)
+    for key in keys:
+        release(key)
+    with _lock:
+        handles = list(_devices.values())
+        _devices.clear()
+    for handle in handles:
+        native.load().device_release(handle)
+    summaries.clear()
+
+
+# ------------------------------------------------------------------------------------------------ handlers
+
+
+@bpy.app.handlers.persistent
+def _after_render(scene: Any, *_: Any) -> None:
+    """An animation keeps its scene between frames, also without persistent data; after its end the memory goes back."""
+    if scene is None or not scene.render.use_persistent_data:
+        release_kind(FINAL)
+
+
+@bpy.app.handlers.persistent
+def _before_load(*_: Any) -> None:
+    release_kind(FINAL)
+    summaries.clear()
+
+
+_HANDLERS = (("render_complete", _after_render), ("render_cancel", _after_render), ("load_pre", _before_load))
+
+
+def register_handlers() -> None:
+    for name, function in _HANDLERS:
+        listed = getattr(bpy.app.handlers, name)
+        if function not in listed:
+            listed.append(function)
+
+
+def unregister_handlers() -> None:
+    for name, function in _HANDLERS:
+        listed = getattr(bpy.app.handlers, name)
+        if function in listed:
+            listed.remove(function)
+
+
+def process_cpu_threads() -> int:
+    """Hardware threads this process may use."""
+    return len(os.sched_getaffinity(0))

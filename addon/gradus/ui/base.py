@@ -1,0 +1,30 @@
+"""What all panels of ours share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+ENGINE = "GRADUS"
+
+
+class EnginePanel:
+    """Mixin: a panel of the properties editor that shows for our engine only."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = {ENGINE}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return context.engine == ENGINE
+
+    def columns(self) -> Any:
+        """The layout, in Blender's usual two columns of label and value."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        return layout
+
+
+class RenderPanel(EnginePanel):
+    bl_context = "render"

@@ -1,0 +1,140 @@
+"""Panels of the render tab."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from .. import store
+from .base import RenderPanel
+from .presets import GRADUS_PT_presets
+
+
+class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+
+    def draw_header_preset(self, _context: Any) -> None:
+        GRADUS_PT_presets.draw_panel_header(self.layout)
+
+    def draw(self, context: Any) -> None:
+        layout, settings = self.columns(), context.scene.gradus
+        column = layout.column(align=True)
+        column.prop(settings, "samples")
+        column.prop(settings, "noise_threshold")
+        column.prop(settings, "time_limit")
+        layout.prop(settings, "preview_samples")
+
+
+class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
+    bl_label = "Method"
+    bl_parent_id = "GRADUS_RENDER_PT_sampling"
+
+    def draw(self, context: Any) -> None:
+        layout, settings = self.columns(), context.scene.gradus
+        layout.prop(settings, "integrator")
+        column = layout.column()
+        column.prop(settings, "reconstruction")
+        if settings.reconstruction in ("L2", "L1", "AUTO"):
+            column.prop(settings, "reconstruction_alpha")
+        if settings.integrator == "PATH" and settings.reconstruction in ("L2", "L1"):
+            layout.label(text="Plain paths have no gradients to reconstruct from", icon="ERROR")
+        elif settings.reconstruction == "L1" or settings.noise_threshold > 0.0:
+            layout.label(text="Biased or consistent; L2 at noise threshold 0 is unbiased", icon="INFO")
+        else:
+            layout.label(text="Unbiased", icon="CHECKMARK")
+
+
+class GRADUS_RENDER_PT_advanced(RenderPanel, bpy.types.Panel):
+    bl_label = "Advanced"
+    bl_parent_id = "GRADUS_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw(self, context: Any) -> None:
+        layout, settings = self.columns(), context.scene.gradus
+        for name in ("seed", "use_animated_seed", "min_samples", "roughness_threshold"):
+            layout.prop(settings, name)
+
+
+class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
+    bl_label = "Light Paths"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw(self, context: Any) -> None:
+        layout, settings = self.columns(), context.scene.gradus
+        column = layout.column(align=True, heading="Most Bounces")
+        for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces"):
+            column.prop(settings, name)
+        column = layout.column(align=True, heading="Clamping")
+        column.prop(settings, "clamp_direct")
+        column.prop(settings, "clamp_indirect")
+
+
+class GRADUS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw(self, context: Any) -> None:
+        layout, settings = self.columns(), context.scene.gradus
+        layout.prop(settings, "film_exposure")
+        layout.prop(context.scene.render, "film_transparent", text="Transparent")
+        column = layout.column(align=True)
+        column.prop(settings, "pixel_filter")
+        column.prop(settings, "filter_width")
+
+
+class GRADUS_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw(self, context: Any) -> None:
+        layout, render = self.columns(), context.scene.render
+        layout.prop(render, "threads_mode")
+        column = layout.column()
+        column.enabled = render.threads_mode == "FIXED"
+        column.prop(render, "threads")
+        layout.prop(render, "use_persistent_data", text="Persistent Data")
+        layout.prop(context.scene.gradus, "frame_store")
+        layout.prop(context.scene.gradus, "strict")
+
+
+class GRADUS_RENDER_PT_plan(RenderPanel, bpy.types.Panel):
+    bl_label = "Last Render"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw(self, context: Any) -> None:
+        layout = self.layout
+        summary = store.summaries.get((context.scene.name, context.view_layer.name))
+        if summary is None:
+            layout.label(text="Nothing was rendered yet")
+            return
+        for line in plan_lines(summary):
+            layout.label(text=line)
+        for text in summary.get("warnings", []):
+            layout.label(text=text, icon="ERROR")
+
+
+def plan_lines(summary: dict[str, Any]) -> list[str]:
+    """What was rendered, how, and why: the plan of a stats object in words."""
+    seconds = summary.get("seconds", {})
+    lines = [f"Frame {summary.get('frame')}: {summary.get('samples', 0):g} samples per pixel in {seconds.get('total', 0.0):.1f} s"]
+    lines += [f"{phase.capitalize()}: {value:.2f} s" for phase, value in seconds.items() if phase != "total" and value >= 0.005]
+    for name, value in summary.get("plan", {}).items():
+        if isinstance(value, dict):
+            lines += [f"{name.replace('_', ' ').capitalize()}: {key.replace('_', ' ')}: {reason}" for key, reason in value.items()]
+        elif isinstance(value, list):
+            lines += [f"{name.replace('_', ' ').capitalize()}: {item}" for item in value]
+        else:
+            lines.append(f"{name.replace('_', ' ').capitalize()}: {value}")
+    return lines
+
+
+CLASSES = (
+    GRADUS_RENDER_PT_sampling,
+    GRADUS_RENDER_PT_method,
+    GRADUS_RENDER_PT_advanced,
+    GRADUS_RENDER_PT_light_paths,
+    GRADUS_RENDER_PT_film,
+    GRADUS_RENDER_PT_performance,
+    GRADUS_RENDER_PT_plan,
+)

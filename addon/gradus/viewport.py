@@ -1,0 +1,251 @@
+"""The Rendered viewport: a plain progressive image that starts again on every change, drawn through Blender's display transform.
+
+Blender's data is read on the main thread, where view_update() and view_draw() run; building and sampling happen on threads of our own,
+which never touch Blender. Each viewport has its own native scene, so that several of them and a final render do not meet.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+from array import array
+from ctypes import byref
+from typing import Any
+
+import bpy
+import gpu
+from gpu_extras.presets import draw_texture_2d
+
+from . import native, options, renderer, store, view_border
+from .export import ViewOverride
+from .native import Error, GradusError, Integrator, Pass, Phase, Reconstruction
+from .store import VIEWPORT, Key, Session
+
+REFRESH_SECONDS = 0.1
+RESIZE_SECONDS = 0.25
+"""A region that changes its size is left alone for that long: every step of a drag would start a render."""
+JOIN_SECONDS = 0.3
+"""The library leaves a commit within 0.25 s of its cancellation."""
+
+
+class View:
+    """One viewport in rendered shading."""
+
+    def __init__(self, engine: Any, depsgraph: Any) -> None:
+        self.engine = engine
+        scene, layer = depsgraph.scene, depsgraph.view_layer
+        self.key = Key(VIEWPORT, scene.name_full, layer.name, id(self))
+        self.session: Session = store.acquire(self.key)
+        self.override: ViewOverride | None = None
+        self.region: tuple[int, int, int, int] = (0, 0, 0, 0)
+        self.signature: object = None
+        self.worker: threading.Thread | None = None
+        self.cancel = ctypes.c_int32(0)
+        self.render = 0
+        self.settings: native.Settings | None = None
+        self.stale = True  # the picture is not that of the scene: start as soon as the worker is free
+        self.resized_at = 0.0
+        self.error: BaseException | None = None
+        self.failed = False
+        self.picture = _Picture()
+        self.done = False
+
+    # Reading Blender.
+
+    def synchronize(self, depsgraph: Any, override: ViewOverride) -> None:
+        """Exports all that changed. Leaves it for a later update if the native scene is still busy."""
+        if not self.interrupt():
+            self.engine.tag_update()
+            return
+        self.failed = False
+        report = self.session.exporter.sync(depsgraph, self.engine, override, False, None)
+        self.session.take_new_warnings(report.warnings)
+        self.override = override
+        self.stale = True
+
+    def move(self, depsgraph: Any, override: ViewOverride) -> None:
+        """The view changed and nothing else."""
+        if not self.interrupt():
+            self.engine.tag_redraw()
+            return
+        if self.override is not None and (override.width, override.height) != (self.override.width, self.override.height):
+            self.resized_at = time.monotonic()
+        self.session.exporter.sync_camera(depsgraph, override)
+        self.override = override
+        self.stale = True
+
+    def interrupt(self) -> bool:
+        """Stops building and sampling; False if the library has not left the scene yet."""
+        self.cancel.value = 1
+        if self.render:
+            self.session.library.render_cancel(self.render)
+        if self.worker is not None:
+            self.worker.join(JOIN_SECONDS)
+            if self.worker.is_alive():
+                return False
+            self.worker = None
+        return True
+
+    # Rendering.
+
+    def start(self, scene: Any, layer: Any, region: tuple[int, int, int, int]) -> None:
+        """Builds and samples on another thread. Only when `interrupt` has succeeded."""
+        settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides())
+        settings.samples = scene.gradus.preview_samples
+        settings.noise_threshold = settings.time_limit = 0.0
+        settings.integrator, settings.reconstruction = Integrator.PATH, Reconstruction.NONE
+        settings.threads = max(1, store.process_cpu_threads() - 1)  # one is left for the interface
+        settings.width, settings.height = self.override.width, self.override.height
+        settings.region[:] = region
+        settings.passes = 1 << Pass.COMBINED
+        self.settings, self.region = settings, region
+        self.stale = self.done = False
+        self.cancel.value = 0
+        old, self.render = self.render, 0
+        self.worker = threading.Thread(target=self._work, args=(old,), name="gradus-viewport", daemon=True)
+        self.worker.start()
+        if not bpy.app.timers.is_registered(self._tick):
+            bpy.app.timers.register(self._tick, first_interval=REFRESH_SECONDS)
+
+    def _work(self, old: int) -> None:
+        library = self.session.library
+        try:
+            if old:
+                library.render_release(old)
+            library.scene_commit(self.session.scene, byref(self.cancel), None)
+            handle = ctypes.c_uint64()
+            library.render_start(self.session.scene, byref(self.settings), byref(handle))
+            self.render = handle.value
+        except GradusError as error:
+            if error.code != Error.CANCELLED:
+                self.error = error
+
+    def _tick(self) -> float | None:
+        """Timer: asks for a redraw when there is something new. Ends with the render, or with the engine."""
+        try:
+            if self.session.scene == 0:
+                return None
+            self.engine.tag_redraw()
+        except ReferenceError:
+            return None
+        return None if self.done else REFRESH_SECONDS
+
+    def refresh(self) -> None:
+        """Takes the newest image of the running render into the texture."""
+        if not self.render:
+            return
+        library, progress = self.session.library, native.Progress()
+        library.render_poll(self.render, byref(progress))
+        if progress.phase == Phase.FAILED:
+            self.done = True
+            library.render_wait(self.render, 0.0)  # raises the failure
+        if progress.version != self.picture.version and progress.samples_done > 0:
+            self.picture.take(library, self.render, self.region, progress.version)
+            self.engine.update_stats("Gradus", f"Sample {progress.samples_done}/{self.settings.samples}")
+        if progress.phase in (Phase.DONE, Phase.CANCELLED):
+            self.done = True
+
+    def free(self) -> None:
+        self.done = True
+        self.interrupt()
+        if self.worker is not None:
+            self.worker.join()
+        if self.render:
+            self.session.library.render_release(self.render)
+            self.render = 0
+        store.release(self.key)
+
+
+class _Picture:
+    """The image on screen: a texture and where it lies in the region of the viewport."""
+
+    def __init__(self) -> None:
+        self.texture: Any = None
+        self.version = -1
+        self.rectangle = (0, 0, 0, 0)
+        self._pixels = array("f")
+
+    def take(self, library: native.Library, render: int, region: tuple[int, int, int, int], version: int) -> None:
+        width, height = region[2] - region[0], region[3] - region[1]
+        count = 4 * width * height
+        if len(self._pixels) != count:
+            self._pixels = array("f", bytes(4 * count))
+        library.render_read_pass(render, Pass.COMBINED, native.pointer(self._pixels), count)
+        # 32-bit: a half float overflows at 65520 and would turn black.
+        data = gpu.types.Buffer("FLOAT", count, self._pixels)
+        self.texture = gpu.types.GPUTexture((width, height), format="RGBA32F", data=data)
+        self.version = version
+        self.rectangle = (region[0], region[1], width, height)
+
+    def draw(self, engine: Any, scene: Any) -> None:
+        if self.texture is None:
+            return
+        x, y, width, height = self.rectangle
+        gpu.state.blend_set("ALPHA_PREMULT")
+        engine.bind_display_space_shader(scene)
+        draw_texture_2d(self.texture, (x, y), width, height)
+        engine.unbind_display_space_shader()
+        gpu.state.blend_set("NONE")
+
+
+# ------------------------------------------------------------------------------------------------ callbacks of the engine
+
+
+def update(engine: Any, context: Any, depsgraph: Any) -> None:
+    if engine.view is None:
+        engine.view = View(engine, depsgraph)
+    view = engine.view
+    signature = _signature(depsgraph)
+    if view.override is not None and signature == view.signature and not _has_edits(depsgraph):
+        return
+    view.signature = signature
+    view.synchronize(depsgraph, _override(context))
+
+
+def draw(engine: Any, context: Any, depsgraph: Any) -> None:
+    view = engine.view
+    if view is None or view.failed:
+        return
+    if view.error is not None:
+        error, view.error, view.failed = view.error, None, True
+        raise error
+    override = _override(context)
+    region = view_border.region(context, depsgraph.scene)
+    if view.override is not None and override != view.override:
+        view.move(depsgraph, override)
+    elif region != view.region and view.settings is not None:
+        view.stale = True
+    busy = view.worker is not None and view.worker.is_alive()
+    settled = time.monotonic() - view.resized_at > RESIZE_SECONDS
+    if view.stale and not busy and settled and region[2] > region[0] and region[3] > region[1]:
+        view.interrupt()
+        view.start(depsgraph.scene_eval, depsgraph.view_layer_eval, region)
+    elif not busy:
+        view.refresh()
+    if view.stale:
+        engine.tag_redraw()
+    view.picture.draw(engine, depsgraph.scene_eval)
+
+
+def _override(context: Any) -> ViewOverride:
+    data, space, region = context.region_data, context.space_data, context.region
+    clip = (space.clip_start, space.clip_end)
+    camera = space.camera if space.use_local_camera else context.scene.camera
+    if data.view_perspective == "CAMERA" and camera is not None and camera.type == "CAMERA":
+        clip = (camera.data.clip_start, camera.data.clip_end)
+    return ViewOverride.from_view(data.view_matrix, data.window_matrix, clip, region.width, region.height)
+
+
+def _has_edits(depsgraph: Any) -> bool:
+    """Whether something besides the scene itself was updated. Selecting gives an update of the scene alone."""
+    return any(not isinstance(update.id, bpy.types.Scene) for update in depsgraph.updates)
+
+
+def _signature(depsgraph: Any) -> object:
+    """What a bare scene update may have changed: settings, frame, and which objects there are (hidden ones are not)."""
+    scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+    values = tuple(getattr(scene.gradus, setting.name) for setting in renderer.settings.SETTINGS)
+    objects = hash(tuple(instance.object.original.as_pointer() for instance in depsgraph.object_instances))
+    world = scene.world.original.as_pointer() if scene.world else 0
+    return values, scene.frame_current, scene.render.film_transparent, layer.name, world, objects
