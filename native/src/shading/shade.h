@@ -48,4 +48,13 @@ Rgb shade_transparency(const Snapshot& snapshot, const SurfacePoint& point, cons
 // Background radiance from a direction (pointing away from the scene).
 Rgb shade_world(const Snapshot& snapshot, const Vec3& direction, const RayState& ray);
 
+// A point of a lamp: what the lamp's program multiplies its strength by. material: index in the snapshot. uv: on its surface.
+struct LampPoint {
+  Vec3 position = Vec3(0.0f);
+  Vec3 normal = Vec3(0, 0, 1);
+  Vec3 wo = Vec3(0, 0, 1);  // towards the receiver
+  Vec2 uv = Vec2(0.0f);
+};
+Rgb shade_lamp(const Snapshot& snapshot, uint32_t material, const LampPoint& point, const RayState& ray);
+
 }  // namespace gradus

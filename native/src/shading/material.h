@@ -1,0 +1,48 @@
+// A material as the snapshot keeps it: compiled programs, and what the rest of the renderer may know without running them.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+#include "shading/program.h"
+
+namespace gradus {
+
+class ImageStore;
+
+// Immutable. All flags are conservative: false means "surely not".
+struct MaterialData {
+  std::string name;
+  Program surface;       // all closures
+  Program emission;      // emission alone: what light sampling and the world need
+  Program transparency;  // transparent closures alone: what shadow rays need
+
+  bool emits = false;
+  bool may_be_transparent = false;  // some light goes straight through
+  bool has_holdout = false;
+  bool has_bsdf = false;
+  bool may_transmit = false;       // some lobe sends light to the other side
+  bool may_be_specular = false;    // some lobe's roughness is not surely above 0.316 (alpha 0.1)
+  bool transparent_shadow = true;  // 0: shadow rays take it for opaque
+  bool sample_as_light = true;
+  bool uses_fallback = false;
+  bool depends_on_ray = false;        // uses Light Path, or the direction it is seen from, in emission
+  float min_alpha = 1.0f;             // of all lobes, where known; 0 where a texture decides
+  bool emission_is_constant = false;  // over points and directions; then:
+  Rgb constant_emission = Rgb(0.0f);
+  bool transparency_is_constant = false;
+  Rgb constant_transparency = Rgb(0.0f);
+  float emission_estimate = 0.0f;  // luminance for the choice of lights: exact where constant, else textures at their mean
+  int32_t pass_index = 0;
+};
+
+// Compiles a node program: folds constants, drops what nothing needs, allots registers. Throws Error INVALID_ARGUMENT, with the
+// material's name, for what is not a program (indices, unknown operations, closures in place of values). Image keys that the store does
+// not know look magenta.
+std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const ImageStore& images);
+// Diffuse 0.8: surfaces without a material.
+std::shared_ptr<const MaterialData> default_material();
+
+}  // namespace gradus
