@@ -89,7 +89,7 @@ inline constexpr int kMaxLobes = 12;
 class Closures {
  public:
   // Building: add lobes (more than kMaxLobes: the weakest is merged away), then finish() once.
-  void clear() { count_ = 0; }
+  void clear() { count_ = prepared_ = 0; }
   Lobe* add();  // nullptr when full
   // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by roughness_threshold
   // (alpha), drops black ones, fills sampling weights. Can be called again for another wo (a shifted path), and must be: all that
@@ -131,13 +131,25 @@ class Closures {
     bool dirac = false;
     float probability = 0.0f;  // within the class
   };
-  void prepare(Lobe* lobe, const Vec3& wo) const;
+  // As given to add(): finish() starts from these each time.
+  struct Original {
+    LobeType type;
+    Vec3 normal;
+    float ior;
+  };
+  void drop_black_lobes();
+  void prepare(int lobe, const Vec3& wo);
+  void add_entries(int lobe, const Vec3& wo, float roughness_threshold);
   void add_entry(int lobe, uint8_t sides, ScatterClass c, float weight);
-  void normalise(const std::array<float, kScatterClasses>& totals);
-  Rgb evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, float* pdf) const;
+  void normalise();
+  // Value and density (times the entry's probability) of one smooth entry; zero on the wrong side of the geometric surface.
+  BsdfEval evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const;
+  bool crosses(const Vec3& wi) const;
 
   std::array<Lobe, kMaxLobes> lobes_;
   int count_ = 0;
+  int prepared_ = 0;  // lobes whose original is kept
+  std::array<Original, kMaxLobes> original_;
   std::array<std::array<Entry, kMaxLobes>, kScatterClasses> entries_;
   std::array<int, kScatterClasses> entry_count_{};
   std::array<float, kScatterClasses> class_probability_{};

@@ -1,0 +1,125 @@
+// Directional albedo of lobes, and energy compensation of microfacet lobes from it.
+#include <cmath>
+
+#include "bsdf/albedo_tables.h"
+#include "bsdf/frame.h"
+#include "bsdf/fresnel.h"
+#include "bsdf/lobe.h"
+
+namespace gradus {
+namespace {
+
+float mean_alpha(const Lobe& lobe) { return std::min(1.0f, std::sqrt(lobe.alpha_x * lobe.alpha_y)); }
+
+// Fresnel term averaged over the cosine hemisphere, for light that bounces between facets. Dielectric: fit of Kulla and Conty
+// ("Revisiting Physically Based Shading at Imageworks", 2017).
+float mean_dielectric(float eta) {
+  if (eta < 1.0f) {
+    return 0.997118f + eta * (0.1014f - eta * (0.965241f + 0.130607f * eta));
+  }
+  return (eta - 1.0f) / (4.08567f + 1.00071f * eta);
+}
+
+Rgb mean_fresnel(const Lobe& lobe) {
+  switch (lobe.fresnel) {
+    case FresnelType::None:
+      return Rgb(1.0f);
+    case FresnelType::Dielectric:
+      return Rgb(mean_dielectric(lobe.ior));
+    case FresnelType::Schlick: {
+      const float f0 = fresnel_f0(lobe.ior);
+      const float s = f0 < 1e-6f ? 1.0f / 21.0f : std::clamp((mean_dielectric(lobe.ior) - f0) / (1.0f - f0), 0.0f, 1.0f);
+      return glm::mix(lobe.f0, lobe.f90, s);
+    }
+    // 2∫(1−c)^5 c dc = 1/21 and 2∫c(1−c)^6 c dc = 1/126.
+    case FresnelType::PrincipledMetal:
+      return lobe.f0 + (Rgb(1.0f) - lobe.f0) * (1.0f / 21.0f) - f82_factor(lobe.f0, lobe.f90) * (1.0f / 126.0f);
+  }
+  return Rgb(1.0f);
+}
+
+// Albedo of single scattering by the reflection side, without weight.
+Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
+  const bool two_sided = lobe.type == LobeType::GgxGlass;
+  if (lobe.fresnel == FresnelType::Dielectric || (two_sided && lobe.fresnel == FresnelType::None)) {
+    return Rgb(glass_albedo(alpha, cosine, lobe.ior).reflected);
+  }
+  const GgxMoments m = ggx_moments(alpha, cosine);
+  switch (lobe.fresnel) {
+    case FresnelType::Schlick: {
+      const float f0 = fresnel_f0(lobe.ior);
+      float position = m.schlick;
+      if (f0 >= 1e-6f) {
+        position = std::clamp((glass_albedo(alpha, cosine, lobe.ior).reflected - f0 * m.one) / (1.0f - f0), 0.0f, m.one);
+      }
+      return lobe.f0 * (m.one - position) + lobe.f90 * position;
+    }
+    case FresnelType::PrincipledMetal:
+      return glm::max(lobe.f0 * (m.one - m.schlick) + Rgb(m.schlick) - f82_factor(lobe.f0, lobe.f90) * m.f82, 0.0f);
+    default:
+      return Rgb(m.one);
+  }
+}
+
+// Of the transmission side. Schlick-type glass: the dielectric share, scaled by what its own Fresnel term leaves.
+Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
+  const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
+  if (lobe.type == LobeType::GgxRefraction && lobe.fresnel == FresnelType::None) {
+    return Rgb(glass.crossing) * lobe.transmission_tint;
+  }
+  if (lobe.fresnel == FresnelType::Schlick && glass.transmitted > 0.0f) {
+    const Rgb reflected = single_reflection(lobe, alpha, cosine);
+    const Rgb share = (Rgb(glass.reflected + glass.transmitted) - reflected) / glass.transmitted;
+    return glm::clamp(share, 0.0f, 1.0f / std::max(glass.transmitted, 1e-3f)) * glass.transmitted * lobe.transmission_tint;
+  }
+  return Rgb(glass.transmitted) * lobe.transmission_tint;
+}
+
+LobeAlbedo dirac_albedo(const Lobe& lobe, float cosine) {
+  const FresnelSplit split = lobe_fresnel_split(lobe, cosine);
+  return {lobe.weight * split.reflected, lobe.weight * split.transmitted};
+}
+
+}  // namespace
+
+Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
+  if (!lobe.multiscatter || is_dirac(lobe.type) || !is_microfacet(lobe.type)) {
+    return Rgb(1.0f);
+  }
+  const float alpha = mean_alpha(lobe);
+  if (lobe.type != LobeType::GgxReflection) {
+    const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
+    const bool alone = lobe.type == LobeType::GgxRefraction;
+    return Rgb(1.0f / std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f));
+  }
+  // Turquin 2019 ("Practical multiple scattering compensation for microfacet models"): scale the single scattering; the colour of the
+  // part that bounced more than once after Kulla and Conty 2017.
+  const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
+  const float missing = (1.0f - single) / single;
+  const float mean = ggx_mean_albedo(alpha);
+  const Rgb fresnel = glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f);
+  return Rgb(1.0f) + fresnel * mean / (Rgb(1.0f) - fresnel * (1.0f - mean)) * missing;
+}
+
+LobeAlbedo two_sided_albedo(const Lobe& lobe, const Vec3& wo) {
+  const float cosine = std::clamp(std::abs(wo.z), 0.0f, 1.0f);
+  const Rgb scale = lobe.weight * lobe.energy;
+  switch (lobe.type) {
+    case LobeType::Diffuse:
+      return {lobe.weight, Rgb(0.0f)};
+    case LobeType::Translucent:
+      return {Rgb(0.0f), lobe.weight};
+    case LobeType::Sheen:
+      return {lobe.weight * sheen_albedo(lobe, cosine), Rgb(0.0f)};
+    case LobeType::GgxReflection:
+      return {scale * single_reflection(lobe, mean_alpha(lobe), cosine), Rgb(0.0f)};
+    case LobeType::GgxRefraction:
+      return {Rgb(0.0f), scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
+    case LobeType::GgxGlass:
+      return {scale * single_reflection(lobe, mean_alpha(lobe), cosine), scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
+    default:
+      return dirac_albedo(lobe, cosine);
+  }
+}
+
+}  // namespace gradus

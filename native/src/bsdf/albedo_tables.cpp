@@ -1,0 +1,194 @@
+#include "bsdf/albedo_tables.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "bsdf/fresnel.h"
+#include "bsdf/ggx.h"
+#include "bsdf/refract.h"
+
+namespace gradus {
+namespace {
+
+// Axes: square root of the cosine and of alpha, as both functions bend most near 0; for glass 1−|…|: see ior_position().
+constexpr int kCosines = 28;
+constexpr int kAlphas = 24;
+constexpr int kIors = 20;
+constexpr int kMomentSamples = 256;
+constexpr int kGlassSamples = 256;
+
+float axis_value(int i, int count) {
+  const float x = static_cast<float>(i) / static_cast<float>(count - 1);
+  return x * x;
+}
+
+struct Cell {
+  int index;
+  float fraction;
+};
+Cell locate(float position, int count) {
+  const float x = std::clamp(position, 0.0f, 1.0f) * static_cast<float>(count - 1);
+  const int i = std::min(static_cast<int>(x), count - 2);
+  return {i, x - static_cast<float>(i)};
+}
+
+Vec3 direction_at(float cosine) { return Vec3(std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine); }
+
+// Calls visit(distribution, h) for visible normals, at the points of a golden-ratio lattice (total reflection cuts the integrand, which a
+// regular grid takes badly).
+template <typename Visit>
+void integrate_visible(float alpha, const Vec3& wo, int n, Visit visit) {
+  const Ggx ggx{alpha, alpha};
+  for (int i = 0; i < n; i++) {
+    const float x = (static_cast<float>(i) + 0.5f) / static_cast<float>(n);
+    const float golden = static_cast<float>(i) * 0.618033989f;
+    // Half the azimuths are enough: wo lies in the xz plane.
+    visit(ggx, ggx.sample_visible(wo, Vec2(0.5f * (golden - std::floor(golden)), x)));
+  }
+}
+
+float shadowing(const Ggx& ggx, const Vec3& wo, const Vec3& wi) {
+  return ggx.masking_over_cosines(wo, wi) * std::abs(wi.z) / ggx.masking_over_cosine(wo);
+}
+
+GgxMoments compute_moments(float alpha, float cosine) {
+  const Vec3 wo = direction_at(std::max(cosine, 1e-4f));
+  GgxMoments sum{0.0f, 0.0f, 0.0f};
+  integrate_visible(std::max(alpha, kSmallestAlpha), wo, kMomentSamples, [&](const Ggx& ggx, const Vec3& h) {
+    const float c = glm::dot(wo, h);
+    const Vec3 wi = 2.0f * c * h - wo;
+    if (wi.z > 0.0f) {
+      const float weight = shadowing(ggx, wo, wi);
+      const float s5 = pow5(std::max(0.0f, 1.0f - c));
+      sum.one += weight;
+      sum.schlick += weight * s5;
+      sum.f82 += weight * c * s5 * (1.0f - c);
+    }
+  });
+  const float scale = 1.0f / kMomentSamples;
+  return {sum.one * scale, sum.schlick * scale, sum.f82 * scale};
+}
+
+GlassAlbedo compute_glass(float alpha, float cosine, float eta) {
+  const Vec3 wo = direction_at(std::max(cosine, 1e-4f));
+  GlassAlbedo sum{0.0f, 0.0f, 0.0f};
+  integrate_visible(std::max(alpha, kSmallestAlpha), wo, kGlassSamples, [&](const Ggx& ggx, const Vec3& h) {
+    const float c = std::min(1.0f, glm::dot(wo, h));
+    const float fresnel = fresnel_dielectric(c, eta);
+    const Vec3 wi = 2.0f * c * h - wo;
+    if (wi.z > 0.0f) {
+      sum.reflected += fresnel * shadowing(ggx, wo, wi);
+    }
+    Vec3 wt;
+    if (fresnel < 1.0f && refract_direction(wo, h, eta, &wt) && wt.z < 0.0f) {
+      sum.transmitted += (1.0f - fresnel) * shadowing(ggx, wo, wt);
+      sum.crossing += shadowing(ggx, wo, wt);
+    }
+  });
+  const float scale = 1.0f / kGlassSamples;
+  return {sum.reflected * scale, sum.transmitted * scale, sum.crossing * scale};
+}
+
+struct MomentTable {
+  std::array<GgxMoments, kAlphas * kCosines> values;
+  std::array<float, kAlphas> mean;
+
+  MomentTable() {
+    for (int a = 0; a < kAlphas; a++) {
+      for (int c = 0; c < kCosines; c++) {
+        values[static_cast<size_t>(a * kCosines + c)] = compute_moments(axis_value(a, kAlphas), axis_value(c, kCosines));
+      }
+      mean[static_cast<size_t>(a)] = mean_of_row(a);
+    }
+  }
+  // 2∫E(c)·c dc with c = x²: midpoints of the table's own interpolation.
+  float mean_of_row(int a) const {
+    constexpr int kSteps = 256;
+    float sum = 0.0f;
+    for (int i = 0; i < kSteps; i++) {
+      const float x = (static_cast<float>(i) + 0.5f) / kSteps;
+      const Cell cell = locate(x, kCosines);
+      const size_t k = static_cast<size_t>(a * kCosines + cell.index);
+      sum += (values[k].one + (values[k + 1].one - values[k].one) * cell.fraction) * 4.0f * x * x * x;
+    }
+    return sum / kSteps;
+  }
+};
+const MomentTable& moment_table() {
+  static const MomentTable table;
+  return table;
+}
+
+// One table for eta above 1, one for its inverses: the critical angle makes them different functions.
+struct GlassTable {
+  std::vector<GlassAlbedo> values;
+  static size_t at(int i, int a, int c) { return static_cast<size_t>((i * kAlphas + a) * kCosines + c); }
+  explicit GlassTable(bool inverse) : values(static_cast<size_t>(kIors * kAlphas * kCosines)) {
+    for (int i = 0; i < kIors; i++) {
+      const float eta = eta_at(i);
+      for (int a = 0; a < kAlphas; a++) {
+        for (int c = 0; c < kCosines; c++) {
+          values[at(i, a, c)] = compute_glass(axis_value(a, kAlphas), axis_value(c, kCosines), inverse ? 1.0f / eta : eta);
+        }
+      }
+    }
+  }
+  // (eta−1)/(eta+1) = x², so that the axis is that of the fourth root of F0.
+  static float eta_at(int i) {
+    const float root = std::min(axis_value(i, kIors), 0.998f);
+    return (1.0f + root) / (1.0f - root);
+  }
+};
+const GlassTable& glass_table(bool inverse) {
+  if (inverse) {
+    static const GlassTable table(true);
+    return table;
+  }
+  static const GlassTable table(false);
+  return table;
+}
+
+template <typename T, typename Mix>
+T bilinear(const T* row0, const T* row1, const Cell& a, const Cell& c, Mix mix) {
+  return mix(mix(row0[c.index], row0[c.index + 1], c.fraction), mix(row1[c.index], row1[c.index + 1], c.fraction), a.fraction);
+}
+
+GgxMoments mix_moments(const GgxMoments& a, const GgxMoments& b, float t) {
+  return {a.one + (b.one - a.one) * t, a.schlick + (b.schlick - a.schlick) * t, a.f82 + (b.f82 - a.f82) * t};
+}
+GlassAlbedo mix_glass(const GlassAlbedo& a, const GlassAlbedo& b, float t) {
+  return {a.reflected + (b.reflected - a.reflected) * t, a.transmitted + (b.transmitted - a.transmitted) * t,
+          a.crossing + (b.crossing - a.crossing) * t};
+}
+
+}  // namespace
+
+GgxMoments ggx_moments(float alpha, float cosine) {
+  const MomentTable& table = moment_table();
+  const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
+  const Cell c = locate(std::sqrt(std::max(0.0f, cosine)), kCosines);
+  const GgxMoments* row = table.values.data() + a.index * kCosines;
+  return bilinear(row, row + kCosines, a, c, mix_moments);
+}
+
+float ggx_mean_albedo(float alpha) {
+  const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
+  const auto& mean = moment_table().mean;
+  const size_t i = static_cast<size_t>(a.index);
+  return mean[i] + (mean[i + 1] - mean[i]) * a.fraction;
+}
+
+GlassAlbedo glass_albedo(float alpha, float cosine, float eta) {
+  const GlassTable& table = glass_table(eta < 1.0f);
+  const Cell i = locate(std::sqrt(std::abs((eta - 1.0f) / (eta + 1.0f))), kIors);
+  const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
+  const Cell c = locate(std::sqrt(std::max(0.0f, cosine)), kCosines);
+  const auto plane = [&](int k) {
+    const GlassAlbedo* row = table.values.data() + GlassTable::at(k, a.index, 0);
+    return bilinear(row, row + kCosines, a, c, mix_glass);
+  };
+  return mix_glass(plane(i.index), plane(i.index + 1), i.fraction);
+}
+
+}  // namespace gradus

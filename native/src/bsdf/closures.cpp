@@ -1,0 +1,191 @@
+// Building the closures of a surface point: normals, Dirac limits, classes and their probabilities.
+#include "bsdf/closures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bsdf/frame.h"
+#include "bsdf/ggx.h"
+#include "bsdf/lobe.h"
+#include "bsdf/shading_normal.h"
+
+namespace gradus {
+namespace {
+
+// A sampled side gets at least this share of its lobe: albedos come from tables.
+constexpr float kSmallestShare = 0.01f;
+
+LobeType dirac_of(LobeType type) {
+  switch (type) {
+    case LobeType::GgxReflection:
+      return LobeType::DiracReflection;
+    case LobeType::GgxRefraction:
+      return LobeType::DiracRefraction;
+    case LobeType::GgxGlass:
+      return LobeType::DiracGlass;
+    default:
+      return type;
+  }
+}
+
+uint8_t sides_of(LobeType type) {
+  switch (type) {
+    case LobeType::Translucent:
+    case LobeType::GgxRefraction:
+    case LobeType::DiracRefraction:
+      return kTransmits;
+    case LobeType::GgxGlass:
+    case LobeType::DiracGlass:
+      return kBothSides;
+    default:
+      return kReflects;
+  }
+}
+
+// Clamps what users can type, and makes lobes Dirac that float cannot hold: too smooth, or without a step in the IOR.
+void limit_microfacets(Lobe* lobe) {
+  lobe->ior = std::clamp(is_finite(lobe->ior) ? lobe->ior : 1.0f, 1e-2f, 1e2f);
+  lobe->alpha_x = std::clamp(is_finite(lobe->alpha_x) ? lobe->alpha_x : 1.0f, 0.0f, 4.0f);
+  lobe->alpha_y = std::clamp(is_finite(lobe->alpha_y) ? lobe->alpha_y : 1.0f, 0.0f, 4.0f);
+  const bool stepless = std::abs(lobe->ior - 1.0f) < kSmallestIorStep;
+  if (stepless && sides_of(lobe->type) & kTransmits) {
+    lobe->ior = 1.0f;
+  }
+  if (is_dirac(lobe->type) || lobe->alpha_x * lobe->alpha_y < kSmallestAlpha * kSmallestAlpha ||
+      (stepless && sides_of(lobe->type) & kTransmits)) {
+    lobe->type = dirac_of(lobe->type);
+    lobe->alpha_x = lobe->alpha_y = 0.0f;
+  } else {
+    lobe->alpha_x = std::max(lobe->alpha_x, kSmallestAlpha);
+    lobe->alpha_y = std::max(lobe->alpha_y, kSmallestAlpha);
+  }
+}
+
+float sharpness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::min(lobe.alpha_x, lobe.alpha_y) : 1.0f; }
+float bluntness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::max(lobe.alpha_x, lobe.alpha_y) : 1.0f; }
+
+}  // namespace
+
+Lobe* Closures::add() {
+  if (count_ == kMaxLobes) {
+    return nullptr;
+  }
+  Lobe* lobe = &lobes_[static_cast<size_t>(count_++)];
+  *lobe = Lobe();
+  return lobe;
+}
+
+void Closures::drop_black_lobes() {
+  int kept = prepared_;
+  for (int i = prepared_; i < count_; i++) {
+    Lobe lobe = lobes_[static_cast<size_t>(i)];
+    lobe.weight = glm::max(lobe.weight, 0.0f);
+    if (is_finite(lobe.weight) && !is_black(lobe.weight)) {
+      original_[static_cast<size_t>(kept)] = {lobe.type, lobe.normal, lobe.ior};
+      lobes_[static_cast<size_t>(kept++)] = lobe;
+    }
+  }
+  count_ = prepared_ = kept;
+}
+
+void Closures::prepare(int index, const Vec3& wo) {
+  Lobe& lobe = lobes_[static_cast<size_t>(index)];
+  const Original& original = original_[static_cast<size_t>(index)];
+  const float length2 = glm::dot(original.normal, original.normal);
+  const bool usable = is_finite(length2) && length2 > 1e-12f;
+  Vec3 normal = usable ? original.normal / std::sqrt(length2) : geometric_normal_;
+  lobe.type = original.type;
+  lobe.ior = original.ior;
+  const bool inside = glm::dot(normal, geometric_normal_) < 0.0f;
+  if (inside) {
+    normal = -normal;
+  }
+  if (is_microfacet(lobe.type)) {
+    limit_microfacets(&lobe);
+    lobe.ior = inside ? 1.0f / lobe.ior : lobe.ior;
+    normal = keep_reflection_above(normal, geometric_normal_, wo);
+  }
+  lobe.normal = normal;
+  lobe.tangent = lobe.alpha_x == lobe.alpha_y ? perpendicular(normal) : orthonormal_tangent(normal, lobe.tangent);
+  lobe.energy = multiscatter_energy(lobe, glm::dot(normal, wo));
+}
+
+void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) {
+  if (!(weight > 0.0f) || !is_finite(weight)) {
+    return;
+  }
+  const size_t k = static_cast<size_t>(c);
+  const Lobe& source = lobes_[static_cast<size_t>(lobe)];
+  const bool dirac = is_dirac(source.type);
+  const bool first = entry_count_[k] == 0;
+  min_alpha_[k] = first ? sharpness(source) : std::min(min_alpha_[k], sharpness(source));
+  max_alpha_[k] = first ? bluntness(source) : std::max(max_alpha_[k], bluntness(source));
+  has_smooth_[k] = has_smooth_[k] || !dirac;
+  entries_[k][static_cast<size_t>(entry_count_[k]++)] = {static_cast<uint8_t>(lobe), sides, dirac, weight};
+}
+
+void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold) {
+  Lobe& lobe = lobes_[static_cast<size_t>(index)];
+  const Frame3 frame = make_frame(lobe.normal, lobe.tangent);
+  const LobeAlbedo albedo = two_sided_albedo(lobe, frame.to_local(wo));
+  float reflected = mean_component(albedo.reflected);
+  float transmitted = mean_component(albedo.transmitted);
+  const uint8_t sides = sides_of(lobe.type);
+  const float least = is_dirac(lobe.type) ? 0.0f : kSmallestShare * mean_component(lobe.weight);
+  reflected = sides & kReflects ? std::max(reflected, least) : 0.0f;
+  transmitted = sides & kTransmits ? std::max(transmitted, least) : 0.0f;
+  lobe.sample_weight = reflected + transmitted;
+  const bool rough = !is_dirac(lobe.type) && sharpness(lobe) >= roughness_threshold;
+  if (!is_microfacet(lobe.type) || rough) {
+    lobe.scatter_class = ScatterClass::Diffuse;
+    add_entry(index, sides, ScatterClass::Diffuse, lobe.sample_weight);
+    return;
+  }
+  lobe.scatter_class = sides & kReflects ? ScatterClass::Reflection : ScatterClass::Transmission;
+  add_entry(index, kReflects, ScatterClass::Reflection, reflected);
+  add_entry(index, kTransmits, ScatterClass::Transmission, transmitted);
+}
+
+void Closures::normalise() {
+  float sum = 0.0f;
+  for (int c = 0; c < kScatterClasses; c++) {
+    const size_t k = static_cast<size_t>(c);
+    float total = 0.0f;
+    for (int i = 0; i < entry_count_[k]; i++) {
+      total += entries_[k][static_cast<size_t>(i)].probability;
+    }
+    for (int i = 0; i < entry_count_[k]; i++) {
+      entries_[k][static_cast<size_t>(i)].probability /= total;
+    }
+    class_probability_[k] = total;
+    sum += total;
+  }
+  for (float& p : class_probability_) {
+    p = sum > 0.0f ? p / sum : 0.0f;
+  }
+}
+
+void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold) {
+  geometric_normal_ = geometric_normal;
+  entry_count_.fill(0);
+  min_alpha_.fill(0.0f);
+  max_alpha_.fill(0.0f);
+  has_smooth_.fill(false);
+  drop_black_lobes();
+  for (int i = 0; i < count_; i++) {
+    prepare(i, wo);
+    add_entries(i, wo, roughness_threshold);
+  }
+  normalise();
+}
+
+Vec3 Closures::average_normal() const {
+  Vec3 sum(0.0f);
+  for (int i = 0; i < count_; i++) {
+    sum += lobe(i).normal * lobe(i).sample_weight;
+  }
+  const float length2 = glm::dot(sum, sum);
+  return length2 > 0.0f ? sum / std::sqrt(length2) : geometric_normal_;
+}
+
+}  // namespace gradus

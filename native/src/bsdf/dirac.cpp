@@ -1,0 +1,29 @@
+// Perfectly smooth interfaces: mirror, refraction, glass.
+#include "bsdf/fresnel.h"
+#include "bsdf/ggx.h"
+#include "bsdf/lobe.h"
+#include "bsdf/refract.h"
+
+namespace gradus {
+
+bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* wi, Rgb* coefficient) {
+  if (!(wo.z > 0.0f)) {
+    return false;
+  }
+  const FresnelSplit split = lobe_fresnel_split(lobe, std::min(1.0f, wo.z));
+  *coefficient = lobe.weight * (transmitted ? split.transmitted : split.reflected);
+  if (is_black(*coefficient)) {
+    return false;
+  }
+  if (!transmitted) {
+    *wi = Vec3(-wo.x, -wo.y, wo.z);
+    return true;
+  }
+  if (lobe.ior == 1.0f) {
+    *wi = -wo;
+    return true;
+  }
+  return refract_direction(wo, Vec3(0.0f, 0.0f, 1.0f), lobe.ior, wi) && wi->z < 0.0f;
+}
+
+}  // namespace gradus

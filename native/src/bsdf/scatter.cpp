@@ -1,0 +1,167 @@
+// Evaluating and sampling finished closures.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bsdf/closures.h"
+#include "bsdf/frame.h"
+#include "bsdf/lobe.h"
+
+namespace gradus {
+namespace {
+
+struct LobeFunctions {
+  EvaluateLobe evaluate;
+  SampleLobe sample;
+};
+// By LobeType; Dirac lobes have neither.
+constexpr std::array<LobeFunctions, static_cast<size_t>(LobeType::Count)> kFunctions = {{
+    {evaluate_diffuse, sample_diffuse},
+    {evaluate_translucent, sample_translucent},
+    {evaluate_sheen, sample_sheen},
+    {evaluate_ggx_reflection, sample_ggx_reflection},
+    {evaluate_ggx_refraction, sample_ggx_refraction},
+    {evaluate_ggx_glass, sample_ggx_glass},
+    {nullptr, nullptr},
+    {nullptr, nullptr},
+    {nullptr, nullptr},
+}};
+const LobeFunctions& functions_of(const Lobe& lobe) { return kFunctions[static_cast<size_t>(lobe.type)]; }
+
+// Glass counts as glossy on the side where it reflects, as in Cycles.
+size_t pass_of(const Lobe& lobe, bool transmitted) {
+  const bool reflecting_glass = !transmitted && (lobe.type == LobeType::GgxGlass || lobe.type == LobeType::DiracGlass);
+  return static_cast<size_t>(reflecting_glass && lobe.pass == LightPass::Transmission ? LightPass::Glossy : lobe.pass);
+}
+
+float stay_below_one(float u) { return std::min(u, 0.99999994f); }
+
+}  // namespace
+
+bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_normal_, wi) < 0.0f; }
+
+BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const {
+  const Lobe& source = lobes_[entry.lobe];
+  const Frame3 frame = make_frame(source.normal, source.tangent);
+  const Vec3 local = frame.to_local(wi);
+  // Shading and geometric side must agree: no light through walls, and a test that a shifted path meets in the same form.
+  if ((local.z < 0.0f) != transmitted) {
+    return {};
+  }
+  BsdfEval eval = functions_of(source).evaluate(source, frame.to_local(wo), local, entry.sides);
+  eval.pdf *= entry.probability;
+  return eval;
+}
+
+BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
+  const size_t k = static_cast<size_t>(c);
+  const bool transmitted = crosses(wi);
+  BsdfEval sum;
+  for (int i = 0; i < entry_count_[k]; i++) {
+    const Entry& entry = entries_[k][static_cast<size_t>(i)];
+    if (!entry.dirac) {
+      const BsdfEval part = evaluate_entry(entry, wo, wi, transmitted);
+      sum.value += part.value;
+      sum.pdf += part.pdf;
+    }
+  }
+  return sum;
+}
+
+std::array<Rgb, 3> Closures::evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
+  const size_t k = static_cast<size_t>(c);
+  const bool transmitted = crosses(wi);
+  std::array<Rgb, 3> sum{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
+  for (int i = 0; i < entry_count_[k]; i++) {
+    const Entry& entry = entries_[k][static_cast<size_t>(i)];
+    if (!entry.dirac) {
+      sum[pass_of(lobes_[entry.lobe], transmitted)] += evaluate_entry(entry, wo, wi, transmitted).value;
+    }
+  }
+  return sum;
+}
+
+bool Closures::evaluate_dirac(int index, const Vec3& wo, bool transmitted, BsdfSample* out) const {
+  const Lobe& source = lobe(index);
+  if (!is_dirac(source.type)) {
+    return false;
+  }
+  const size_t k = static_cast<size_t>(transmitted ? ScatterClass::Transmission : ScatterClass::Reflection);
+  const Frame3 frame = make_frame(source.normal, source.tangent);
+  Vec3 local;
+  for (int i = 0; i < entry_count_[k]; i++) {
+    const Entry& entry = entries_[k][static_cast<size_t>(i)];
+    if (entry.lobe != index || !dirac_direction(source, frame.to_local(wo), transmitted, &local, &out->value)) {
+      continue;
+    }
+    out->wi = glm::normalize(frame.to_world(local));
+    out->pdf = entry.probability;
+    out->dirac = true;
+    out->transmitted = transmitted;
+    out->eta = transmitted ? source.ior : 1.0f;
+    out->alpha = 0.0f;
+    out->lobe_normal = source.normal;
+    out->lobe = static_cast<uint8_t>(index);
+    return crosses(out->wi) == transmitted;
+  }
+  return false;
+}
+
+bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample* out) const {
+  const size_t k = static_cast<size_t>(c);
+  if (entry_count_[k] == 0) {
+    return false;
+  }
+  // Choose the entry; what is left of u_lobe chooses the side.
+  int chosen = 0;
+  float rest = u_lobe;
+  while (chosen < entry_count_[k] - 1 && rest >= entries_[k][static_cast<size_t>(chosen)].probability) {
+    rest -= entries_[k][static_cast<size_t>(chosen++)].probability;
+  }
+  const Entry& entry = entries_[k][static_cast<size_t>(chosen)];
+  if (entry.dirac) {
+    return evaluate_dirac(entry.lobe, wo, entry.sides == kTransmits, out);
+  }
+  const Lobe& source = lobes_[entry.lobe];
+  const Frame3 frame = make_frame(source.normal, source.tangent);
+  Vec3 local;
+  if (!functions_of(source).sample(source, frame.to_local(wo), stay_below_one(rest / entry.probability), u, entry.sides, &local)) {
+    return false;
+  }
+  out->wi = glm::normalize(frame.to_world(local));
+  const BsdfEval eval = evaluate(c, wo, out->wi);
+  out->value = eval.value;
+  out->pdf = eval.pdf;
+  out->dirac = false;
+  out->transmitted = crosses(out->wi);
+  out->eta = out->transmitted && is_microfacet(source.type) ? source.ior : 1.0f;
+  out->alpha = is_microfacet(source.type) ? std::min(source.alpha_x, source.alpha_y) : 1.0f;
+  out->lobe_normal = source.normal;
+  out->lobe = entry.lobe;
+  return eval.pdf > 0.0f && is_finite(eval.pdf) && is_finite(eval.value);
+}
+
+Rgb Closures::albedo(LightPass pass, const Vec3& wo) const {
+  Rgb sum(0.0f);
+  for (int i = 0; i < count_; i++) {
+    const Frame3 frame = make_frame(lobe(i).normal, lobe(i).tangent);
+    const LobeAlbedo albedo = two_sided_albedo(lobe(i), frame.to_local(wo));
+    sum += pass_of(lobe(i), false) == static_cast<size_t>(pass) ? albedo.reflected : Rgb(0.0f);
+    sum += pass_of(lobe(i), true) == static_cast<size_t>(pass) ? albedo.transmitted : Rgb(0.0f);
+  }
+  return sum;
+}
+
+Rgb Closures::albedo(const Vec3& wo) const {
+  return albedo(LightPass::Diffuse, wo) + albedo(LightPass::Glossy, wo) + albedo(LightPass::Transmission, wo);
+}
+
+Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo) {
+  const Vec3 geometric_normal = glm::dot(lobe.normal, wo) < 0.0f ? -lobe.normal : lobe.normal;
+  Closures closures;
+  *closures.add() = lobe;
+  closures.finish(wo, geometric_normal, 0.0f);
+  return closures.albedo(wo);
+}
+
+}  // namespace gradus

@@ -1,0 +1,33 @@
+// Shading normals that agree with the geometry as far as mirrors need.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/types.h"
+
+namespace gradus {
+
+// Tilts `normal` (unit, on the side of geometric_normal) towards geometric_normal just so far that the mirror direction of wo stays
+// above the geometric surface; otherwise bumps at grazing view turn black. All unit; wo on the side of geometric_normal.
+// With N = sinφ·X + cosφ·Z, wo = a·X + c·Z + …, the mirror direction's Z part is a·sin2φ + c·cos2φ = |(a,c)|·cos(2φ − atan2(a, c)).
+inline Vec3 keep_reflection_above(const Vec3& normal, const Vec3& geometric_normal, const Vec3& wo) {
+  const float c = glm::dot(wo, geometric_normal);
+  const float lowest = std::min(0.9f * c, 0.01f);
+  const float reflected = 2.0f * glm::dot(normal, wo) * glm::dot(normal, geometric_normal) - c;
+  if (reflected >= lowest) {
+    return normal;
+  }
+  const Vec3 across = normal - geometric_normal * glm::dot(normal, geometric_normal);
+  const float length2 = glm::dot(across, across);
+  if (!(length2 > 1e-12f)) {
+    return geometric_normal;
+  }
+  const Vec3 x = across / std::sqrt(length2);
+  const float a = glm::dot(wo, x);
+  const float radius = std::sqrt(a * a + c * c);
+  const float phi = 0.5f * (std::atan2(a, c) + std::acos(std::clamp(lowest / std::max(radius, 1e-12f), -1.0f, 1.0f)));
+  return glm::normalize(std::sin(phi) * x + std::cos(phi) * geometric_normal);
+}
+
+}  // namespace gradus

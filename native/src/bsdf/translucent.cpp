@@ -1,0 +1,21 @@
+// Lambert on the far side.
+#include "bsdf/lobe.h"
+#include "bsdf/warp.h"
+
+namespace gradus {
+
+BsdfEval evaluate_translucent(const Lobe& lobe, const Vec3&, const Vec3& wi, uint8_t) {
+  if (!(wi.z < 0.0f)) {
+    return {};
+  }
+  const float pdf = -wi.z * kInvPi;
+  return {lobe.weight * pdf, pdf};
+}
+
+bool sample_translucent(const Lobe&, const Vec3&, float, const Vec2& u, uint8_t, Vec3* wi) {
+  *wi = sample_cosine_hemisphere(u);
+  wi->z = -wi->z;
+  return true;
+}
+
+}  // namespace gradus

@@ -1,0 +1,18 @@
+// Unit square to directions around +z.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/types.h"
+
+namespace gradus {
+
+// Density cos/π. Polar disk map, lifted (Malley).
+inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
+  const float radius = std::sqrt(u.x);
+  const float phi = 2.0f * kPi * u.y;
+  return Vec3(radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u.x)));
+}
+
+}  // namespace gradus

@@ -1,0 +1,116 @@
+// A2: no closure makes energy, and those that should lose none lose none.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bsdf/closures.h"
+#include "bsdf/lobe_cases.h"
+#include "support/chi_square.h"
+
+namespace gradus::testing {
+namespace {
+
+// Mean of value/(pdf·P(class)) under uniform light: the directional albedo.
+Rgb measured_albedo(const Closures& closures, const Vec3& wo, int samples, uint64_t seed) {
+  Random random(seed);
+  Rgb sum(0.0f);
+  for (int i = 0; i < samples; i++) {
+    float choice = random.get();
+    const float u_lobe = random.get();
+    // Stratified: the bound of 1 % needs less noise than 16,384 independent samples have.
+    const int side = static_cast<int>(std::sqrt(static_cast<double>(samples)));
+    const Vec2 u((static_cast<float>(i % side) + random.get()) / static_cast<float>(side),
+                 (static_cast<float>(i / side % side) + random.get()) / static_cast<float>(side));
+    for (int c = 0; c < kScatterClasses; c++) {
+      const ScatterClass k = static_cast<ScatterClass>(c);
+      const float p = closures.class_probability(k);
+      if (choice < p) {
+        BsdfSample s;
+        if (closures.sample(k, wo, u_lobe, u, &s)) {
+          EXPECT_TRUE(is_finite(s.value) && s.pdf > 0.0f && is_finite(s.pdf));
+          sum += s.value / (s.pdf * p);
+        }
+        break;
+      }
+      choice -= p;
+    }
+  }
+  return sum / static_cast<float>(samples);
+}
+
+constexpr int kSamples = 16384;
+constexpr float kCosines[] = {1.0f, 0.8f, 0.6f, 0.4f, 0.3f, 0.2f, 0.1f, 0.03f, 0.01f, 1e-3f};
+
+void check(const LobeCase& test, float threshold) {
+  for (int i = 0; i < 10; i++) {
+    const Vec3 wo = tilted_direction(kCosines[i], static_cast<float>(i));
+    const Closures closures = finished(test.lobe, wo, threshold);
+    const Rgb measured = measured_albedo(closures, wo, kSamples, 17 + static_cast<uint64_t>(i));
+    EXPECT_LE(max_component(measured), 1.01f) << test.name << " at cosine " << kCosines[i];
+    if (test.lossless) {
+      EXPECT_GE(mean_component(measured), 0.99f) << test.name << " at cosine " << kCosines[i];
+    }
+  }
+}
+
+TEST(A2_WhiteFurnace, Diffuse) {
+  for (const LobeCase& test : diffuse_cases()) {
+    check(test, 0.1f);
+  }
+}
+
+TEST(A2_WhiteFurnace, Microfacets) {
+  for (const float roughness : {0.0f, 1e-4f, 0.05f, 0.5f, 1.0f}) {
+    for (const LobeCase& test : microfacet_cases(roughness)) {
+      SCOPED_TRACE(roughness);
+      check(test, 0.1f);
+    }
+  }
+}
+
+TEST(A2_WhiteFurnace, DiracIsLossless) {
+  for (const FresnelType fresnel : {FresnelType::None, FresnelType::Dielectric}) {
+    for (const float ior : {1.0f, 1.5f, 0.6f, 3.0f}) {
+      check({"DiracGlass", make_lobe(LobeType::DiracGlass, 0.0f, fresnel, ior), true}, 0.1f);
+    }
+  }
+  check({"Mirror", make_lobe(LobeType::DiracReflection), true}, 0.1f);
+}
+
+// The classes share one lobe's energy: the same albedo whether glass is one rough class or two specular ones.
+TEST(A2_WhiteFurnace, ClassesDoNotChangeEnergy) {
+  const Lobe glass = make_lobe(LobeType::GgxGlass, 0.25f, FresnelType::Dielectric, 1.5f);
+  for (const float cosine : {1.0f, 0.5f, 0.1f}) {
+    const Vec3 wo = tilted_direction(cosine, 1.0f);
+    const float together = measured_albedo(finished(glass, wo, 0.1f), wo, kSamples, 5).x;
+    const float apart = measured_albedo(finished(glass, wo, 0.5f), wo, kSamples, 6).x;
+    EXPECT_NEAR(together, apart, 0.01f);
+  }
+}
+
+// Tables against sampling: they serve layering, colour passes and compensation.
+TEST(A2_WhiteFurnace, TabulatedAlbedo) {
+  std::vector<LobeCase> cases = diffuse_cases();
+  for (const float roughness : {0.0f, 0.05f, 0.3f, 0.5f, 0.7f, 1.0f}) {
+    for (const LobeCase& test : microfacet_cases(roughness)) {
+      cases.push_back(test);
+      cases.back().name += " roughness " + std::to_string(roughness);
+    }
+  }
+  for (const LobeCase& test : cases) {
+    if (test.name == "OrenNayar" || test.name.starts_with("Anisotropic")) {
+      continue;  // their albedo is an estimate
+    }
+    for (const float cosine : {1.0f, 0.7f, 0.4f, 0.2f, 0.1f, 0.03f}) {
+      const Vec3 wo = tilted_direction(cosine, 2.0f);
+      const Closures closures = finished(test.lobe, wo);
+      const Rgb measured = measured_albedo(closures, wo, kSamples, 3);
+      const Rgb table = closures.albedo(wo);
+      EXPECT_LE(max_component(glm::abs(measured - table)), 0.012f)
+          << test.name << " cosine " << cosine << " measured " << measured.x << " table " << table.x;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gradus::testing

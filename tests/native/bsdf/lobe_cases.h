@@ -1,0 +1,88 @@
+// Lobes that the statistical tests of closures share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bsdf/closures.h"
+
+namespace gradus::testing {
+
+struct LobeCase {
+  std::string name;
+  Lobe lobe;
+  bool lossless = false;  // gives back all energy: albedo at least 0.99
+};
+
+inline Lobe make_lobe(LobeType type, float alpha = 0.0f, FresnelType fresnel = FresnelType::None, float ior = 1.0f) {
+  Lobe lobe;
+  lobe.type = type;
+  lobe.fresnel = fresnel;
+  lobe.weight = Rgb(1.0f);
+  lobe.alpha_x = lobe.alpha_y = alpha;
+  lobe.ior = ior;
+  return lobe;
+}
+
+inline std::vector<LobeCase> diffuse_cases() {
+  std::vector<LobeCase> cases = {{"Lambert", make_lobe(LobeType::Diffuse), true},
+                                 {"OrenNayar", make_lobe(LobeType::Diffuse, 1.0f), false},
+                                 {"EON", make_lobe(LobeType::Diffuse, 1.0f), true},
+                                 {"Translucent", make_lobe(LobeType::Translucent), true},
+                                 {"Sheen", make_lobe(LobeType::Sheen, 0.5f), false},
+                                 {"SheenSmooth", make_lobe(LobeType::Sheen, 0.1f), false},
+                                 {"SheenGrazing", make_lobe(LobeType::Sheen, 0.0f, FresnelType::Schlick), false}};
+  cases[2].lobe.multiscatter = true;
+  return cases;
+}
+
+// One of each kind for a roughness (Blender's: alpha is its square).
+inline std::vector<LobeCase> microfacet_cases(float roughness) {
+  const float alpha = roughness * roughness;
+  std::vector<LobeCase> cases = {
+      {"Reflection", make_lobe(LobeType::GgxReflection, alpha), false},
+      {"ReflectionMultiscatter", make_lobe(LobeType::GgxReflection, alpha), true},
+      {"ReflectionDielectric", make_lobe(LobeType::GgxReflection, alpha, FresnelType::Dielectric, 1.5f), false},
+      {"ReflectionSchlick", make_lobe(LobeType::GgxReflection, alpha, FresnelType::Schlick, 1.5f), false},
+      {"ReflectionMetal", make_lobe(LobeType::GgxReflection, alpha, FresnelType::PrincipledMetal), false},
+      {"Refraction", make_lobe(LobeType::GgxRefraction, alpha, FresnelType::None, 1.45f), false},
+      {"Glass", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.5f), false},
+      {"GlassInside", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.0f / 1.5f), false},
+      {"GlassDense", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 3.0f), false},
+      {"GlassMultiscatter", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.5f), true},
+      {"GlassMultiscatterInside", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.0f / 1.5f), true},
+      {"GlassWithoutStep", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.0f), true},
+      {"Anisotropic", make_lobe(LobeType::GgxReflection, alpha), false},
+  };
+  cases[1].lobe.multiscatter = true;
+  cases[3].lobe.f0 = Rgb(0.04f, 0.1f, 0.2f);
+  cases[4].lobe.f0 = Rgb(0.9f, 0.6f, 0.3f);
+  cases[4].lobe.f90 = Rgb(0.8f);
+  cases[4].lobe.multiscatter = true;
+  cases[9].lobe.multiscatter = true;
+  cases[10].lobe.multiscatter = true;
+  cases[12].lobe.alpha_x = alpha * 2.0f;
+  cases[12].lobe.alpha_y = alpha * 0.5f;
+  return cases;
+}
+
+// A frame that is not the world's.
+inline const Vec3 kTestNormal = glm::normalize(Vec3(0.3f, -0.5f, 0.8f));
+
+inline Vec3 tilted_direction(float cosine, float azimuth) {
+  const Vec3 x = glm::normalize(glm::cross(Vec3(0, 1, 0), kTestNormal));
+  const Vec3 y = glm::cross(kTestNormal, x);
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+  return glm::normalize(sine * std::cos(azimuth) * x + sine * std::sin(azimuth) * y + cosine * kTestNormal);
+}
+
+inline Closures finished(Lobe lobe, const Vec3& wo, float threshold = 0.1f) {
+  Closures closures;
+  lobe.normal = kTestNormal;
+  lobe.tangent = Vec3(0, 1, 0);
+  *closures.add() = lobe;
+  closures.finish(wo, kTestNormal, threshold);
+  return closures;
+}
+
+}  // namespace gradus::testing
