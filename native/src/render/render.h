@@ -1,32 +1,42 @@
 // The loop (contract 1.8): plan, batches, frame, reconstruction, error, next batch. It alone loops; it owns cancel, progress, clock.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "frame/frame.h"
 #include "gradus/gradus.h"
+#include "integrator/integrator.h"
 #include "scene/snapshot.h"
 
 namespace gradus {
 
 class Device;
 
+// Makes the integrator of a plan: `integrator` is a GradusIntegrator, never AUTO. Tests bring their own.
+using IntegratorFactory = std::function<std::unique_ptr<Integrator>(const IntegratorContext& context, uint32_t integrator)>;
+std::unique_ptr<Integrator> make_integrator(const IntegratorContext& context, uint32_t integrator);
+
 class Render {
  public:
-  // Starts on a thread of its own. Throws invalid_argument for settings that cannot be obeyed (contract 5.1).
-  Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
+  // Starts on a thread of its own. Throws invalid_argument for settings that cannot be obeyed (contract 5.1). resumed: go on from its
+  // samples; invalid_argument if its keys or planes differ. device: for the number of threads; may be nullptr if settings.threads is set.
+  Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
+         std::shared_ptr<const Frame> resumed = nullptr, const IntegratorFactory& factory = make_integrator);
   ~Render();  // cancels and waits
   Render(const Render&) = delete;
   Render& operator=(const Render&) = delete;
 
   GradusProgress progress() const;
   void cancel();
-  // False: still running after `seconds`. Rethrows nothing; see failure().
+  // False: still running after `seconds` (negative: no limit). Rethrows nothing; see outcome().
   bool wait(double seconds);
   GradusError outcome(std::string* text) const;  // OK, CANCELLED or the failure, once ended
+  // The delivered region; may be called while sampling: then Combined is the noisy image so far, and 0 before the first sample.
   void read_pass(uint32_t pass, float* pixels, size_t count) const;
+  // Throw invalid_operation while running.
   std::string stats_json() const;
   std::shared_ptr<const Frame> frame() const;
 

@@ -1,0 +1,40 @@
+// gradus_device_*
+#include "base/device.h"
+
+#include "api/arrays.h"
+#include "api/guard.h"
+#include "api/objects.h"
+#include "api/structs.h"
+#include "color/color.h"
+
+using namespace gradus;
+
+GradusError gradus_device_create(const GradusDeviceSettings* settings, GradusDevice* device) {
+  return api::guard([&] {
+    api::require(device, "device") = 0;
+    const GradusDeviceSettings copy = settings ? api::read_struct(settings, "settings") : GradusDeviceSettings{};
+    *device = api::add_handle(std::make_shared<Device>(copy));
+  });
+}
+
+GradusError gradus_device_release(GradusDevice device) {
+  return api::guard([&] { api::remove_handle<Device>(device); });
+}
+
+GradusError gradus_device_warning(GradusDevice device, const char** text) {
+  return api::guard([&] {
+    api::require(text, "text") = nullptr;
+    thread_local std::string taken;  // valid until the thread's next call
+    if (api::find_handle<Device>(device)->take_warning(&taken)) *text = taken.c_str();
+  });
+}
+
+GradusError gradus_device_set_color_space(GradusDevice device, const GradusColorSpace* space) {
+  return api::guard([&] {
+    const auto object = api::find_handle<Device>(device);
+    const GradusColorSpace copy = api::read_struct(space, "space");
+    if (!copy.name) throw invalid_argument("space.name is NULL");
+    api::check_array(copy.curve, copy.curve_count, "space.curve");
+    object->color().set_override(copy);
+  });
+}

@@ -1,0 +1,114 @@
+// gradus_frame_*
+#include "frame/frame.h"
+
+#include "api/arrays.h"
+#include "api/guard.h"
+#include "api/objects.h"
+#include "frame/store.h"
+#include "render/combine.h"
+#include "render/pass_read.h"
+#include "render/pass_table.h"
+#include "render/resume.h"
+
+using namespace gradus;
+
+namespace gradus::api {
+namespace {
+
+// What was asked for, without the guard ring.
+Region delivered(const Frame& frame) {
+  const uint32_t* r = frame.settings.region;
+  if (r[2] == 0 && r[3] == 0) return frame.region;
+  return {int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
+}
+
+void check_count(size_t count, const Region& region, uint32_t channels) {
+  const size_t expected = size_t(region.area()) * channels;
+  if (count != expected)
+    throw invalid_argument("expected " + std::to_string(expected) + " floats, " + std::to_string(count) + " were given");
+}
+
+uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
+  switch (reconstruction) {
+    case GRADUS_RECONSTRUCTION_AUTO:
+      return frame.gradients ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE;
+    case GRADUS_RECONSTRUCTION_NONE:
+    case GRADUS_RECONSTRUCTION_L2:
+    case GRADUS_RECONSTRUCTION_L1:
+      return reconstruction;
+    case GRADUS_RECONSTRUCTION_WEIGHTED:
+    case GRADUS_RECONSTRUCTION_REGULARIZED:
+      throw unsupported("this reconstruction does not work yet: use l2, l1, none or auto");
+    default:
+      throw invalid_argument("there is no reconstruction " + std::to_string(reconstruction));
+  }
+}
+
+}  // namespace
+}  // namespace gradus::api
+
+GradusError gradus_frame_save(GradusFrame frame, const char* path) {
+  return api::guard([&] { save_frame(*api::find_handle<api::FrameObject>(frame)->get(), &api::require(path, "path")); });
+}
+
+GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame* frame) {
+  return api::guard([&] {
+    api::require(frame, "frame") = 0;
+    api::find_handle<Device>(device);
+    auto object = std::make_shared<api::FrameObject>();
+    object->frame = load_frame(&api::require(path, "path"));
+    *frame = api::add_handle(std::move(object));
+  });
+}
+
+GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other) {
+  return api::guard([&] {
+    const auto to = api::find_handle<api::FrameObject>(frame);
+    const std::shared_ptr<const Frame> from = api::find_handle<api::FrameObject>(other)->get();
+    const std::lock_guard lock(to->mutex);
+    auto merged = std::make_shared<Frame>(*to->frame);
+    merge_frames(merged.get(), *from);
+    to->frame = std::move(merged);
+  });
+}
+
+GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height) {
+  return api::guard([&] {
+    const Region region = api::delivered(*api::find_handle<api::FrameObject>(frame)->get());
+    api::require(width, "width") = uint32_t(region.width());
+    api::require(height, "height") = uint32_t(region.height());
+  });
+}
+
+GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, float* rgba, size_t count) {
+  return api::guard([&] {
+    const auto object = api::find_handle<api::FrameObject>(frame)->get();
+    const Region region = api::delivered(*object);
+    api::check_count(count, region, 4);
+    api::check_array(rgba, count, "rgba");
+    if (!(alpha >= 1e-3f && alpha <= 1e3f)) throw invalid_argument("alpha is not between 0.001 and 1000");
+    SolveReport report;
+    const std::vector<float> image = combine(
+        *object, api::resolve(reconstruction, *object), alpha, region, [] { return false; }, &report);
+    std::copy(image.begin(), image.end(), rgba);
+  });
+}
+
+GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count) {
+  return api::guard([&] {
+    const auto object = api::find_handle<api::FrameObject>(frame)->get();
+    const Region region = api::delivered(*object);
+    api::check_count(count, region, pass_info(pass).channels);
+    api::check_array(pixels, count, "pixels");
+    if (pass != GRADUS_PASS_COMBINED) return read_frame_pass(*object, pass, region, pixels);
+    SolveReport report;
+    const GradusSettings& s = object->settings;
+    const std::vector<float> image = combine(
+        *object, api::resolve(s.reconstruction, *object), s.reconstruction_alpha, region, [] { return false; }, &report);
+    std::copy(image.begin(), image.end(), pixels);
+  });
+}
+
+GradusError gradus_frame_release(GradusFrame frame) {
+  return api::guard([&] { api::remove_handle<api::FrameObject>(frame); });
+}

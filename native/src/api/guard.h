@@ -1,0 +1,28 @@
+// The wrapper around every function of the C API: no exception gets out.
+#pragma once
+
+#include <utility>
+
+#include "api/error_slot.h"
+#include "base/error.h"
+
+namespace gradus::api {
+
+template <class Function>
+GradusError guard(Function&& function) noexcept {
+  try {
+    std::forward<Function>(function)();
+    return GRADUS_OK;
+  } catch (...) {
+    return record_current_exception();
+  }
+}
+
+template <class T>
+T& require(T* pointer, const char* name) {
+  if (!pointer) throw invalid_argument(std::string(name) + " is NULL");
+  if (reinterpret_cast<uintptr_t>(pointer) % alignof(T) != 0) throw invalid_argument(std::string(name) + " is misaligned");
+  return *pointer;
+}
+
+}  // namespace gradus::api

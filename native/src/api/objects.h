@@ -1,0 +1,62 @@
+// What the handles of the C API stand for.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "api/registry.h"
+#include "base/device.h"
+#include "frame/frame.h"
+#include "render/render.h"
+#include "scene/scene.h"
+
+namespace gradus::api {
+
+class SceneRecorder;  // api/recorder.h
+
+struct SceneObject {
+  explicit SceneObject(const std::shared_ptr<Device>& device);
+  ~SceneObject();
+  std::mutex mutex;  // calls of one scene wait for each other
+  Scene scene;
+  std::unique_ptr<SceneRecorder> recorder;  // nullptr: not recording
+};
+
+struct RenderObject {
+  RenderObject(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
+               std::shared_ptr<const Frame> resumed)
+      : render(std::move(device), std::move(snapshot), settings, std::move(resumed)) {}
+  Render render;
+  std::mutex mutex;
+  std::string stats;  // kept for the caller until release
+};
+
+// Frames of renders are shared and immutable; merging replaces the frame by a new one.
+struct FrameObject {
+  std::mutex mutex;
+  std::shared_ptr<const Frame> frame;
+  std::shared_ptr<const Frame> get() {
+    const std::lock_guard lock(mutex);
+    return frame;
+  }
+};
+
+template <>
+struct HandleOf<Device> {
+  static constexpr HandleType type = HandleType::Device;
+};
+template <>
+struct HandleOf<SceneObject> {
+  static constexpr HandleType type = HandleType::Scene;
+};
+template <>
+struct HandleOf<RenderObject> {
+  static constexpr HandleType type = HandleType::Render;
+};
+template <>
+struct HandleOf<FrameObject> {
+  static constexpr HandleType type = HandleType::Frame;
+};
+
+}  // namespace gradus::api

@@ -1,0 +1,60 @@
+// gradus_option*, gradus_settings_*, gradus_pass_info
+#include "render/options.h"
+
+#include "api/guard.h"
+#include "api/structs.h"
+#include "render/pass_table.h"
+
+using namespace gradus;
+
+namespace gradus::api {
+namespace {
+
+GradusOptionInfo describe(const Option& option) {
+  GradusOptionInfo info{};
+  info.type = option.type;
+  info.name = option.name;
+  info.doc = option.doc;
+  info.default_value = option.default_value;
+  info.minimum = option.minimum;
+  info.maximum = option.maximum;
+  info.choices = option.choices;
+  return info;
+}
+
+}  // namespace
+}  // namespace gradus::api
+
+uint32_t gradus_option_count(void) { return static_cast<uint32_t>(options().size()); }
+
+GradusError gradus_option(uint32_t index, GradusOptionInfo* info) {
+  return api::guard([&] {
+    if (index >= options().size()) throw invalid_argument("there is no option " + std::to_string(index));
+    api::write_struct(info, api::describe(options()[index]), "info");
+  });
+}
+
+GradusError gradus_settings_default(GradusSettings* settings) {
+  return api::guard([&] { api::write_struct(settings, default_settings(), "settings"); });
+}
+
+GradusError gradus_settings_parse(GradusSettings* settings, const char* name, const char* value) {
+  return api::guard([&] {
+    const Option* option = find_option(&api::require(name, "name"));
+    if (!option) throw invalid_argument("there is no option " + std::string(name));
+    GradusSettings copy = api::read_struct(settings, "settings", default_settings());
+    set_option(&copy, *option, parse_option(*option, &api::require(value, "value")));
+    if (option->offset + sizeof(uint32_t) > api::struct_size_of<GradusSettings>(settings, "settings")) {
+      throw invalid_argument("option " + std::string(option->name) + " is newer than the caller's GradusSettings");
+    }
+    api::write_struct(settings, copy, "settings");
+  });
+}
+
+GradusError gradus_pass_info(uint32_t pass, const char** name, uint32_t* channels) {
+  return api::guard([&] {
+    const PassInfo& info = pass_info(pass);
+    if (name) *name = info.name;
+    if (channels) *channels = info.channels;
+  });
+}

@@ -1,0 +1,59 @@
+// Handles: a freed, foreign or invented number is refused, never followed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace gradus::api {
+
+enum class HandleType : uint8_t { Device = 1, Scene = 2, Render = 3, Frame = 4 };
+
+// A handle is type (8 bit) | generation of the slot (24 bit) | slot + 1 (32 bit). A slot's generation rises with each removal, so that a
+// freed handle stays invalid when the slot is used again.
+class Registry {
+ public:
+  uint64_t add(HandleType type, std::shared_ptr<void> object);
+  // Throw invalid_argument with a text that says what is wrong with the handle.
+  std::shared_ptr<void> find(HandleType type, uint64_t handle) const;
+  std::shared_ptr<void> remove(HandleType type, uint64_t handle);
+  size_t size() const;
+
+ private:
+  struct Slot {
+    std::shared_ptr<void> object;
+    uint32_t generation = 1;
+    HandleType type = HandleType::Device;
+  };
+  // Index of the slot that the handle names. Call with the lock held.
+  size_t locate(HandleType type, uint64_t handle) const;
+
+  mutable std::mutex mutex_;
+  std::vector<Slot> slots_;
+  std::vector<uint32_t> free_;
+};
+
+// The one registry of the process: handles come from callers that know nothing else of us.
+Registry& registry();
+
+// Which type of handle stands for which class.
+template <class T>
+struct HandleOf;
+
+template <class T>
+uint64_t add_handle(std::shared_ptr<T> object) {
+  return registry().add(HandleOf<T>::type, std::move(object));
+}
+
+template <class T>
+std::shared_ptr<T> find_handle(uint64_t handle) {
+  return std::static_pointer_cast<T>(registry().find(HandleOf<T>::type, handle));
+}
+
+template <class T>
+std::shared_ptr<T> remove_handle(uint64_t handle) {
+  return std::static_pointer_cast<T>(registry().remove(HandleOf<T>::type, handle));
+}
+
+}  // namespace gradus::api

@@ -1,0 +1,88 @@
+// gradus_render_*
+#include "render/render.h"
+
+#include "api/arrays.h"
+#include "api/guard.h"
+#include "api/objects.h"
+#include "api/structs.h"
+#include "render/options.h"
+
+using namespace gradus;
+
+namespace gradus::api {
+namespace {
+
+std::shared_ptr<RenderObject> start(GradusScene scene, const GradusSettings* settings, std::shared_ptr<const Frame> resumed) {
+  const GradusSettings copy = read_struct(settings, "settings", default_settings());
+  const auto object = find_handle<SceneObject>(scene);
+  const std::lock_guard lock(object->mutex);
+  std::shared_ptr<const Snapshot> snapshot = object->scene.snapshot();
+  if (!snapshot) throw invalid_operation("the scene was not committed");
+  return std::make_shared<RenderObject>(object->scene.device(), std::move(snapshot), copy, std::move(resumed));
+}
+
+}  // namespace
+}  // namespace gradus::api
+
+GradusError gradus_render_start(GradusScene scene, const GradusSettings* settings, GradusRender* render) {
+  return api::guard([&] {
+    api::require(render, "render") = 0;
+    *render = api::add_handle(api::start(scene, settings, nullptr));
+  });
+}
+
+GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFrame frame, GradusRender* render) {
+  return api::guard([&] {
+    api::require(render, "render") = 0;
+    *render = api::add_handle(api::start(scene, settings, api::find_handle<api::FrameObject>(frame)->get()));
+  });
+}
+
+GradusError gradus_render_poll(GradusRender render, GradusProgress* progress) {
+  return api::guard([&] { api::write_struct(progress, api::find_handle<api::RenderObject>(render)->render.progress(), "progress"); });
+}
+
+GradusError gradus_render_cancel(GradusRender render) {
+  return api::guard([&] { api::find_handle<api::RenderObject>(render)->render.cancel(); });
+}
+
+GradusError gradus_render_wait(GradusRender render, double seconds) {
+  return api::guard([&] {
+    const auto object = api::find_handle<api::RenderObject>(render);
+    if (!object->render.wait(seconds)) throw invalid_operation("the render is still running");
+    std::string text;
+    const GradusError code = object->render.outcome(&text);
+    if (code != GRADUS_OK) throw Error(code, text);
+  });
+}
+
+GradusError gradus_render_release(GradusRender render) {
+  return api::guard([&] { api::remove_handle<api::RenderObject>(render); });
+}
+
+GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* pixels, size_t count) {
+  return api::guard([&] {
+    const auto object = api::find_handle<api::RenderObject>(render);
+    api::check_array(pixels, count, "pixels");
+    object->render.read_pass(pass, pixels, count);
+  });
+}
+
+GradusError gradus_render_stats(GradusRender render, const char** json) {
+  return api::guard([&] {
+    api::require(json, "json") = nullptr;
+    const auto object = api::find_handle<api::RenderObject>(render);
+    const std::lock_guard lock(object->mutex);
+    if (object->stats.empty()) object->stats = object->render.stats_json();
+    *json = object->stats.c_str();
+  });
+}
+
+GradusError gradus_render_frame(GradusRender render, GradusFrame* frame) {
+  return api::guard([&] {
+    api::require(frame, "frame") = 0;
+    auto object = std::make_shared<api::FrameObject>();
+    object->frame = api::find_handle<api::RenderObject>(render)->render.frame();
+    *frame = api::add_handle(std::move(object));
+  });
+}

@@ -1,0 +1,29 @@
+// Arguments of gradus_scene_set_*: complete structs (older callers), checked pointers, counts and enums; texts that may be NULL become "".
+// What the arrays say is judged by the scene itself.
+#pragma once
+
+#include <vector>
+
+#include "gradus/gradus.h"
+
+namespace gradus::api {
+
+struct MeshArgs {
+  explicit MeshArgs(const GradusMesh* from);
+  GradusMesh mesh;
+  std::vector<GradusAttribute> attributes;
+};
+
+struct ImageArgs {
+  explicit ImageArgs(const GradusImage* from);
+  GradusImage image;
+  std::vector<GradusImageTile> tiles;
+};
+
+GradusMaterial read_material(const GradusMaterial* from);
+GradusInstances read_instances(const GradusInstances* from);
+std::vector<GradusLight> read_lights(const GradusLight* from, size_t count);
+GradusCamera read_camera(const GradusCamera* from);
+GradusWorld read_world(const GradusWorld* from);
+
+}  // namespace gradus::api

@@ -1,0 +1,17 @@
+// Frames in files: OpenEXR with all sums, counts and halves, so that a frame can be reconstructed, merged and gone on from later
+// (contract 7.2).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// Writes PATH as a whole or not at all: under a temporary name beside it, synced, then renamed. Throws Error with path and cause.
+void save_frame(const Frame& frame, const std::string& path);
+// Throws invalid_argument with path and cause for a file that is missing, damaged or no frame.
+std::shared_ptr<const Frame> load_frame(const std::string& path);
+
+}  // namespace gradus

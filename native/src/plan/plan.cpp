@@ -1,0 +1,136 @@
+#include "plan/plan.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "render/options.h"
+#include "render/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// Below this the variance estimated from two halves says too little (contract 5.3).
+constexpr uint32_t kFirstCheck = 16;
+
+std::string choice_of(const char* option, uint32_t value) { return choice_name(*find_option(option), value); }
+
+void choose_integrator(const GradusSettings& settings, Plan* plan) {
+  switch (settings.integrator) {
+    case GRADUS_INTEGRATOR_BIDIRECTIONAL:
+      throw unsupported("integrator bidirectional does not work yet: use gradient, path or auto");
+    case GRADUS_INTEGRATOR_METROPOLIS:
+      throw unsupported("integrator metropolis does not work yet: use gradient, path or auto");
+    case GRADUS_INTEGRATOR_PATH:
+      plan->integrator = GRADUS_INTEGRATOR_PATH;
+      break;
+    default:
+      plan->integrator = GRADUS_INTEGRATOR_GRADIENT;
+      break;
+  }
+  plan->gradients = plan->integrator == GRADUS_INTEGRATOR_GRADIENT;
+  const bool automatic = settings.integrator == GRADUS_INTEGRATOR_AUTO;
+  plan->chosen.emplace_back("integrator " + choice_of("integrator", plan->integrator),
+                            automatic ? "automatic: gradients help wherever light varies smoothly" : "set by the user");
+  if (!plan->gradients) plan->skipped.emplace_back("gradients", "the integrator is path");
+}
+
+void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
+  const uint32_t asked = settings.reconstruction;
+  if (asked == GRADUS_RECONSTRUCTION_WEIGHTED || asked == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    throw unsupported("reconstruction " + choice_of("reconstruction", asked) + " does not work yet: use l2, l1, none or auto");
+  }
+  const bool needs_gradients = asked == GRADUS_RECONSTRUCTION_L2 || asked == GRADUS_RECONSTRUCTION_L1;
+  if (needs_gradients && !plan->gradients) {
+    throw invalid_argument("reconstruction " + choice_of("reconstruction", asked) + " needs gradients, but the integrator is path: use " +
+                           "integrator gradient or reconstruction none");
+  }
+  plan->reconstruction = asked;
+  if (asked == GRADUS_RECONSTRUCTION_AUTO) {
+    plan->reconstruction = plan->gradients ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE;
+  }
+  plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
+  const char* why = asked != GRADUS_RECONSTRUCTION_AUTO ? "set by the user" : "automatic: exact and unbiased";
+  if (plan->solves) {
+    plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
+  } else {
+    plan->skipped.emplace_back("reconstruction",
+                               plan->gradients ? "reconstruction is none: the noisy image is delivered" : "there are no gradients");
+  }
+}
+
+void choose_region(const GradusSettings& settings, Plan* plan) {
+  const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
+  const uint32_t* r = settings.region;
+  const bool whole = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
+  if (!whole && (r[0] >= r[2] || r[1] >= r[3] || r[2] > settings.width || r[3] > settings.height)) {
+    throw invalid_argument("the region is empty or reaches beyond the frame");
+  }
+  plan->delivered = whole ? full : Region{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
+  plan->sampled = plan->delivered;
+  if (plan->solves) {
+    plan->sampled.x0 = std::max(full.x0, plan->delivered.x0 - kGuardRing);
+    plan->sampled.y0 = std::max(full.y0, plan->delivered.y0 - kGuardRing);
+    plan->sampled.x1 = std::min(full.x1, plan->delivered.x1 + kGuardRing);
+    plan->sampled.y1 = std::min(full.y1, plan->delivered.y1 + kGuardRing);
+  }
+  if (plan->sampled.area() > plan->delivered.area()) {
+    plan->chosen.emplace_back("guard ring of 35 pixels",
+                              "the region is a part of the frame, and its reconstruction must not feel the border");
+  }
+}
+
+void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* plan) {
+  if (!(snapshot.camera.aperture_radius > 0.0f)) plan->skipped.emplace_back("lens samples", "the camera is a pinhole");
+  if (!snapshot.features.has_transparent_shadows) plan->skipped.emplace_back("transparent shadows", "no material is transparent");
+  if (!snapshot.features.has_specular)
+    plan->skipped.emplace_back("half-vector shifts", "no material is sharper than the roughness threshold");
+  if (!snapshot.features.has_emitters) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
+  if (!settings.film_transparent) plan->skipped.emplace_back("alpha channel", "the film is opaque");
+}
+
+void list_passes(const GradusSettings& settings, Plan* plan) {
+  std::string names;
+  for (uint32_t pass = GRADUS_PASS_NOISY_IMAGE; pass < GRADUS_PASS_COUNT; ++pass) {
+    if (wants(settings.passes, pass)) continue;
+    names += names.empty() ? pass_info(pass).name : std::string(", ") + pass_info(pass).name;
+  }
+  if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
+}
+
+}  // namespace
+
+Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
+  check_settings(settings);
+  Plan plan;
+  choose_integrator(settings, &plan);
+  choose_reconstruction(settings, &plan);
+  choose_region(settings, &plan);
+  plan.channels = settings.film_transparent ? 4 : 3;
+  plan.first_check = std::max(kFirstCheck, settings.min_samples);
+  plan.adaptive = settings.noise_threshold > 0.0f && settings.samples > plan.first_check;
+  if (plan.adaptive) {
+    plan.chosen.emplace_back("tiles stop early", "noise_threshold is set");
+  } else {
+    plan.skipped.emplace_back("stopping tiles early",
+                              settings.noise_threshold > 0.0f ? "too few samples to judge by" : "noise_threshold is 0");
+  }
+  const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
+  plan.unbiased = plan.reconstruction != GRADUS_RECONSTRUCTION_L1 && !plan.adaptive && !clamps;
+  list_scene(settings, snapshot, &plan);
+  list_passes(settings, &plan);
+  return plan;
+}
+
+uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings) {
+  // Per half: the primal, and in a gradient render four offsets; then counts, and pair counts.
+  uint64_t bytes = kHalves * sizeof(Radiance) * (plan.gradients ? 1 + kOffsets : 1);
+  bytes += kHalves * (sizeof(uint32_t) + (plan.gradients ? 2 * sizeof(float) : 0));
+  bytes += pass_bytes_per_pixel(settings.passes);
+  if (wants(settings.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
+  // Images read for the solver, its work planes, the result.
+  if (plan.solves) bytes += uint64_t(plan.channels) * sizeof(float) * 6;
+  bytes += 4 * sizeof(float);
+  return bytes * uint64_t(plan.sampled.area());
+}
+
+}  // namespace gradus

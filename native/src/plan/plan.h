@@ -1,0 +1,41 @@
+// The planner: what this scene and these settings need, and what they do not, each with its reason.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "frame/frame.h"
+#include "gradus/gradus.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+using Reasons = std::vector<std::pair<std::string, std::string>>;  // what, why
+
+struct Plan {
+  uint32_t integrator = GRADUS_INTEGRATOR_PATH;          // never AUTO
+  uint32_t reconstruction = GRADUS_RECONSTRUCTION_NONE;  // never AUTO
+  bool gradients = false;
+  bool solves = false;    // Combined comes from a solver
+  bool unbiased = true;   // contract 2.2
+  bool adaptive = false;  // tiles may stop early
+  int channels = 3;
+  uint32_t first_check = 0;  // samples before a tile may stop
+  Region delivered;
+  Region sampled;  // with the guard ring
+  Reasons chosen, skipped;
+};
+
+// Pixels around a region that are sampled, too, so that the reconstruction of the region does not feel its border: L2's response decays
+// by 0.82 per pixel at alpha 0.2 (contract 2.1).
+inline constexpr int kGuardRing = 35;
+
+// Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced (contract 5.1).
+Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot);
+
+// Bytes of the frame and of the reconstruction's work space.
+uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings);
+
+}  // namespace gradus

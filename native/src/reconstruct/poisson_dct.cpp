@@ -1,0 +1,108 @@
+#include "reconstruct/poisson_dct.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/fpu.h"
+
+namespace gradus {
+namespace {
+
+// Columns transformed together: one cache line of floats, so that the image is read and written by whole lines.
+constexpr int kColumnBlock = 16;
+constexpr int kRowGrain = 8;
+
+std::vector<float> eigenvalues(int length) {
+  std::vector<float> result(static_cast<size_t>(length));
+  for (int k = 0; k < length; ++k) {
+    // 2 - 2 cos(πk/N), written so that small values keep their digits.
+    const double s = std::sin(std::numbers::pi * k / (2.0 * length));
+    result[k] = static_cast<float>(4.0 * s * s);
+  }
+  return result;
+}
+
+using Range = tbb::blocked_range<int>;
+
+}  // namespace
+
+PoissonDct::PoissonDct(int width, int height)
+    : row_(width), column_(height), eigenvalue_x_(eigenvalues(width)), eigenvalue_y_(eigenvalues(height)) {}
+
+void PoissonDct::solve(float data_weight, const FillRow& fill, const Sum& sum, const TakeRow& take, float* work) const {
+  rows_forward(fill, work);
+  const double known = sum ? sum() : 0.0;
+  columns(data_weight, sum ? &known : nullptr, work);
+  rows_inverse(take, work);
+}
+
+void PoissonDct::rows_forward(const FillRow& fill, float* work) const {
+  const int w = width(), h = height();
+  tbb::parallel_for(Range(0, (h + 1) / 2, kRowGrain), [&](const Range& range) {
+    const FlushDenormals flush;
+    Dct::Scratch scratch(w);
+    std::vector<float> spare(static_cast<size_t>(w));
+    for (int pair = range.begin(); pair < range.end(); ++pair) {
+      const int y = 2 * pair;
+      float* const a = work + size_t(y) * w;
+      float* const b = y + 1 < h ? a + w : spare.data();
+      fill(y, a);
+      if (y + 1 < h) fill(y + 1, b);
+      row_.forward(a, b, &scratch);
+    }
+  });
+}
+
+void PoissonDct::columns(float data_weight, const double* sum, float* work) const {
+  const int w = width(), h = height();
+  // Both transforms forth and back multiply by the lengths.
+  const float scale = 1.0f / (static_cast<float>(w) * static_cast<float>(h));
+  tbb::parallel_for(Range(0, (w + kColumnBlock - 1) / kColumnBlock, 1), [&](const Range& range) {
+    const FlushDenormals flush;
+    Dct::Scratch scratch(h);
+    std::vector<float> block(size_t(kColumnBlock) * h);
+    for (int part = range.begin(); part < range.end(); ++part) {
+      const int x0 = part * kColumnBlock, n = std::min(kColumnBlock, w - x0);
+      for (int y = 0; y < h; ++y) {
+        for (int i = 0; i < n; ++i) block[size_t(i) * h + y] = work[size_t(y) * w + x0 + i];
+      }
+      for (int i = 0; i < kColumnBlock; i += 2) {
+        if (i >= n) break;
+        float* const a = block.data() + size_t(i) * h;
+        float* const b = a + h;
+        column_.forward(a, b, &scratch);
+        if (x0 + i == 0 && sum) a[0] = static_cast<float>(4.0 * *sum);
+        const float base_a = data_weight + eigenvalue_x_[x0 + i], base_b = data_weight + eigenvalue_x_[std::min(x0 + i + 1, w - 1)];
+        for (int y = 0; y < h; ++y) a[y] *= scale / (base_a + eigenvalue_y_[y]);
+        for (int y = 0; y < h; ++y) b[y] *= scale / (base_b + eigenvalue_y_[y]);
+        column_.inverse(a, b, &scratch);
+      }
+      for (int y = 0; y < h; ++y) {
+        for (int i = 0; i < n; ++i) work[size_t(y) * w + x0 + i] = block[size_t(i) * h + y];
+      }
+    }
+  });
+}
+
+void PoissonDct::rows_inverse(const TakeRow& take, float* work) const {
+  const int w = width(), h = height();
+  tbb::parallel_for(Range(0, (h + 1) / 2, kRowGrain), [&](const Range& range) {
+    const FlushDenormals flush;
+    Dct::Scratch scratch(w);
+    std::vector<float> spare(static_cast<size_t>(w));
+    for (int pair = range.begin(); pair < range.end(); ++pair) {
+      const int y = 2 * pair;
+      float* const a = work + size_t(y) * w;
+      float* const b = y + 1 < h ? a + w : spare.data();
+      row_.inverse(a, b, &scratch);
+      take(y, a);
+      if (y + 1 < h) take(y + 1, b);
+    }
+  });
+}
+
+}  // namespace gradus

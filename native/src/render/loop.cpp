@@ -1,0 +1,279 @@
+#include "render/loop.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "base/fpu.h"
+#include "render/batches.h"
+#include "render/combine.h"
+#include "render/options.h"
+#include "render/pass_read.h"
+#include "render/pass_table.h"
+#include "render/resume.h"
+
+namespace gradus {
+namespace {
+
+// How often a long batch says that there is something new to see.
+constexpr int64_t kImageIntervalMs = 300;
+
+}  // namespace
+
+RenderLoop::RenderLoop(LoopInput input)
+    : input_(std::move(input)),
+      plan_(make_plan(input_.settings, *input_.snapshot)),
+      tiles_(plan_.sampled, tile_side(plan_.sampled, input_.threads)),
+      arena_(int(input_.threads)),
+      process_cpu_start_(process_cpu_nanoseconds()) {
+  if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
+  const uint64_t bytes = planned_bytes(plan_, input_.settings), available = machine_memory_bytes();
+  if (available > 0 && bytes > available) {
+    throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "the frame needs " + std::to_string(bytes >> 20) + " MiB, the machine has " +
+                                                std::to_string(available >> 20) + " MiB: render fewer pixels or passes");
+  }
+  if (input_.resumed) check_resumable(*input_.resumed, input_.settings, plan_, input_.snapshot->content_key);
+}
+
+void RenderLoop::run() noexcept {
+  try {
+    const FlushDenormals flush;
+    render();
+    end(GRADUS_OK, "");
+  } catch (const Error& e) {
+    end(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    end(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while rendering");
+  } catch (const std::exception& e) {
+    end(GRADUS_ERROR_UNKNOWN, e.what());
+  } catch (...) {
+    end(GRADUS_ERROR_UNKNOWN, "unknown exception while rendering");
+  }
+}
+
+void RenderLoop::render() {
+  prepare();
+  set_phase(GRADUS_PHASE_SAMPLING);
+  sample();
+  stats_.cpu_seconds.sample = 1e-9 * double(sample_cpu_.load());
+  stats_.seconds.sample = clock_.seconds() - sampling_began_;
+  if (stop_.load(std::memory_order_relaxed)) throw cancelled();
+  set_phase(GRADUS_PHASE_RECONSTRUCTING);
+  reconstruct_frame();
+  if (stop_.load(std::memory_order_relaxed)) throw cancelled();
+}
+
+void RenderLoop::prepare() {
+  const GradusSettings& settings = input_.settings;
+  std::shared_ptr<Frame> frame;
+  if (input_.resumed) {
+    frame = std::make_shared<Frame>(*input_.resumed);
+  } else {
+    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, 1, plan_.gradients);
+    frame->passes = make_pass_planes(settings.passes, size_t(plan_.sampled.area()));
+    if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
+  }
+  frame->settings = settings;
+  frame->settings.struct_size = sizeof(GradusSettings);
+  // AUTO is resolved here, once: whoever reads the frame later must not decide again.
+  frame->settings.integrator = plan_.integrator;
+  frame->settings.reconstruction = plan_.reconstruction;
+  frame->scene_key = input_.snapshot->content_key;
+  frame->frame_number = settings.frame;
+  stats_.warnings = input_.snapshot->warnings;
+
+  IntegratorContext context;
+  context.snapshot = input_.snapshot;
+  context.camera = Camera(input_.snapshot->camera, settings.width, settings.height);
+  context.settings = frame->settings;
+  integrator_ = input_.factory(context, plan_.integrator);
+  const std::lock_guard lock(mutex_);
+  frame_ = std::move(frame);
+}
+
+bool RenderLoop::next_batch(uint32_t begin, uint32_t* end, const NoiseStop& noise) const {
+  if (stop_.load(std::memory_order_relaxed) || begin >= input_.settings.samples || noise.all_done()) return false;
+  const float limit = input_.settings.time_limit;
+  if (limit > 0.0f && begin > 0 && clock_.seconds() - sampling_began_ >= limit) return false;
+  *end = shorten_for_time(begin, batch_end(begin, input_.settings.samples));
+  return true;
+}
+
+// With a time limit a long batch must not run far beyond it: by the pace so far, at least one sample.
+uint32_t RenderLoop::shorten_for_time(uint32_t begin, uint32_t end) const {
+  const float limit = input_.settings.time_limit;
+  if (!(limit > 0.0f) || begin == 0) return end;
+  const double elapsed = clock_.seconds() - sampling_began_;
+  const double affordable = elapsed > 0.0 ? (limit - elapsed) / elapsed * begin : end - begin;
+  return std::min(end, begin + std::max(1u, static_cast<uint32_t>(std::clamp(affordable, 0.0, double(kLongestBatch)))));
+}
+
+void RenderLoop::sample() {
+  sampling_began_ = clock_.seconds();
+  const auto cancel = [this] { return stop_.load(std::memory_order_relaxed); };
+  NoiseStop noise(plan_.sampled, input_.settings.noise_threshold);
+  uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed) : 0;
+  tracker_.set_samples(begin);
+  work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
+  for (uint32_t end = 0; next_batch(begin, &end, noise); begin = end) {
+    const std::vector<uint32_t> map = noise.any_done() ? noise.count_map(end - begin) : std::vector<uint32_t>();
+    run_batch(begin, end, map.empty() ? nullptr : &map);
+    if (cancel()) break;
+    tracker_.set_samples(end);
+    tracker_.new_image();
+    if (!plan_.adaptive || end < plan_.first_check || end % kLongestBatch != 0) continue;
+    const uint64_t cpu = process_cpu_nanoseconds();
+    arena_.execute([&] { noise.update(*frame_, plan_.solves, input_.settings.reconstruction_alpha, cancel); });
+    stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  }
+  stats_.stopped = cancel() ? "cancelled" : noise.all_done() ? "noise" : begin < input_.settings.samples ? "time" : "samples";
+  tracker_.raise_to(ProgressTracker::kSamplingShare);
+}
+
+void RenderLoop::run_batch(uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map) {
+  arena_.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<size_t>(0, tiles_.size(), 1),
+        [&](const tbb::blocked_range<size_t>& range) {
+          for (size_t i = range.begin(); i < range.end(); ++i) sample_tile(i, begin, end, count_map);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+void RenderLoop::sample_tile(size_t tile, uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map) {
+  if (stop_.load(std::memory_order_relaxed)) return;
+  const FlushDenormals flush;
+  WorkUnit unit;
+  unit.tile = tiles_.tile(tile);
+  unit.first_sample = input_.settings.first_sample + begin;
+  unit.count = end - begin;
+  unit.count_map = count_map;
+  Counters counters;
+  const uint64_t cpu = thread_cpu_nanoseconds();
+  {
+    const auto lock = tiles_.lock(tile);
+    integrator_->sample(unit, frame_.get(), &counters, stop_);
+  }
+  sample_cpu_ += thread_cpu_nanoseconds() - cpu;
+  {
+    const std::lock_guard lock(counters_mutex_);
+    frame_->counters.add(counters);
+  }
+  tile_done(uint64_t(unit.tile.area()) * unit.count);
+}
+
+void RenderLoop::tile_done(uint64_t pixel_samples) {
+  const uint64_t done = work_done_ += pixel_samples;
+  const double whole = double(plan_.sampled.area()) * input_.settings.samples;
+  double fraction = double(done) / whole;
+  const double now = clock_.seconds();
+  if (input_.settings.time_limit > 0.0f) fraction = std::max(fraction, (now - sampling_began_) / input_.settings.time_limit);
+  tracker_.raise_to(ProgressTracker::kSamplingShare * static_cast<float>(std::min(fraction, 1.0)));
+  const auto ms = static_cast<int64_t>(1e3 * now);
+  int64_t last = last_image_ms_.load(std::memory_order_relaxed);
+  if (ms - last >= kImageIntervalMs && last_image_ms_.compare_exchange_strong(last, ms)) tracker_.new_image();
+}
+
+void RenderLoop::reconstruct_frame() {
+  const double began = clock_.seconds();
+  const uint64_t cpu = process_cpu_nanoseconds();
+  const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
+  std::vector<float> rgba;
+  arena_.execute(
+      [&] { rgba = combine(*frame_, plan_.reconstruction, input_.settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve); });
+  stats_.seconds.reconstruct = clock_.seconds() - began;
+  stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
+  const std::lock_guard lock(mutex_);
+  combined_ = std::move(rgba);
+}
+
+void RenderLoop::set_phase(GradusPhase phase) {
+  const std::lock_guard lock(mutex_);
+  phase_ = phase;
+}
+
+void RenderLoop::end(GradusError code, const std::string& text) noexcept {
+  try {
+    integrator_.reset();
+    const std::lock_guard lock(mutex_);
+    stats_.total_seconds = clock_.seconds();
+    stats_.process_cpu = 1e-9 * double(process_cpu_nanoseconds() - process_cpu_start_);
+    code_ = code;
+    phase_ = code == GRADUS_OK ? GRADUS_PHASE_DONE : code == GRADUS_ERROR_CANCELLED ? GRADUS_PHASE_CANCELLED : GRADUS_PHASE_FAILED;
+    if (code == GRADUS_OK) tracker_.raise_to(1.0f);
+    tracker_.new_image();
+    text_ = text;
+  } catch (...) {  // only the text can fail; the phase is set
+  }
+  ended_.notify_all();
+}
+
+bool RenderLoop::wait(double seconds) const {
+  std::unique_lock lock(mutex_);
+  const auto ended = [this] { return is_ended(); };
+  // Far beyond any render, and no overflow of the clock.
+  if (!(seconds >= 0.0) || seconds > 1e8) {
+    ended_.wait(lock, ended);
+    return true;
+  }
+  return ended_.wait_for(lock, std::chrono::duration<double>(seconds), ended);
+}
+
+GradusProgress RenderLoop::progress() const {
+  GradusProgress p{};
+  p.struct_size = sizeof(p);
+  p.seconds = static_cast<float>(clock_.seconds());
+  p.samples_done = tracker_.samples();
+  p.version = tracker_.version();
+  p.fraction = tracker_.fraction();
+  p.peak_memory_bytes = peak_memory_bytes();
+  const std::lock_guard lock(mutex_);
+  p.phase = phase_;
+  if (is_ended()) {
+    p.fraction = tracker_.fraction();
+    p.seconds = static_cast<float>(stats_.total_seconds);
+  }
+  p.memory_bytes = (frame_ ? frame_->memory_bytes() : 0) + combined_.size() * sizeof(float);
+  return p;
+}
+
+GradusError RenderLoop::outcome(std::string* text) const {
+  const std::lock_guard lock(mutex_);
+  if (!is_ended()) throw invalid_operation("the render is still running");
+  if (text) *text = text_;
+  return code_;
+}
+
+void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
+  std::shared_ptr<const Frame> frame;
+  {
+    const std::lock_guard lock(mutex_);
+    frame = frame_;
+    if (pass == GRADUS_PASS_COMBINED && !combined_.empty()) {
+      std::copy(combined_.begin(), combined_.end(), pixels);
+      return;
+    }
+  }
+  if (frame) return read_pass_by_tiles(*frame, tiles_, pass, plan_.delivered, pixels);
+  std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
+}
+
+std::string RenderLoop::stats() const {
+  const std::lock_guard lock(mutex_);
+  if (!is_ended()) throw invalid_operation("the render is still running: its stats come at the end");
+  if (!frame_) throw invalid_operation("the render failed before it began: " + text_);
+  return stats_json(stats_, plan_, *frame_);
+}
+
+std::shared_ptr<const Frame> RenderLoop::frame() const {
+  const std::lock_guard lock(mutex_);
+  if (!is_ended()) throw invalid_operation("the render is still running: its frame comes at the end");
+  if (!frame_) throw invalid_operation("the render failed before it began: " + text_);
+  return frame_;
+}
+
+}  // namespace gradus

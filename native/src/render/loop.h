@@ -1,0 +1,93 @@
+// The loop of one render, and what can be asked of it meanwhile from other threads.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <tbb/task_arena.h>
+
+#include "base/error.h"
+#include "frame/frame.h"
+#include "plan/plan.h"
+#include "render/clock.h"
+#include "render/noise_stop.h"
+#include "render/render.h"
+#include "render/stats.h"
+#include "render/tiles.h"
+#include "render/tracker.h"
+
+namespace gradus {
+
+struct LoopInput {
+  std::shared_ptr<Device> device;
+  std::shared_ptr<const Snapshot> snapshot;
+  GradusSettings settings{};
+  std::shared_ptr<const Frame> resumed;
+  IntegratorFactory factory;
+  uint32_t threads = 1;
+};
+
+class RenderLoop {
+ public:
+  explicit RenderLoop(LoopInput input);
+
+  // Renders; called once, on the render's thread. Never throws: what goes wrong becomes the outcome.
+  void run() noexcept;
+
+  void cancel() { stop_.store(true, std::memory_order_relaxed); }
+  bool wait(double seconds) const;
+  GradusProgress progress() const;
+  GradusError outcome(std::string* text) const;
+  const Plan& plan() const { return plan_; }
+  void read_pass(uint32_t pass, float* pixels) const;
+  std::string stats() const;
+  std::shared_ptr<const Frame> frame() const;
+
+ private:
+  void render();
+  void prepare();
+  void sample();
+  void reconstruct_frame();
+  // False: nothing more to do.
+  bool next_batch(uint32_t begin, uint32_t* end, const NoiseStop& noise) const;
+  uint32_t shorten_for_time(uint32_t begin, uint32_t end) const;
+  void run_batch(uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
+  void sample_tile(size_t tile, uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
+  void tile_done(uint64_t pixel_samples);
+  bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
+  void set_phase(GradusPhase phase);
+  void end(GradusError code, const std::string& text) noexcept;
+
+  const LoopInput input_;
+  const Plan plan_;
+  const TileGrid tiles_;
+  mutable tbb::task_arena arena_;
+  std::atomic<bool> stop_{false};
+  ProgressTracker tracker_;
+  const WallClock clock_;
+  const uint64_t process_cpu_start_;
+
+  // Set by prepare(), before the phase becomes SAMPLING; the frame's content is guarded by the tiles' locks until the end.
+  std::shared_ptr<Frame> frame_;
+  std::unique_ptr<Integrator> integrator_;
+
+  std::atomic<uint64_t> work_done_{0};  // pixel samples
+  std::atomic<uint64_t> sample_cpu_{0};
+  std::atomic<int64_t> last_image_ms_{0};
+  std::mutex counters_mutex_;
+  double sampling_began_ = 0.0;
+  RenderStats stats_;
+
+  mutable std::mutex mutex_;  // guards what follows
+  mutable std::condition_variable ended_;
+  GradusPhase phase_ = GRADUS_PHASE_WAITING;
+  GradusError code_ = GRADUS_OK;
+  std::string text_;
+  std::vector<float> combined_;  // RGBA of the delivered region; empty until reconstructed
+};
+
+}  // namespace gradus

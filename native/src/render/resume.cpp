@@ -1,0 +1,95 @@
+#include "render/resume.h"
+
+#include <string>
+
+#include "base/error.h"
+#include "render/options.h"
+
+namespace gradus {
+namespace {
+
+bool same(const Region& a, const Region& b) { return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1; }
+
+// The key is taken with the integrator that was used, not with AUTO.
+uint64_t key_of(GradusSettings settings, uint32_t integrator) {
+  settings.integrator = integrator;
+  return sampling_key(settings);
+}
+
+template <class T>
+void add(std::vector<T>* to, const std::vector<T>& from) {
+  for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
+}
+
+void add_planes(PassPlane* to, const PassPlane& from) {
+  if (to->first_sample_only) return;  // the frame that has sample 0 came first
+  add(&to->values, from.values);
+  add(&to->weight, from.weight);
+}
+
+bool same_planes(const Frame& a, const Frame& b) {
+  if (a.passes.size() != b.passes.size() || a.fallback.size() != b.fallback.size()) return false;
+  for (size_t i = 0; i < a.passes.size(); ++i) {
+    if (a.passes[i].pass != b.passes[i].pass) return false;
+  }
+  return true;
+}
+
+bool overlap(const GradusSettings& a, const GradusSettings& b) {
+  const uint64_t end_a = uint64_t(a.first_sample) + a.samples, end_b = uint64_t(b.first_sample) + b.samples;
+  return a.first_sample < end_b && b.first_sample < end_a;
+}
+
+}  // namespace
+
+uint32_t resumed_samples(const Frame& frame) {
+  const auto samples = [&](size_t i) { return frame.count[0][i] + frame.count[1][i]; };
+  const size_t pixels = frame.count[0].size();
+  for (size_t i = 1; i < pixels; ++i) {
+    if (samples(i) != samples(0)) throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot go on from it");
+  }
+  return pixels > 0 ? samples(0) : 0;
+}
+
+void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
+  if (frame.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
+  if (key_of(frame.settings, plan.integrator) != key_of(settings, plan.integrator) || frame.settings.integrator != plan.integrator) {
+    throw invalid_argument("the frame was sampled with other settings");
+  }
+  if (!same(frame.region, plan.sampled) || frame.settings.first_sample != settings.first_sample) {
+    throw invalid_argument("the frame has another region or first sample");
+  }
+  if (frame.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
+  if (resumed_samples(frame) > settings.samples) throw invalid_argument("the frame has more samples than are asked for");
+}
+
+void merge_frames(Frame* frame, const Frame& other) {
+  if (frame->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
+  if (sampling_key(frame->settings) != sampling_key(other.settings))
+    throw invalid_argument("the frames were sampled with different settings");
+  if (!same(frame->region, other.region) || frame->channels != other.channels || frame->gradients != other.gradients ||
+      frame->components.size() != other.components.size() || !same_planes(*frame, other)) {
+    throw invalid_argument("the frames differ in size or planes");
+  }
+  if (overlap(frame->settings, other.settings)) throw invalid_argument("the frames share samples: first_sample must differ");
+  const bool other_is_first = other.settings.first_sample < frame->settings.first_sample;
+  for (int half = 0; half < kHalves; ++half) {
+    for (size_t c = 0; c < frame->components.size(); ++c) {
+      add(&frame->components[c].primal[half], other.components[c].primal[half]);
+      for (int o = 0; o < kOffsets; ++o) add(&frame->components[c].gradient[half][o], other.components[c].gradient[half][o]);
+    }
+    add(&frame->count[half], other.count[half]);
+    for (int axis = 0; axis < 2; ++axis) add(&frame->pair_count[half][axis], other.pair_count[half][axis]);
+  }
+  for (size_t i = 0; i < frame->passes.size(); ++i) {
+    if (frame->passes[i].first_sample_only && other_is_first) frame->passes[i] = other.passes[i];
+    add_planes(&frame->passes[i], other.passes[i]);
+  }
+  add(&frame->fallback, other.fallback);
+  frame->counters.add(other.counters);
+  // Ranges with a hole between them count as one: only their sum matters from now on.
+  if (other_is_first) frame->settings.first_sample = other.settings.first_sample;
+  frame->settings.samples += other.settings.samples;
+}
+
+}  // namespace gradus

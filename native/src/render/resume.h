@@ -1,0 +1,19 @@
+// Going on from the samples of a frame (contract 2.1: 16 and then 48 samples have the bits of 64), and adding frames.
+#pragma once
+
+#include <cstdint>
+
+#include "frame/frame.h"
+#include "plan/plan.h"
+
+namespace gradus {
+
+// Samples that every pixel of the frame has; throws invalid_argument if pixels differ (a cancelled or adaptive frame).
+uint32_t resumed_samples(const Frame& frame);
+// Throws invalid_argument with the reason if a render with these settings cannot go on from the frame.
+void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key);
+
+// Adds the samples of `other`, which has other sample numbers. Throws invalid_argument with the reason if they do not fit together.
+void merge_frames(Frame* frame, const Frame& other);
+
+}  // namespace gradus

@@ -1,0 +1,97 @@
+#include "render/stats.h"
+
+#include <nlohmann/json.hpp>
+
+#include "render/clock.h"
+#include "render/options.h"
+
+namespace gradus {
+namespace {
+
+using nlohmann::json;
+
+json reasons(const Reasons& list) {
+  json result = json::object();
+  for (const auto& [what, why] : list) result[what] = why;
+  return result;
+}
+
+json rays(const Counters& c) {
+  return {{"primary", c.rays_primary},
+          {"bounce", c.rays_bounce},
+          {"shadow", c.rays_shadow},
+          {"shift", c.rays_shift},
+          {"shift_shadow", c.rays_shift_shadow}};
+}
+
+json shifts(const Counters& c) {
+  return {{"attempted", c.shifts_attempted},
+          {"reconnected", c.shifts_reconnected},
+          {"half_vector", c.shifts_half_vector},
+          {"replayed", c.shifts_replayed},
+          {"failed",
+           {{"missed", c.fail_missed},
+            {"occluded", c.fail_occluded},
+            {"class", c.fail_class},
+            {"total_reflection", c.fail_total_reflection},
+            {"side", c.fail_side},
+            {"density", c.fail_density},
+            {"jacobian", c.fail_jacobian},
+            {"not_invertible", c.fail_not_invertible},
+            {"border", c.fail_border}}}};
+}
+
+double mean_samples(const Frame& frame) {
+  uint64_t sum = 0;
+  for (int half = 0; half < kHalves; ++half) {
+    for (const uint32_t n : frame.count[half]) sum += n;
+  }
+  return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
+}
+
+json phases(const PhaseTimes& t) { return {{"sample", t.sample}, {"reconstruct", t.reconstruct}, {"filter", 0.0}}; }
+
+}  // namespace
+
+std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& frame) {
+  const GradusSettings& settings = frame.settings;
+  const Region& d = plan.delivered;
+  json j;
+  j["schema"] = 1;
+  j["version"] = gradus_version_text();
+  j["frame"] = frame.frame_number;
+  j["resolution"] = {settings.width, settings.height};
+  j["region"] = {d.x0, d.y0, d.x1, d.y1};
+  j["seed"] = settings.seed;
+  j["integrator"] = choice_name(*find_option("integrator"), plan.integrator);
+  j["reconstruction"] = choice_name(*find_option("reconstruction"), plan.reconstruction);
+  j["unbiased"] = plan.unbiased;
+  j["samples"] = mean_samples(frame);
+  j["spp_base"] = j["samples"];
+  j["spp_offset"] = 0;
+  j["stopped"] = stats.stopped;
+  j["plan"] = {{"chosen", reasons(plan.chosen)}, {"skipped", reasons(plan.skipped)}};
+  j["seconds"] = phases(stats.seconds);
+  j["seconds"]["total"] = stats.total_seconds;
+  j["cpu_seconds"] = phases(stats.cpu_seconds);
+  j["cpu_seconds"]["total"] = stats.cpu_seconds.sample + stats.cpu_seconds.reconstruct;
+  j["process_cpu"] = stats.process_cpu;
+  j["rays"] = rays(frame.counters);
+  j["shifts"] = shifts(frame.counters);
+  j["nonfinite_dropped"] = {{"radiance", frame.counters.nonfinite_radiance},
+                            {"gradient", frame.counters.nonfinite_gradient},
+                            {"feature", frame.counters.nonfinite_feature}};
+  if (plan.solves) {
+    j["solver"] = {{"outer_steps", stats.solve.outer_steps},
+                   {"inner_steps", stats.solve.inner_steps},
+                   {"residual", stats.solve.residual},
+                   {"hit_cap", stats.solve.hit_cap}};
+  }
+  j["frame_memory_bytes"] = frame.memory_bytes();
+  j["peak_memory_bytes"] = peak_memory_bytes();
+  j["warnings"] = stats.warnings;
+  // Names come from files: what is not UTF-8 must not end the frame.
+  return j.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace gradus

@@ -1,0 +1,29 @@
+// The stats object of one rendered frame (contract 7.1), without the fields that only the host knows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frame/frame.h"
+#include "plan/plan.h"
+#include "reconstruct/solver.h"
+
+namespace gradus {
+
+struct PhaseTimes {
+  double sample = 0.0;
+  double reconstruct = 0.0;
+};
+
+struct RenderStats {
+  PhaseTimes seconds, cpu_seconds;
+  double total_seconds = 0.0;
+  double process_cpu = 0.0;
+  std::string stopped;  // why sampling ended: samples, noise, time, cancelled
+  SolveReport solve;
+  std::vector<std::string> warnings;
+};
+
+std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& frame);
+
+}  // namespace gradus
