@@ -20,7 +20,7 @@ struct SceneObject {
   ~SceneObject();
   std::mutex mutex;  // calls of one scene wait for each other
   Scene scene;
-  std::unique_ptr<SceneRecorder> recorder;  // nullptr: not recording
+  std::shared_ptr<SceneRecorder> recorder;  // nullptr: not recording
 };
 
 struct RenderObject {

@@ -1,0 +1,137 @@
+// B1, B2: the exact L2 solver against its definition, in double.
+#include <gtest/gtest.h>
+
+#include <tbb/task_arena.h>
+
+#include "reconstruct/test_images.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+struct Size {
+  int width, height;
+};
+
+constexpr Size kSizes[] = {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {33, 17}, {64, 48}, {512, 512}};
+
+// ‖A x − b‖ / ‖b‖ with A = α² + DᵀD and b = α²I + Dᵀg, one channel.
+double residual(const GradientImages& images, const std::vector<float>& x, double alpha) {
+  const int w = images.width, h = images.height;
+  const auto at = [w](const std::vector<float>& v, int px, int py) { return double(v[size_t(py) * w + px]); };
+  double error = 0.0, norm = 0.0;
+  for (int py = 0; py < h; ++py) {
+    for (int px = 0; px < w; ++px) {
+      double b = alpha * alpha * at(images.primal, px, py), a = alpha * alpha * at(x, px, py);
+      if (px + 1 < w) {
+        b -= at(images.dx, px, py);
+        a -= at(x, px + 1, py) - at(x, px, py);
+      }
+      if (px > 0) {
+        b += at(images.dx, px - 1, py);
+        a += at(x, px, py) - at(x, px - 1, py);
+      }
+      if (py + 1 < h) {
+        b -= at(images.dy, px, py);
+        a -= at(x, px, py + 1) - at(x, px, py);
+      }
+      if (py > 0) {
+        b += at(images.dy, px, py - 1);
+        a += at(x, px, py) - at(x, px, py - 1);
+      }
+      error += (a - b) * (a - b);
+      norm += b * b;
+    }
+  }
+  return norm > 0.0 ? std::sqrt(error / norm) : std::sqrt(error);
+}
+
+std::vector<float> solve(const GradientImages& images, float alpha = 0.2f) {
+  SolveReport report;
+  return reconstruct(images, GRADUS_RECONSTRUCTION_L2, alpha, never, &report);
+}
+
+TEST(B1_FixedPoint, L2KeepsAnImageWithItsOwnGradients) {
+  for (const Size s : kSizes) {
+    const std::vector<float> image = smooth_image(s.width, s.height, 3);
+    const std::vector<float> result = solve(with_own_gradients(s.width, s.height, 3, image));
+    EXPECT_LT(max_difference(result, image), 1e-5) << s.width << "x" << s.height;
+  }
+}
+
+TEST(B1_FixedPoint, L2KeepsAConstant) {
+  const std::vector<float> image(33 * 17 * 3, 0.75f);
+  EXPECT_LT(max_difference(solve(with_own_gradients(33, 17, 3, image)), image), 1e-6);
+}
+
+TEST(B2_Solver, L2SolvesTheNormalEquations) {
+  for (const Size s : kSizes) {
+    for (const float alpha : {0.02f, 0.2f, 1.0f}) {
+      GradientImages images = with_own_gradients(s.width, s.height, 1, smooth_image(s.width, s.height, 1));
+      add_noise(&images.primal, 0.3f, 1);
+      add_noise(&images.dx, 0.05f, 2);
+      add_noise(&images.dy, 0.05f, 3);
+      // The border rows exist in memory, but not in the system: whatever they hold must not matter.
+      const std::vector<float> x = solve(images, alpha);
+      EXPECT_LT(residual(images, x, alpha), 1e-4) << s.width << "x" << s.height << " alpha " << alpha;
+      EXPECT_NEAR(mean(x), mean(images.primal), 1e-5 * std::abs(mean(images.primal)) + 1e-7);
+    }
+  }
+}
+
+TEST(B2_Solver, L2OfASpikeKeepsItsMean) {
+  for (const Size s : kSizes) {
+    GradientImages images = with_own_gradients(s.width, s.height, 1, std::vector<float>(size_t(s.width) * s.height, 0.5f));
+    images.primal[images.primal.size() / 2] = 1e6f;
+    const std::vector<float> x = solve(images);
+    EXPECT_LT(residual(images, x, 0.2), 1e-4);
+    EXPECT_NEAR(mean(x) / mean(images.primal), 1.0, 1e-5) << s.width << "x" << s.height;
+  }
+}
+
+TEST(B2_Solver, L2OfAStepAndAPlane) {
+  const auto step = make_image(64, 48, 1, [](int x, int, int) { return x < 30 ? 0.0f : 1000.0f; });
+  EXPECT_LT(max_difference(solve(with_own_gradients(64, 48, 1, step)), step), 1e-2);
+  const auto plane = make_image(64, 48, 1, [](int x, int y, int) { return 0.5f * float(x) - 0.25f * float(y); });
+  EXPECT_LT(max_difference(solve(with_own_gradients(64, 48, 1, plane)), plane), 1e-4);
+}
+
+TEST(B2_Solver, L2LeavesOutWhatIsNotFinite) {
+  GradientImages images = with_own_gradients(33, 17, 1, std::vector<float>(33 * 17, 1.0f));
+  images.primal[40] = std::numeric_limits<float>::quiet_NaN();
+  images.dx[90] = std::numeric_limits<float>::infinity();
+  for (const float v : solve(images)) EXPECT_TRUE(std::isfinite(v));
+}
+
+TEST(L1_Threads, L2HasTheSameBitsForAnyNumberOfThreads) {
+  GradientImages images = with_own_gradients(133, 71, 3, smooth_image(133, 71, 3));
+  add_noise(&images.primal, 0.3f, 1);
+  std::vector<float> first;
+  for (const int threads : {1, 2, 3, 7}) {
+    std::vector<float> x;
+    tbb::task_arena(threads).execute([&] { x = solve(images); });
+    if (first.empty()) first = x;
+    EXPECT_EQ(x, first) << threads << " threads";
+  }
+}
+
+// A linear operator: applied to a sum, it gives the sum (contract 3.4).
+TEST(B2_Solver, L2IsLinear) {
+  GradientImages a = with_own_gradients(33, 17, 1, smooth_image(33, 17, 1)), b = a;
+  add_noise(&a.primal, 0.3f, 1);
+  add_noise(&b.dx, 0.3f, 2);
+  GradientImages sum = a;
+  for (size_t i = 0; i < sum.primal.size(); ++i) {
+    sum.primal[i] += b.primal[i];
+    sum.dx[i] += b.dx[i];
+    sum.dy[i] += b.dy[i];
+  }
+  std::vector<float> x = solve(a);
+  const std::vector<float> y = solve(b);
+  for (size_t i = 0; i < x.size(); ++i) x[i] += y[i];
+  EXPECT_LT(max_difference(x, solve(sum)), 1e-5);
+}
+
+}  // namespace
+}  // namespace gradus

@@ -1,0 +1,77 @@
+// Images with known gradients for the solvers' tests.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "reconstruct/solver.h"
+
+namespace gradus::test {
+
+// Forward differences of an image, as a frame would hold them: last column and row 0.
+inline GradientImages with_own_gradients(int width, int height, int channels, const std::vector<float>& primal) {
+  GradientImages images;
+  images.width = width;
+  images.height = height;
+  images.channels = channels;
+  images.primal = primal;
+  images.dx.assign(primal.size(), 0.0f);
+  images.dy.assign(primal.size(), 0.0f);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < channels; ++c) {
+        const size_t i = (size_t(y) * width + x) * channels + c;
+        if (x + 1 < width) images.dx[i] = primal[i + channels] - primal[i];
+        if (y + 1 < height) images.dy[i] = primal[i + size_t(width) * channels] - primal[i];
+      }
+    }
+  }
+  return images;
+}
+
+template <class Function>
+std::vector<float> make_image(int width, int height, int channels, Function&& value) {
+  std::vector<float> image;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < channels; ++c) image.push_back(value(x, y, c));
+    }
+  }
+  return image;
+}
+
+inline std::vector<float> smooth_image(int width, int height, int channels) {
+  return make_image(width, height, channels, [](int x, int y, int c) {
+    const float bump = 1.0f / (1.0f + 0.01f * float((x - 9) * (x - 9) + (y - 5) * (y - 5)));
+    return 0.1f + bump + 0.2f * std::sin(0.13f * float(x) + 0.7f * float(c)) + (x > 20 ? 0.5f : 0.0f);
+  });
+}
+
+inline void add_noise(std::vector<float>* image, float sigma, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(0.0f, sigma);
+  for (float& v : *image) v += normal(random);
+}
+
+inline double mean(const std::vector<float>& image) {
+  double sum = 0.0;
+  for (const float v : image) sum += v;
+  return image.empty() ? 0.0 : sum / double(image.size());
+}
+
+inline double max_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double worst = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(double(a[i]) - b[i]));
+  return worst;
+}
+
+inline double rms_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
+  return std::sqrt(sum / double(a.size()));
+}
+
+inline bool never() { return false; }
+
+}  // namespace gradus::test
