@@ -1,0 +1,56 @@
+#include "frame/frame.h"
+
+namespace gradus {
+
+void Counters::add(const Counters& other) {
+  static_assert(sizeof(Counters) % sizeof(uint64_t) == 0);
+  auto* sum = reinterpret_cast<uint64_t*>(this);
+  const auto* term = reinterpret_cast<const uint64_t*>(&other);
+  for (size_t i = 0; i < sizeof(Counters) / sizeof(uint64_t); ++i) {
+    sum[i] += term[i];
+  }
+}
+
+Frame::Frame(uint32_t full_width_, uint32_t full_height_, const Region& region_, int channels_, int components_, bool gradients_)
+    : full_width(full_width_), full_height(full_height_), region(region_), channels(channels_), gradients(gradients_) {
+  const auto pixels = static_cast<size_t>(region.area());
+  components.resize(static_cast<size_t>(components_));
+  for (ComponentPlanes& component : components) {
+    for (int half = 0; half < kHalves; ++half) {
+      component.primal[half].assign(pixels, Radiance(0.0f));
+      for (auto& plane : component.gradient[half]) {
+        plane.assign(gradients ? pixels : 0, Radiance(0.0f));
+      }
+    }
+  }
+  for (int half = 0; half < kHalves; ++half) {
+    count[half].assign(pixels, 0);
+    for (auto& plane : pair_count[half]) {
+      plane.assign(gradients ? pixels : 0, 0.0f);
+    }
+  }
+}
+
+uint64_t Frame::memory_bytes() const {
+  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float);
+  for (const ComponentPlanes& component : components) {
+    for (int half = 0; half < kHalves; ++half) {
+      bytes += component.primal[half].size() * sizeof(Radiance);
+      for (const auto& plane : component.gradient[half]) {
+        bytes += plane.size() * sizeof(Radiance);
+      }
+    }
+  }
+  for (int half = 0; half < kHalves; ++half) {
+    bytes += count[half].size() * sizeof(uint32_t);
+    for (const auto& plane : pair_count[half]) {
+      bytes += plane.size() * sizeof(float);
+    }
+  }
+  for (const PassPlane& plane : passes) {
+    bytes += (plane.values.size() + plane.weight.size()) * sizeof(float);
+  }
+  return bytes;
+}
+
+}  // namespace gradus

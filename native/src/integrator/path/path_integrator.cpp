@@ -1,0 +1,34 @@
+// Plain path tracing: next-event estimation and BSDF sampling, combined by the balance heuristic. Unbiased.
+#include "integrator/integrator.h"
+#include "integrator/pixel_loop.h"
+
+namespace gradus {
+
+namespace {
+
+class PathIntegrator final : public Integrator {
+ public:
+  explicit PathIntegrator(const IntegratorContext& context)
+      : context_(context), path_(*context_.snapshot, context_.camera, context_.settings) {}
+
+  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
+    const auto scratch = std::make_unique<PathScratch>();
+    PassRecorder recorder(path_, frame, counters);
+    NoObserver observer;
+    PathTracer<NoObserver> tracer(path_, scratch.get(), &recorder, counters, &observer);
+    for_each_sample(path_, unit, *frame, stop, [&](const PixelSample& s) {
+      recorder.begin_sample(s.pixel, s.number == path_.settings.first_sample);
+      add_primal(tracer.trace(s.sampler, s.film), s, frame, counters);
+    });
+  }
+
+ private:
+  IntegratorContext context_;
+  PathContext path_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_path_integrator(const IntegratorContext& context) { return std::make_unique<PathIntegrator>(context); }
+
+}  // namespace gradus

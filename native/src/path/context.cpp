@@ -1,0 +1,33 @@
+#include "path/context.h"
+
+namespace gradus {
+
+namespace {
+
+// Blender's value bounds the mean of the channels; 0 is "no limit".
+float sum_limit(float clamp) { return clamp > 0.0f ? 3.0f * clamp : kInfinity; }
+
+bool is_uniform(const Snapshot& scene) {
+  constexpr uint32_t bounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION | GRADUS_VISIBLE_SHADOW;
+  for (const InstanceData& instance : scene.instances) {
+    const uint32_t bits = instance.visibility & bounces;
+    if (bits != 0 && bits != bounces) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const GradusSettings& settings_)
+    : scene(snapshot),
+      camera(camera_),
+      settings(settings_),
+      filter(settings_.pixel_filter, settings_.filter_width),
+      clamp_direct(sum_limit(settings_.clamp_direct)),
+      clamp_indirect(sum_limit(settings_.clamp_indirect)),
+      has_transparency(snapshot.features.has_transparent_shadows),
+      uniform_visibility(is_uniform(snapshot)) {}
+
+}  // namespace gradus

@@ -1,0 +1,35 @@
+// What all samples of a render share: the scene and the settings in the form in which paths need them.
+#pragma once
+
+#include "frame/frame.h"
+#include "gradus/gradus.h"
+#include "path/film_filter.h"
+#include "scene/camera.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+struct PathContext {
+  PathContext(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings);
+
+  const Snapshot& scene;
+  const Camera& camera;
+  const GradusSettings& settings;
+  FilmFilter filter;
+  // Bounds on the sum of the channels of one contribution (infinite: none), as Cycles clamps.
+  float clamp_direct = kInfinity;
+  float clamp_indirect = kInfinity;
+  // Some surface may let rays go straight on.
+  bool has_transparency = true;
+  // All surfaces look the same to every kind of bounce and to shadow rays, so that a shadow ray answers for a path segment.
+  bool uniform_visibility = true;
+};
+
+// A contribution, clamped by the rule of its kind; keeps the hue (Cycles' film_clamp_light; a user's value bounds the channels' mean).
+inline Rgb clamp_contribution(const PathContext& context, const Rgb& value, bool indirect) {
+  const float limit = indirect ? context.clamp_indirect : context.clamp_direct;
+  const float sum = glm::abs(value.x) + glm::abs(value.y) + glm::abs(value.z);
+  return sum > limit ? value * (limit / sum) : value;
+}
+
+}  // namespace gradus

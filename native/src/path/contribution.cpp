@@ -1,0 +1,76 @@
+#include "path/contribution.h"
+
+namespace gradus {
+
+namespace {
+
+// Light that a ray found after `depth` scatterings is indirect where one of them was not the last vertex's own (Cycles' bounce − 1).
+Contribution found(const PathContext& context, const RaySource& source, const PathState& state, const Rgb& throughput, const Rgb& radiance,
+                   float pdf_light) {
+  Contribution c;
+  c.pdf_light = pdf_light;
+  c.pdf_bsdf = source.sampled_light() ? source.event->pdf : 0.0f;
+  c.indirect = state.depth > 1;
+  c.tail = radiance * bsdf_weight(c.pdf_light, c.pdf_bsdf);
+  c.clamped = clamp_contribution(context, throughput * c.tail, c.indirect);
+  return c;
+}
+
+}  // namespace
+
+void apply_segment(const Segment& segment, PathState* state) { state->throughput *= segment.weight; }
+
+Contribution lamp_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LampSighting& lamp) {
+  const Receiver eye{state.ray.ray.origin, Vec3(0.0f), true};
+  const Receiver receiver = source.vertex != nullptr ? receiver_of(*source.vertex) : eye;
+  const EmitterView view = view_emitter(context.scene, lamp.point, receiver);
+  const Rgb radiance = lamp_radiance(context, view, state.ray, state.depth);
+  if (is_black(radiance)) {
+    return {};
+  }
+  return found(context, source, state, state.throughput * lamp.weight, radiance, source.sampled_light() ? view.pdf : 0.0f);
+}
+
+Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state) {
+  const Rgb radiance = world_radiance(context, state.ray, state.depth);
+  if (is_black(radiance)) {
+    return {};
+  }
+  const EmitterPoint point = source.sampled_light() ? emitter_of_world(context.scene, state.ray.ray.direction) : EmitterPoint{};
+  return found(context, source, state, state.throughput, radiance, light_pdf(context, source, point));
+}
+
+Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state, const Vertex& vertex) {
+  if (is_black(vertex.shade.emission)) {
+    return {};
+  }
+  const EmitterPoint point = source.sampled_light() ? emitter_of_surface(context.scene, vertex.point) : EmitterPoint{};
+  return found(context, source, state, state.throughput, vertex.shade.emission, light_pdf(context, source, point));
+}
+
+bool light_classes(const Vertex& vertex, const LightSample& light, LitClass lit[kScatterClasses]) {
+  bool any = false;
+  for (int k = 0; k < kScatterClasses; ++k) {
+    lit[k] = light_class(vertex, static_cast<ScatterClass>(k), light.view, light.point.dirac);
+    any |= !is_black(lit[k].value);
+  }
+  return any;
+}
+
+Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, const LitClass& lit,
+                                const Rgb& transmittance) {
+  Contribution c;
+  if (is_black(lit.value)) {
+    return c;
+  }
+  c.pdf_light = light.view.pdf;
+  c.pdf_bsdf = lit.pdf_bsdf;
+  c.indirect = state.depth > 0;
+  c.tail = light_estimate(lit, light.view, transmittance);
+  c.clamped = clamp_contribution(context, state.throughput * c.tail, c.indirect);
+  return c;
+}
+
+float held_out(const Rgb& throughput, const Rgb& holdout) { return is_black(holdout) ? 0.0f : mean_component(throughput * holdout); }
+
+}  // namespace gradus

@@ -1,0 +1,34 @@
+// What a path adds to its pixel, one emitter at a time.
+#pragma once
+
+#include "path/light.h"
+
+namespace gradus {
+
+// throughput·tail, clamped. The tail holds all that lies behind the throughput (scattering in next-event estimation, radiance, weight);
+// a path that shares it only has another throughput.
+struct Contribution {
+  Rgb clamped = Rgb(0.0f);
+  Rgb tail = Rgb(0.0f);
+  float pdf_light = 0.0f;  // of the techniques that could have found the emitter, in solid angle
+  float pdf_bsdf = 0.0f;
+  bool indirect = false;
+};
+
+// The path passes a segment.
+void apply_segment(const Segment& segment, PathState* state);
+
+// Emitters that the path's ray found: state before apply_segment() for lamps, after it for the others.
+Contribution lamp_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LampSighting& lamp);
+Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state);
+Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state, const Vertex& vertex);
+
+// Next-event estimation. False: no class scatters the light.
+bool light_classes(const Vertex& vertex, const LightSample& light, LitClass lit[kScatterClasses]);
+Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, const LitClass& lit,
+                                const Rgb& transmittance);
+
+// Part of the film that a surface with holdout leaves transparent.
+float held_out(const Rgb& throughput, const Rgb& holdout);
+
+}  // namespace gradus

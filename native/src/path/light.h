@@ -1,0 +1,52 @@
+// Light at a vertex: next-event estimation, and the weights of emitters that a ray finds (multiple importance sampling, balance heuristic).
+//
+// With the balance heuristic a contribution f/(p_light + p_bsdf) is the same whichever technique found it; gradients rely on that.
+#pragma once
+
+#include <array>
+
+#include "path/scatter.h"
+
+namespace gradus {
+
+// What next-event estimation at a vertex has chosen.
+struct LightSample {
+  EmitterPoint point;
+  EmitterView view;
+};
+
+// Light scattered within one class.
+struct LitClass {
+  Rgb value = Rgb(0.0f);  // f·|cos| of what the emitter may be seen by
+  float pdf_bsdf = 0.0f;  // P(class)·p(direction | class); 0 for emitters that BSDF sampling cannot find
+};
+
+// Emitter by the sample's random numbers. False: there is nothing to see.
+bool sample_light(const PathContext& context, const Sampler& sampler, const Vertex& vertex, int depth, LightSample* light);
+// Scattering of the emitter's light at a vertex towards its wo; the kinds of bounces that the emitter is hidden from are left out.
+LitClass light_class(const Vertex& vertex, ScatterClass c, const EmitterView& view, bool dirac_emitter);
+// Transmittance for shadow rays.
+Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterView& view, uint32_t crossed);
+// f / (p_light + p_bsdf), without throughput: one class's part of the estimate.
+inline Rgb light_estimate(const LitClass& lit, const EmitterView& view, const Rgb& transmittance) {
+  return lit.value * view.radiance * transmittance / (view.pdf + lit.pdf_bsdf);
+}
+
+// The event from which a ray came; nullptr for the camera.
+struct RaySource {
+  const Vertex* vertex = nullptr;
+  const ScatterEvent* event = nullptr;
+  // Light sampling could have made the event's path.
+  bool sampled_light() const { return vertex != nullptr && !event->sample.dirac; }
+};
+
+// Density of light sampling for what a ray found; 0 where it cannot.
+float light_pdf(const PathContext& context, const RaySource& source, const EmitterPoint& point);
+// p_bsdf / (p_light + p_bsdf).
+inline float bsdf_weight(float pdf_light, float pdf_bsdf) { return pdf_light > 0.0f ? pdf_bsdf / (pdf_light + pdf_bsdf) : 1.0f; }
+
+// Radiance of a lamp that a ray crosses, and of the world behind everything, towards a ray of this kind; 0 where hidden from it.
+Rgb lamp_radiance(const PathContext& context, const EmitterView& view, const PathRay& ray, int depth);
+Rgb world_radiance(const PathContext& context, const PathRay& ray, int depth);
+
+}  // namespace gradus

@@ -1,0 +1,213 @@
+#include "path/recorder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "frame/gate.h"
+
+namespace gradus {
+
+namespace {
+
+PassShare whole(LightPass pass) {
+  PassShare share{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
+  share[static_cast<int>(pass)] = Rgb(1.0f);
+  return share;
+}
+
+// Per channel; where a channel has no light at all it does not matter who gets it.
+PassShare share_of(const std::array<Rgb, 3>& parts) {
+  const Rgb sum = parts[0] + parts[1] + parts[2];
+  PassShare share;
+  for (int pass = 0; pass < 3; ++pass) {
+    for (int c = 0; c < 3; ++c) {
+      share[pass][c] = sum[c] > 0.0f ? parts[pass][c] / sum[c] : (pass == 0 ? 1.0f : 0.0f);
+    }
+  }
+  return share;
+}
+
+constexpr uint32_t first_pass(int light_pass) { return GRADUS_PASS_DIFFUSE_DIRECT + 3u * static_cast<uint32_t>(light_pass); }
+
+Vec3 shown_normal(const Vertex& vertex) {
+  if (!vertex.shade.closures.empty()) {
+    return vertex.shade.closures.average_normal();
+  }
+  const Vec3 n = vertex.point.shading_normal;
+  return glm::dot(n, vertex.wo) < 0.0f ? -n : n;
+}
+
+}  // namespace
+
+PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* counters) : context_(context), counters_(counters) {
+  for (PassPlane& plane : frame->passes) {
+    planes_[plane.pass] = &plane;
+    active_ = true;
+    lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
+  }
+}
+
+void PassRecorder::begin_sample(size_t pixel, bool first_sample) {
+  pixel_ = pixel;
+  first_sample_ = first_sample;
+  features_done_ = false;
+  path_length_ = 0.0f;
+}
+
+void PassRecorder::add(uint32_t pass, const Vec4& value) {
+  PassPlane* target = plane(pass);
+  if (target != nullptr && (first_sample_ || !target->first_sample_only)) {
+    add_feature(&value.x, 1.0f, pixel_, target, counters_);
+  }
+}
+
+void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass) {
+  if (!lights_) {
+    return;
+  }
+  if (scatterings == 0) {
+    add(direct_pass, value);
+    return;
+  }
+  for (int pass = 0; pass < 3; ++pass) {
+    add(first_pass(pass) + (scatterings > 1 ? 1u : 0u), value * share[pass]);
+  }
+}
+
+void PassRecorder::light(int depth, const Vertex& vertex, ScatterClass c, const EmitterView& view, const Rgb& value) {
+  if (!lights_) {
+    return;
+  }
+  add_light(depth + 1, value, depth == 0 ? share_of(vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction)) : share_,
+            GRADUS_PASS_EMISSION);
+}
+
+void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
+  if (depth > 0 || !lights_) {
+    return;
+  }
+  const Closures& closures = vertex.shade.closures;
+  share_ = event.sample.dirac ? whole(closures.lobe(event.sample.lobe).pass)
+                              : share_of(closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi));
+}
+
+void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
+  path_length_ += segment.length;
+  if (state.depth == 0) {
+    camera_surface(sampler, state.throughput, vertex);
+  }
+  if (!features_done_) {
+    features(state, vertex, segment);
+  }
+}
+
+void PassRecorder::escaped(const PathState& state) {
+  if (state.depth > 0) {
+    return;
+  }
+  add(GRADUS_PASS_MIST, 1.0f);
+  if (plane(GRADUS_PASS_VECTOR) != nullptr) {
+    background_motion(state.ray.ray.direction);
+  }
+}
+
+void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex) {
+  colors(weight, vertex);
+  if (plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr) {
+    ambient_occlusion(sampler, weight, vertex);
+  }
+  mist(weight, vertex.point.position);
+  if (1.0f - mean_component(vertex.shade.transparency) < context_.settings.alpha_threshold) {
+    return;  // too thin for data passes
+  }
+  const InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
+  add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position));
+  add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
+  add(GRADUS_PASS_OBJECT_INDEX, static_cast<float>(instance.pass_index));
+  add(GRADUS_PASS_NORMAL, shown_normal(vertex));
+  if (plane(GRADUS_PASS_VECTOR) != nullptr) {
+    motion(vertex);
+  }
+}
+
+void PassRecorder::colors(const Rgb& weight, const Vertex& vertex) {
+  for (int pass = 0; pass < 3 && lights_; ++pass) {
+    if (plane(first_pass(pass) + 2) != nullptr) {
+      add(first_pass(pass) + 2, weight * vertex.shade.closures.albedo(static_cast<LightPass>(pass), vertex.wo));
+    }
+  }
+}
+
+void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex) {
+  const Vec2 u = sampler.get2(dimension::kFirstVertex + dimension::kOcclusion);
+  const Vec3 n = shown_normal(vertex);
+  const Vec3 t = glm::normalize(std::fabs(n.x) > 0.5f ? glm::cross(n, Vec3(0, 1, 0)) : glm::cross(n, Vec3(1, 0, 0)));
+  const float radius = std::sqrt(u.x);
+  const float angle = 2.0f * kPi * u.y;
+  const Vec3 direction = glm::normalize(t * (radius * std::cos(angle)) + glm::cross(n, t) * (radius * std::sin(angle)) +
+                                        n * std::sqrt(std::max(0.0f, 1.0f - u.x)));
+  if (!(glm::dot(direction, vertex.facing_normal()) > 0.0f)) {
+    return;
+  }
+  const float limit = context_.scene.world.ao_distance;
+  const bool blocked = context_.scene.occluded(spawn_ray(vertex.point, direction, limit > 0.0f ? limit : kInfinity));
+  ++counters_->rays_shadow;
+  add(GRADUS_PASS_AMBIENT_OCCLUSION, blocked ? Rgb(0.0f) : weight);
+}
+
+void PassRecorder::mist(const Rgb& weight, const Vec3& position) {
+  if (plane(GRADUS_PASS_MIST) == nullptr) {
+    return;
+  }
+  const GradusWorld& world = context_.scene.world;
+  const bool orthographic = context_.scene.camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
+  const float distance = orthographic ? std::fabs(context_.camera.depth(position)) : glm::length(position - context_.camera.position());
+  const float range = std::max(world.mist_depth, 1e-6f);
+  float value = std::clamp((distance - world.mist_start) / range, 0.0f, 1.0f);
+  if (world.mist_falloff == GRADUS_MIST_QUADRATIC) {
+    value *= value;
+  } else if (world.mist_falloff == GRADUS_MIST_INVERSE_QUADRATIC) {
+    value = std::sqrt(value);
+  }
+  add(GRADUS_PASS_MIST, 1.0f - mean_component(weight) * (1.0f - value));
+}
+
+void PassRecorder::motion(const Vertex& vertex) {
+  const Camera& camera = context_.camera;
+  Vec2 now;
+  Vec2 previous;
+  Vec2 next;
+  if (camera.project(vertex.point.position, Shutter::Now, &now) &&
+      camera.project(context_.scene.position_at(vertex.point.hit, false), Shutter::Previous, &previous) &&
+      camera.project(context_.scene.position_at(vertex.point.hit, true), Shutter::Next, &next)) {
+    add(GRADUS_PASS_VECTOR, Vec4(previous - now, now - next));
+  }
+}
+
+void PassRecorder::background_motion(const Vec3& direction) {
+  const Camera& camera = context_.camera;
+  Vec2 now;
+  Vec2 previous;
+  Vec2 next;
+  if (camera.project_direction(direction, Shutter::Now, &now) && camera.project_direction(direction, Shutter::Previous, &previous) &&
+      camera.project_direction(direction, Shutter::Next, &next)) {
+    add(GRADUS_PASS_VECTOR, Vec4(previous - now, now - next));
+  }
+}
+
+// Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles.
+void PassRecorder::features(const PathState& state, const Vertex& vertex, const Segment&) {
+  const Closures& closures = vertex.shade.closures;
+  const bool mirror = !closures.empty() && closures.class_probability(ScatterClass::Diffuse) < 0.25f;
+  if (mirror && !state.emission_only) {
+    return;
+  }
+  features_done_ = true;
+  if (plane(GRADUS_PASS_DENOISING_ALBEDO) != nullptr) {
+    add(GRADUS_PASS_DENOISING_ALBEDO, glm::clamp(state.throughput * closures.albedo(vertex.wo), Rgb(0.0f), Rgb(1.0f)));
+  }
+  add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
+  add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
+}
+
+}  // namespace gradus

@@ -1,0 +1,58 @@
+// Data and light passes while sampling: what nobody asked for has no plane and costs a test of a pointer.
+#pragma once
+
+#include <array>
+
+#include "path/light.h"
+
+namespace gradus {
+
+// Share of each light pass (diffuse, glossy, transmission) in a contribution; sums to one per channel.
+using PassShare = std::array<Rgb, 3>;
+
+class PassRecorder {
+ public:
+  // Finds the planes of the frame. The frame must outlive the recorder.
+  PassRecorder(const PathContext& context, Frame* frame, Counters* counters);
+  bool active() const { return active_; }
+
+  void begin_sample(size_t pixel, bool first_sample);
+  // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
+  void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
+  // The ray left the scene.
+  void escaped(const PathState& state);
+  // Light that was scattered `scatterings` times; 0: seen by the camera.
+  void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
+  void environment(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT); }
+  // Light that next-event estimation at a vertex with `depth` scatterings before it found in one class.
+  void light(int depth, const Vertex& vertex, ScatterClass c, const EmitterView& view, const Rgb& value);
+  // The path scatters at a vertex with `depth` scatterings before it.
+  void scattered(int depth, const Vertex& vertex, const ScatterEvent& event);
+
+ private:
+  PassPlane* plane(uint32_t pass) const { return planes_[pass]; }
+  void add(uint32_t pass, const Vec4& value);
+  void add(uint32_t pass, const Vec3& value) { add(pass, Vec4(value, 0.0f)); }
+  void add(uint32_t pass, float value) { add(pass, Vec4(value, 0.0f, 0.0f, 0.0f)); }
+  void add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass);
+  void camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
+  void colors(const Rgb& weight, const Vertex& vertex);
+  void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
+  void mist(const Rgb& weight, const Vec3& position);
+  void motion(const Vertex& vertex);
+  void background_motion(const Vec3& direction);
+  void features(const PathState& state, const Vertex& vertex, const Segment& segment);
+
+  const PathContext& context_;
+  Counters* counters_;
+  std::array<PassPlane*, GRADUS_PASS_COUNT> planes_{};
+  bool active_ = false;
+  bool lights_ = false;
+  bool first_sample_ = false;
+  bool features_done_ = false;
+  float path_length_ = 0.0f;
+  size_t pixel_ = 0;
+  PassShare share_{};
+};
+
+}  // namespace gradus

@@ -1,0 +1,101 @@
+#include "path/scatter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shift/half_vector.h"
+
+namespace gradus {
+
+namespace {
+
+uint32_t vertex_block(int depth, uint32_t block) {
+  return dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex + block;
+}
+
+bool choose_class(const Closures& closures, float u, ScatterClass* chosen) {
+  float sum = 0.0f;
+  bool found = false;
+  for (int c = 0; c < kScatterClasses; ++c) {
+    const float p = closures.class_probability(static_cast<ScatterClass>(c));
+    if (p > 0.0f) {
+      *chosen = static_cast<ScatterClass>(c);
+      found = true;
+      sum += p;
+      if (u < sum) {
+        break;
+      }
+    }
+  }
+  return found;
+}
+
+// Cycles' rule: from the second bounce on, by the square root of the largest channel, which matches a display's curve roughly.
+float survival_probability(const Rgb& throughput, int depth) {
+  return depth < 2 ? 1.0f : std::min(1.0f, std::sqrt(std::max(0.0f, max_component(throughput))));
+}
+
+// A limit of n bounces lets a path see what its n + 1st bounce hits emit, as next-event estimation at that vertex does.
+bool reaches_limit(const GradusSettings& settings, const PathState& state) {
+  const RayState& r = state.ray.state;
+  return static_cast<uint32_t>(state.depth) > settings.max_bounces || r.diffuse_depth > settings.diffuse_bounces ||
+         r.glossy_depth > settings.glossy_bounces || r.transmission_depth > settings.transmission_bounces;
+}
+
+}  // namespace
+
+uint32_t bounce_visibility(LightPass pass, bool transmitted) {
+  if (transmitted) {
+    return GRADUS_VISIBLE_TRANSMISSION;
+  }
+  return pass == LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
+}
+
+void follow(const PathContext&, const SurfacePoint& from, const Vec3& direction, LightPass pass, bool transmitted, bool dirac,
+            PathRay* ray) {
+  ray->ray = spawn_ray(from, direction);
+  ray->visibility = bounce_visibility(pass, transmitted);
+  RayState& state = ray->state;
+  state.flags = (transmitted ? kRayTransmission : kRayReflection) | (pass == LightPass::Diffuse ? kRayDiffuse : kRayGlossy) |
+                (dirac ? kRaySingular : 0u);
+  state.length = 0.0f;
+  ++state.depth;
+  if (transmitted) {
+    ++state.transmission_depth;
+  } else if (pass == LightPass::Diffuse) {
+    ++state.diffuse_depth;
+  } else {
+    ++state.glossy_depth;
+  }
+}
+
+bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& vertex, PathState* state, ScatterEvent* event) {
+  const Closures& closures = vertex.shade.closures;
+  const Vec2 u = sampler.get2(vertex_block(state->depth, dimension::kLobe));
+  if (closures.empty() || !choose_class(closures, u.x, &event->scatter_class)) {
+    return false;
+  }
+  BsdfSample& sample = event->sample;
+  if (!closures.sample(event->scatter_class, vertex.wo, u.y, sampler.get2(vertex_block(state->depth, dimension::kBsdf)), &sample)) {
+    return false;
+  }
+  event->pdf = closures.class_probability(event->scatter_class) * sample.pdf;
+  if (!(event->pdf > 0.0f) || is_black(sample.value)) {
+    return false;
+  }
+  event->dirac_rank = sample.dirac ? dirac_rank(closures, event->scatter_class, sample.lobe) : 0;
+  event->factor = sample.value / event->pdf;
+  const Rgb throughput = state->throughput * event->factor;
+  event->survival = survival_probability(throughput, state->depth + 1);
+  if (event->survival < 1.0f && !(sampler.get1(vertex_block(state->depth, dimension::kRoulette)) < event->survival)) {
+    return false;
+  }
+  event->factor /= event->survival;
+  state->throughput *= event->factor;
+  ++state->depth;
+  follow(context, vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac, &state->ray);
+  state->emission_only = reaches_limit(context.settings, *state);
+  return true;
+}
+
+}  // namespace gradus

@@ -1,0 +1,140 @@
+#include "path/segment.h"
+
+#include <algorithm>
+
+namespace gradus {
+
+namespace {
+
+// Blocks of the transparency decisions lie above those of path vertices.
+constexpr uint32_t kDecisions = 1u << 20;
+constexpr uint32_t kDecisionsPerSegment = 1024;
+
+// Shadow rays end this much before a finite emitter or a connected vertex, relative to the distance.
+constexpr float kShorten = 1e-4f;
+
+// Probability that the path goes straight on: by the transparency against what the surface itself has to show. An added emission or
+// scattering keeps a chance however transparent the surface.
+float pass_probability(const ShadeResult& shade) {
+  const float through = mean_component(shade.transparency);
+  if (!(through > 0.0f)) {
+    return 0.0f;
+  }
+  const bool shows = !shade.closures.empty() || !is_black(shade.emission) || !is_black(shade.holdout);
+  if (!shows) {
+    return 1.0f;
+  }
+  const float least = is_black(shade.emission) ? 0.05f : 0.5f;
+  return through / (through + std::max(1.0f - through, least));
+}
+
+// Lamps between the ray's ends.
+void see_lamps(const PathContext& context, const Ray& ray, float start, Segment* segment) {
+  if (!context.scene.features.has_lamps_with_extent) {
+    return;
+  }
+  LampHit hits[kMaxSightings];
+  const int count = intersect_lamps(context.scene, ray, hits, kMaxSightings - segment->lamp_count);
+  for (int i = 0; i < count; ++i) {
+    segment->lamps[segment->lamp_count++] = {hits[i].point, start + hits[i].distance, segment->weight, segment->probability};
+  }
+}
+
+// Decides at a surface; true: the path stops there.
+bool stops(const Sampler& sampler, int number, const Vertex& vertex, Segment* segment) {
+  const float pass = pass_probability(vertex.shade);
+  const uint32_t block = kDecisions + static_cast<uint32_t>(number) * kDecisionsPerSegment + static_cast<uint32_t>(segment->crossed);
+  const bool goes_on = pass >= 1.0f || (pass > 0.0f && sampler.get1(block) < pass);
+  const float probability = goes_on ? pass : 1.0f - pass;
+  segment->weight = goes_on ? segment->weight * vertex.shade.transparency / probability : segment->weight / probability;
+  segment->probability *= probability;
+  return !goes_on;
+}
+
+}  // namespace
+
+void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
+                   Segment* segment) {
+  segment->end = SegmentEnd::Escaped;
+  segment->weight = Rgb(1.0f);
+  segment->probability = 1.0f;
+  segment->crossed = 0;
+  segment->length = 0.0f;
+  segment->lamp_count = 0;
+  Ray part = ray->ray;
+  vertex->wo = -part.direction;
+  for (;;) {
+    Hit hit;
+    if (first != nullptr) {
+      hit = *first;
+      first = nullptr;
+    } else {
+      context.scene.intersect(part, ray->visibility, &hit);
+    }
+    Ray seen = part;
+    seen.t_max = hit.valid() ? hit.t : part.t_max;
+    see_lamps(context, seen, segment->length, segment);
+    if (!hit.valid()) {
+      return;
+    }
+    segment->length += hit.t;
+    ray->state.length = segment->length;
+    vertex->point = context.scene.surface_point(hit);
+    shade_surface(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
+    if (stops(sampler, number, *vertex, segment)) {
+      segment->end = SegmentEnd::Surface;
+      return;
+    }
+    if (ray->state.transparent_depth >= context.settings.transparent_max_bounces) {
+      segment->end = SegmentEnd::Exhausted;
+      return;
+    }
+    ++ray->state.transparent_depth;
+    ++segment->crossed;
+    part.origin = offset_origin(vertex->point, part.direction);
+    part.t_min = 0.0f;
+    part.t_max = part.t_max - hit.t;
+  }
+}
+
+Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, float distance) {
+  return Ray{offset_origin(from, direction), 0.0f, direction, distance < kInfinity ? distance * (1.0f - kShorten) : kInfinity};
+}
+
+Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& to) {
+  const Vec3 direction = glm::normalize(to.position - from.position);
+  const Vec3 start = offset_origin(from, direction);
+  const Vec3 line = offset_origin(to, -direction) - start;
+  const float distance = glm::length(line);
+  return Ray{start, 0.0f, line / distance, distance * (1.0f - kShorten)};
+}
+
+Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind) {
+  if (!context.has_transparency && context.uniform_visibility) {
+    return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
+  }
+  Rgb transmittance(1.0f);
+  Ray part = ray;
+  RayState state = kind.state;
+  for (uint32_t crossed = 0; crossed <= context.settings.transparent_max_bounces; ++crossed) {
+    Hit hit;
+    if (!context.scene.intersect(part, kind.visibility, &hit)) {
+      return transmittance;
+    }
+    const SurfacePoint point = context.scene.surface_point(hit);
+    state.length = hit.t;
+    transmittance *= shade_transparency(context.scene, point, -part.direction, state);
+    if (is_black(transmittance)) {
+      break;
+    }
+    part.origin = offset_origin(point, part.direction);
+    part.t_min = 0.0f;
+    part.t_max -= hit.t;
+    if (!(part.t_max > 0.0f)) {
+      return transmittance;
+    }
+  }
+  return Rgb(0.0f);
+}
+
+}  // namespace gradus

@@ -1,0 +1,59 @@
+// One path segment: from a vertex to the next surface at which the path stops, through surfaces that let it pass.
+//
+// Whether a partly transparent surface stops a path is a random decision keyed by (segment, surface along it). A shifted path that
+// traces its own rays makes the same draws, so that these random numbers are mapped by the identity: they leave no trace in Jacobians.
+#pragma once
+
+#include "path/context.h"
+#include "path/vertex.h"
+#include "sampling/sampler.h"
+
+namespace gradus {
+
+// A lamp that a ray crosses: lamps do not stop rays.
+struct LampSighting {
+  EmitterPoint point;
+  float distance = 0.0f;
+  Rgb weight = Rgb(1.0f);    // of the segment up to there, see Segment
+  float probability = 1.0f;  // likewise
+};
+
+enum class SegmentEnd : uint8_t {
+  Surface,
+  Escaped,
+  Exhausted,  // met more transparent surfaces than allowed: nothing is seen
+};
+
+inline constexpr int kMaxSightings = 8;
+
+struct Segment {
+  SegmentEnd end = SegmentEnd::Escaped;
+  Rgb weight = Rgb(1.0f);    // transmittance over the probability of the decisions taken
+  float probability = 1.0f;  // of these decisions
+  int crossed = 0;           // surfaces that were passed
+  float length = 0.0f;
+  int lamp_count = 0;
+  LampSighting lamps[kMaxSightings];
+};
+
+// A ray and what it looks like to the scene.
+struct PathRay {
+  Ray ray;
+  uint32_t visibility = GRADUS_VISIBLE_CAMERA;  // GradusVisibility bit of its kind
+  RayState state;
+};
+
+// number: of scatterings so far; keys the decisions. first: the nearest hit if it is known. Fills `vertex` where the segment ends on a
+// surface, and counts transparent surfaces in ray->state.
+void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
+                   Segment* segment);
+
+// The ray from a vertex towards a direction, up to `distance`.
+Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, float distance = kInfinity);
+// The ray between two surface points: both ends off their surfaces.
+Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& to);
+
+// Transmittance of a segment to a known end for a ray of this kind, decisions replaced by their expectation; 0 if blocked.
+Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind);
+
+}  // namespace gradus

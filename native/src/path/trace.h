@@ -1,0 +1,168 @@
+// The path tracer: one base path, with an observer that may follow it by shifted paths.
+//
+// All arithmetic lies in functions that are compiled once (light, scatter, segment, contributions), so that the primal image has the same
+// bits whatever observer looks on.
+#pragma once
+
+#include "path/contribution.h"
+#include "path/recorder.h"
+
+namespace gradus {
+
+// Reused from sample to sample: closures are large.
+struct PathScratch {
+  Vertex vertices[2];
+  Segment segment;
+  LightSample light;
+  ScatterEvent event;
+};
+
+struct PathResult {
+  Radiance radiance = Radiance(0.0f);  // w: alpha, if the film is transparent
+  bool fallback = false;
+};
+
+// Looks on and does nothing: plain path tracing.
+struct NoObserver {
+  void begin(const Sampler&, const Vec2&, const Vec2&) {}
+  void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
+  void lamp(const RaySource&, const Contribution&, const LampSighting&) {}
+  void world(const RaySource&, const Contribution&) {}
+  void emission(const RaySource&, const Contribution&, const Vertex&) {}
+  void transparent(float) {}
+  void light(const Vertex&, const LightSample&, ScatterClass, const Contribution&) {}
+  void scatter(const Vertex&, const ScatterEvent&) {}
+};
+
+template <class Observer>
+class PathTracer {
+ public:
+  PathTracer(const PathContext& context, PathScratch* scratch, PassRecorder* recorder, Counters* counters, Observer* observer)
+      : context_(context), s_(*scratch), recorder_(recorder->active() ? recorder : nullptr), counters_(*counters), observer_(*observer) {}
+
+  // film: position on the full frame's film, filter offset included.
+  PathResult trace(const Sampler& sampler, const Vec2& film) {
+    result_ = PathResult{};
+    result_.radiance.w = 1.0f;
+    state_ = PathState{};
+    const Vec2 lens = context_.camera.has_lens() ? sampler.get2(dimension::kLens) : Vec2(0.0f);
+    state_.ray.ray = context_.camera.ray(film, lens);
+    observer_.begin(sampler, film, lens);
+    RaySource source;
+    Vertex* vertex = &s_.vertices[0];
+    ++counters_.rays_primary;
+    while (step(sampler, source, vertex)) {
+      source = RaySource{vertex, &s_.event};
+      vertex = vertex == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
+      ++counters_.rays_bounce;
+    }
+    return result_;
+  }
+
+ private:
+  // One segment and what is seen at its end. False: the path has ended.
+  bool step(const Sampler& sampler, const RaySource& source, Vertex* vertex) {
+    trace_segment(context_, sampler, state_.depth, nullptr, &state_.ray, vertex, &s_.segment);
+    observer_.arrive(source, state_, s_.segment, *vertex);
+    add_lamps(source);
+    apply_segment(s_.segment, &state_);
+    if (s_.segment.end == SegmentEnd::Escaped) {
+      add_world(source);
+    }
+    if (s_.segment.end != SegmentEnd::Surface) {
+      return false;
+    }
+    result_.fallback |= vertex->shade.fallback;
+    if (!add_surface(sampler, source, *vertex) || state_.emission_only) {
+      return false;
+    }
+    add_light(sampler, *vertex);
+    const int depth = state_.depth;
+    if (!scatter(context_, sampler, *vertex, &state_, &s_.event)) {
+      return false;
+    }
+    if (recorder_ != nullptr) {
+      recorder_->scattered(depth, *vertex, s_.event);
+    }
+    observer_.scatter(*vertex, s_.event);
+    return true;
+  }
+
+  void add(const Rgb& value) { result_.radiance += Radiance(value, 0.0f); }
+
+  void add_lamps(const RaySource& source) {
+    for (int i = 0; i < s_.segment.lamp_count; ++i) {
+      const Contribution c = lamp_contribution(context_, source, state_, s_.segment.lamps[i]);
+      if (!is_black(c.clamped)) {
+        add(c.clamped);
+        if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
+        observer_.lamp(source, c, s_.segment.lamps[i]);
+      }
+    }
+  }
+
+  void add_world(const RaySource& source) {
+    if (recorder_ != nullptr) recorder_->escaped(state_);
+    if (state_.depth == 0) add_transparent(mean_component(state_.throughput));
+    const Contribution c = world_contribution(context_, source, state_);
+    if (!is_black(c.clamped)) {
+      add(c.clamped);
+      if (recorder_ != nullptr) recorder_->environment(state_.depth, c.clamped);
+      observer_.world(source, c);
+    }
+  }
+
+  void add_transparent(float value) {
+    if (value != 0.0f) {
+      result_.radiance.w -= value;
+      observer_.transparent(value);
+    }
+  }
+
+  // False: the surface is a hole in the film.
+  bool add_surface(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
+    if (state_.depth == 0) {
+      if ((context_.scene.instances[vertex.point.hit.instance].visibility & GRADUS_HOLDOUT) != 0) {
+        add_transparent(mean_component(state_.throughput));
+        return false;
+      }
+      add_transparent(held_out(state_.throughput, vertex.shade.holdout));
+    }
+    if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, s_.segment);
+    const Contribution c = emission_contribution(context_, source, state_, vertex);
+    if (!is_black(c.clamped)) {
+      add(c.clamped);
+      if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
+      observer_.emission(source, c, vertex);
+    }
+    return true;
+  }
+
+  void add_light(const Sampler& sampler, const Vertex& vertex) {
+    LitClass lit[kScatterClasses];
+    if (!sample_light(context_, sampler, vertex, state_.depth, &s_.light) || !light_classes(vertex, s_.light, lit)) {
+      return;
+    }
+    ++counters_.rays_shadow;
+    const Rgb through = light_transmittance(context_, vertex.point, s_.light.view, state_.ray.state.transparent_depth);
+    for (int k = 0; k < kScatterClasses && !is_black(through); ++k) {
+      const Contribution c = light_contribution(context_, state_, s_.light, lit[k], through);
+      if (!is_black(c.clamped)) {
+        add(c.clamped);
+        const auto scatter_class = static_cast<ScatterClass>(k);
+        if (recorder_ != nullptr) recorder_->light(state_.depth, vertex, scatter_class, s_.light.view, c.clamped);
+        observer_.light(vertex, s_.light, scatter_class, c);
+      }
+    }
+  }
+
+  const PathContext& context_;
+  PathScratch& s_;
+  PassRecorder* recorder_;
+  Counters& counters_;
+  Observer& observer_;
+  PathState state_;
+  PathResult result_;
+};
+
+}  // namespace gradus

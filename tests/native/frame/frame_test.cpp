@@ -1,0 +1,69 @@
+#include "frame/frame.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "frame/gate.h"
+
+namespace gradus {
+namespace {
+
+Frame small_frame() { return Frame(4, 3, Region{0, 0, 4, 3}, 3, 1, true); }
+
+TEST(B6_Gate, NonFiniteSamplesStayOutAndAreCounted) {
+  Frame frame = small_frame();
+  Counters counters;
+  const float bad[] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
+  for (float value : bad) {
+    add_gradient(Radiance(1.0f, value, 0.0f, 0.0f), &frame.components[0].gradient[0][kRight][5], &counters);
+    add_radiance(Radiance(value, 0.0f, 0.0f, 0.0f), &frame.components[0].primal[0][5], &counters);
+  }
+  EXPECT_EQ(counters.nonfinite_gradient, 3u);
+  EXPECT_EQ(counters.nonfinite_radiance, 3u);
+  for (const Radiance& value : frame.components[0].gradient[0][kRight]) {
+    EXPECT_EQ(value, Radiance(0.0f));
+  }
+}
+
+// Differences come from the pair's own samples and the way back, over their common count.
+TEST(Frame, MergesPairsByTheirCount) {
+  Frame frame = small_frame();
+  const size_t p = frame.index(1, 1);
+  const size_t q = frame.index(2, 1);
+  frame.components[0].gradient[0][kRight][p] = Radiance(6.0f);
+  frame.components[0].gradient[0][kLeft][q] = Radiance(-2.0f);
+  frame.pair_count[0][0][p] = 4.0f;
+  const GradientImages images = read_images(frame, 0, true);
+  EXPECT_FLOAT_EQ(images.dx[3 * p], 2.0f);
+  EXPECT_FLOAT_EQ(images.dx_half[0][3 * p], 2.0f);
+  EXPECT_EQ(images.dx_half[1][3 * p], 0.0f);
+  EXPECT_EQ(images.dx[3 * q], 0.0f);
+}
+
+TEST(Frame, LastColumnAndRowHaveNoDifference) {
+  Frame frame = small_frame();
+  for (int offset = 0; offset < kOffsets; ++offset) {
+    frame.components[0].gradient[0][offset].assign(12, Radiance(offset < 2 ? 1.0f : -1.0f));
+  }
+  for (auto& plane : frame.pair_count[0]) {
+    plane.assign(12, 1.0f);
+  }
+  const GradientImages images = read_images(frame, 0, false);
+  EXPECT_EQ(images.dx[3 * frame.index(3, 1)], 0.0f);
+  EXPECT_EQ(images.dy[3 * frame.index(1, 2)], 0.0f);
+  EXPECT_EQ(images.dx[3 * frame.index(2, 1)], 2.0f);
+  EXPECT_EQ(images.dy[3 * frame.index(1, 1)], 2.0f);
+}
+
+TEST(Frame, VarianceIsThatOfTheMean) {
+  Frame frame = small_frame();
+  frame.count[0].assign(12, 2);
+  frame.count[1].assign(12, 2);
+  frame.components[0].primal[0].assign(12, Radiance(2.0f));
+  frame.components[0].primal[1].assign(12, Radiance(6.0f));
+  EXPECT_FLOAT_EQ(read_variance(frame)[0], 1.0f);  // ((1 − 3)/2)²
+}
+
+}  // namespace
+}  // namespace gradus
