@@ -1,0 +1,115 @@
+"""H5, H6: libraries that cannot be used, and buffers that cannot be handed over."""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import shutil
+import subprocess
+from array import array
+from pathlib import Path
+
+import pytest
+from gradus import abi, native
+
+
+def message(path: Path) -> str:
+    with pytest.raises(native.GradusError) as caught:
+        native.Library(path)
+    assert caught.value.code == native.Error.UNSUPPORTED
+    return caught.value.text
+
+
+def stand_in(tmp_path: Path, source: str) -> Path:
+    if shutil.which("cc") is None:
+        pytest.skip("needs a C compiler")
+    (tmp_path / "a.c").write_text(source)
+    path = tmp_path / "libother.so"
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", path, tmp_path / "a.c"], check=True)
+    return path
+
+
+def test_h5_missing(tmp_path: Path) -> None:
+    assert "not found" in message(tmp_path / "libgradus.so")
+
+
+def test_h5_wrong_architecture(tmp_path: Path) -> None:
+    path = tmp_path / "libgradus.so"
+    path.write_bytes(b"\x7fELF\x01\x01\x01" + bytes(57))  # 32 bit
+    assert "cannot be loaded" in message(path)
+
+
+def test_h5_something_else(tmp_path: Path) -> None:
+    assert "not a Gradus library" in message(stand_in(tmp_path, "int other(void) { return 1; }"))
+
+
+def test_h5_old_version(tmp_path: Path) -> None:
+    source = "unsigned gradus_version(void) { return 7; }\nunsigned long gradus_abi_hash(void) { return 0; }"
+    text = message(stand_in(tmp_path, source))
+    assert "version 0.0.7" in text
+    assert ".".join(map(str, abi.VERSION)) in text
+
+
+def test_h5_other_layout_names_both(tmp_path: Path) -> None:
+    version = abi.VERSION[0] * 10000 + abi.VERSION[1] * 100 + abi.VERSION[2]
+    source = f"unsigned gradus_version(void) {{ return {version}; }}\nunsigned long gradus_abi_hash(void) {{ return 0x1234; }}"
+    text = message(stand_in(tmp_path, source))
+    assert "0000000000001234" in text
+    assert f"{abi.layout_hash():016x}" in text
+
+
+def test_environment_wins_over_preference(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(native.ENVIRONMENT_VARIABLE, raising=False)
+    monkeypatch.setattr(native, "preferred_path", "/preferred.so")
+    assert native.library_path() == Path("/preferred.so")
+    monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, "/environment.so")
+    assert native.library_path() == Path("/environment.so")
+
+
+def test_h7_one_load_per_process() -> None:
+    assert native.load() is native.load()
+
+
+def test_h6_pointer_keeps_the_buffer_alive() -> None:
+    pointer = native.pointer(array("f", [1.0, 2.0, 3.0]))
+    gc.collect()
+    assert pointer[2] == 3.0
+
+
+def test_h6_pointer_in_a_struct_keeps_the_buffer_alive() -> None:
+    attributes = native.struct_array(native.Attribute, [native.Attribute(data=native.pointer(array("f", [7.0])))])
+    mesh = native.Mesh(attributes=attributes)
+    del attributes
+    gc.collect()
+    assert mesh.attributes[0].data[0] == 7.0
+    assert mesh.attributes[0].struct_size == ctypes.sizeof(native.Attribute)
+
+
+@pytest.mark.parametrize("value", [array("d", [1.0]), [1.0], b"abcd", memoryview(array("f", [1, 2, 3, 4]))[::2], memoryview(b"abcd")])
+def test_h6_wrong_buffers_are_refused(value: object) -> None:
+    with pytest.raises(TypeError):
+        native.pointer(value)
+
+
+def test_h6_wrong_item_type_is_refused_by_the_field() -> None:
+    with pytest.raises(TypeError):
+        native.Mesh(positions=native.pointer(array("i", [1])))
+
+
+@pytest.mark.parametrize("value", [None, array("f")])
+def test_h6_empty_is_null(value: array | None) -> None:
+    assert native.pointer(value) is None
+
+
+def test_text_keeps_undecodable_bytes() -> None:
+    assert native.text(b"\xff/a".decode("utf-8", "surrogateescape")) == b"\xff/a"
+    assert native.text(None) is None
+
+
+def test_error_has_code_and_text() -> None:
+    library = native.load()
+    with pytest.raises(native.GradusError) as caught:
+        library.scene_release(12345)
+    assert caught.value.code != native.Error.OK
+    assert caught.value.text
+    assert library.take_error() == ""

@@ -1,0 +1,74 @@
+"""Options after `--` (contract 5.4)."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from gradus import options
+from gradus.abi import Pass
+from gradus.options import OptionError, parse
+
+
+def test_both_spellings() -> None:
+    assert parse(["--gradus-samples", "16"]).native == (("samples", "16"),)
+    assert parse(["--gradus-noise-threshold=0.5"]).native == (("noise_threshold", "0.5"),)
+
+
+def test_host_options() -> None:
+    parsed = parse(["--gradus-stats", "a.jsonl", "--gradus-save-scene=x.gradus", "--gradus-threads", "2", "--gradus-preview-samples", "7"])
+    assert (parsed.stats, parsed.save_scene, parsed.threads) == ("a.jsonl", "x.gradus", 2)
+    assert parsed.host == {"preview_samples": 7}
+    assert parsed.native == ()
+
+
+def test_values_with_an_equals_sign() -> None:
+    assert parse(["--gradus-stats=a=b"]).stats == "a=b"
+
+
+def test_a_negative_value_is_a_value() -> None:
+    assert parse(["--gradus-seed", "-1"]).native == (("seed", "-1"),)
+
+
+def test_others_are_ignored() -> None:
+    assert parse(["--cycles-device", "CPU", "samples", "-x"]) == options.Overrides()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        (["--gradus-sampels", "1"], "--gradus-sampels"),
+        (["--gradus-samples"], "needs a value"),
+        (["--gradus-samples", "--gradus-seed", "1"], "needs a value"),
+        (["--gradus-threads", "many"], "many"),
+        (["--gradus-threads", "-1"], "outside"),
+        (["--gradus-passes", "depth,deph"], "deph"),
+        (["--gradus-passes", "count"], "count"),
+        (["--gradus-width", "5"], "--gradus-width"),
+    ],
+)
+def test_unknown_ones_are_named(arguments: list[str], part: str) -> None:
+    with pytest.raises(OptionError, match=part):
+        parse(arguments)
+
+
+def test_passes() -> None:
+    assert parse(["--gradus-passes", "depth, noisy-image,GRADIENTS"]).passes == {
+        Pass.DEPTH,
+        Pass.NOISY_IMAGE,
+        Pass.GRADIENT_X,
+        Pass.GRADIENT_Y,
+    }
+
+
+def test_the_last_value_counts() -> None:
+    parsed = parse(["--gradus-integrator", "path", "--gradus-integrator", "GRADIENT"])
+    assert parsed.value("integrator") == "gradient"
+    assert parsed.value("reconstruction") is None
+
+
+def test_current_reads_after_the_dashes_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["blender", "--gradus-nonsense", "1", "--", "--gradus-samples", "3"])
+    assert options.current().native == (("samples", "3"),)
+    monkeypatch.setattr(sys, "argv", ["blender", "--gradus-nonsense", "1"])
+    assert options.current() == options.Overrides()

@@ -1,0 +1,64 @@
+"""Files that Blender writes: space before a frame, the frame before (contract 9.3); stats and frame store paths (contract 7)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from gradus import frame_store, output, stats
+from gradus.failure import Failure, user_text
+
+
+def test_f7_space(tmp_path: Path) -> None:
+    output.require_space(str(tmp_path / "new" / "folder" / "a.exr"), 1)
+    with pytest.raises(Failure, match="not enough space"):
+        output.require_space(str(tmp_path / "a.exr"), 1 << 60)
+
+
+def test_f7_the_frame_before(tmp_path: Path) -> None:
+    render = SimpleNamespace(frame_path=lambda frame: str(tmp_path / f"{frame}.png"), is_movie_format=False, use_multiview=False)
+    files = output.FrameFiles()
+    files.before_frame(render, 1, 1)
+    files.after_frame(render, 1)
+    (tmp_path / "1.png").write_bytes(b"x")
+    files.before_frame(render, 2, 1)
+    files.after_frame(render, 2)
+    (tmp_path / "2.png").write_bytes(b"")
+    with pytest.raises(Failure, match="empty"):
+        files.before_frame(render, 3, 1)
+    files.after_frame(render, 7)
+    with pytest.raises(Failure, match="not written"):
+        files.before_frame(render, 8, 1)
+    files.before_frame(render, 9, 1)
+
+
+def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:
+    clock = stats.Clock()
+    with clock.phase("export"):
+        pass
+    with clock.phase("export"):
+        pass
+    native = json.dumps({"schema": 1, "seconds": {"sample": 2.0}, "warnings": ["a"], "samples": 4})
+    full = stats.complete(native, {"frame": 3, "layer": "L", "scene": "S", "view": ""}, clock, ["a", "b"])
+    assert full["warnings"] == ["a", "b"]
+    assert {"sample", "export", "total"} <= full["seconds"].keys()
+    assert full["peak_memory_bytes"] > 1 << 20
+    path = tmp_path / "stats.jsonl"
+    stats.append(str(path), full)
+    stats.append(str(path), {**full, "frame": 4})
+    assert [json.loads(line)["frame"] for line in path.read_text().splitlines()] == [3, 4]
+
+
+def test_frame_store_names_are_escaped_and_differ() -> None:
+    assert str(frame_store.frame_path("/s", "My Scene", "View/Layer", "left", -5)) == "/s/My%20Scene/View%2FLayer.left/f-0000005.base.exr"
+    assert frame_store.frame_path("/s", "a", "b", "", 1048574).name == "f+1048574.base.exr"
+    assert frame_store.escape("a%20b") != frame_store.escape("a b")
+
+
+def test_texts_for_people_are_one_line_and_never_empty() -> None:
+    assert user_text(Failure("what\nfailed")) == "what failed"
+    assert user_text(MemoryError()) == "out of memory"
+    assert user_text(ValueError()) == "ValueError"
+    assert user_text(KeyError("x")) == "KeyError: 'x'"

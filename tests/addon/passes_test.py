@@ -1,0 +1,108 @@
+"""The pass table: names per version, channels, switches (blender.md 4.2, contract 6)."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import byref
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from gradus import native, passes
+from gradus.abi import Pass
+
+# Copied from Blender's documentation and source, not from our table.
+NAMES = {
+    Pass.COMBINED: ("Combined", "Combined", 4),
+    Pass.NOISY_IMAGE: ("Noisy Image", "Noisy Image", 4),
+    Pass.DEPTH: ("Depth", "Depth", 1),
+    Pass.MIST: ("Mist", "Mist", 1),
+    Pass.NORMAL: ("Normal", "Normal", 3),
+    Pass.POSITION: ("Position", "Position", 3),
+    Pass.UV: ("UV", "UV", 3),
+    Pass.VECTOR: ("Vector", "Vector", 4),
+    Pass.OBJECT_INDEX: ("IndexOB", "Object Index", 1),
+    Pass.MATERIAL_INDEX: ("IndexMA", "Material Index", 1),
+    Pass.EMISSION: ("Emit", "Emission", 3),
+    Pass.ENVIRONMENT: ("Env", "Environment", 3),
+    Pass.DIFFUSE_DIRECT: ("DiffDir", "Diffuse Direct", 3),
+    Pass.DIFFUSE_INDIRECT: ("DiffInd", "Diffuse Indirect", 3),
+    Pass.DIFFUSE_COLOR: ("DiffCol", "Diffuse Color", 3),
+    Pass.GLOSSY_DIRECT: ("GlossDir", "Glossy Direct", 3),
+    Pass.GLOSSY_INDIRECT: ("GlossInd", "Glossy Indirect", 3),
+    Pass.GLOSSY_COLOR: ("GlossCol", "Glossy Color", 3),
+    Pass.TRANSMISSION_DIRECT: ("TransDir", "Transmission Direct", 3),
+    Pass.TRANSMISSION_INDIRECT: ("TransInd", "Transmission Indirect", 3),
+    Pass.TRANSMISSION_COLOR: ("TransCol", "Transmission Color", 3),
+    Pass.AMBIENT_OCCLUSION: ("AO", "Ambient Occlusion", 3),
+    Pass.DENOISING_NORMAL: ("Denoising Normal", "Denoising Normal", 3),
+    Pass.DENOISING_ALBEDO: ("Denoising Albedo", "Denoising Albedo", 3),
+    Pass.DENOISING_DEPTH: ("Denoising Depth", "Denoising Depth", 1),
+    Pass.SAMPLE_COUNT: ("Debug Sample Count", "Debug Sample Count", 1),
+    Pass.GRADIENT_X: ("Gradient X", "Gradient X", 3),
+    Pass.GRADIENT_Y: ("Gradient Y", "Gradient Y", 3),
+    Pass.VARIANCE: ("Variance", "Variance", 3),
+}
+
+
+def test_names_before_and_since_5_0() -> None:
+    for info in passes.TABLE:
+        if info.plane in NAMES:
+            old, new, channels = NAMES[info.plane]
+            assert (info.blender_name((4, 5, 15)), info.blender_name((5, 0, 1)), info.channels) == (old, new, channels)
+    assert NAMES.keys() <= {info.plane for info in passes.TABLE}
+
+
+def test_never_two_channels() -> None:
+    assert {info.channels for info in passes.TABLE} <= {1, 3, 4}
+
+
+def test_each_plane_once() -> None:
+    planes = [info.plane for info in passes.TABLE]
+    assert len(planes) == len(set(planes))
+
+
+def test_channels_are_those_of_the_library() -> None:
+    library = native.load()
+    for info in passes.TABLE:
+        name, channels = ctypes.c_char_p(), ctypes.c_uint32()
+        library.pass_info(info.plane, byref(name), byref(channels))
+        assert channels.value == info.channels, info.name
+
+
+def layer(**on: bool) -> SimpleNamespace:
+    ours = {name.removeprefix("gradus_"): value for name, value in on.items() if name.startswith("gradus_")}
+    defaults = dict.fromkeys(("use_pass_gradients", "use_pass_variance", "use_pass_sample_count", "use_pass_denoising"), False)
+    return SimpleNamespace(gradus=SimpleNamespace(**(defaults | ours)), **on)
+
+
+def listed(view_layer: SimpleNamespace, reconstructed: bool = False, extra: tuple = ()) -> list[Pass]:
+    return [info.plane for info in passes.list_passes(view_layer, reconstructed, extra)]
+
+
+def test_only_what_is_enabled() -> None:
+    assert listed(layer()) == [Pass.COMBINED]
+    assert listed(layer(use_pass_z=True, use_pass_vector=False)) == [Pass.COMBINED, Pass.DEPTH]
+    assert listed(layer(gradus_use_pass_gradients=True)) == [Pass.COMBINED, Pass.GRADIENT_X, Pass.GRADIENT_Y]
+    assert listed(layer(), extra=(Pass.VARIANCE,)) == [Pass.COMBINED, Pass.VARIANCE]
+
+
+@pytest.mark.parametrize(
+    ("integrator", "reconstruction", "expected"),
+    [("AUTO", "AUTO", True), ("GRADIENT", "L1", True), ("GRADIENT", "NONE", False), ("PATH", "AUTO", False), ("PATH", "NONE", False)],
+)
+def test_noisy_image_exists_whenever_combined_is_reconstructed(integrator: str, reconstruction: str, expected: bool) -> None:
+    assert (Pass.NOISY_IMAGE in listed(layer(), passes.is_reconstructed(integrator, reconstruction))) == expected
+
+
+def test_switches_exist_in_this_blender() -> None:
+    view_layer = bpy.context.scene.view_layers[0]
+    for info in passes.TABLE:
+        if info.switch.startswith("gradus."):
+            assert hasattr(view_layer.gradus, info.switch.removeprefix("gradus."))
+        elif info.switch.startswith("use_"):
+            assert hasattr(view_layer, info.switch), info.switch
+
+
+def test_mask() -> None:
+    assert passes.mask([info for info in passes.TABLE if info.plane in (Pass.COMBINED, Pass.DEPTH)]) == 0b101

@@ -1,0 +1,127 @@
+"""One table of settings: Blender's properties, the library's options and the documentation agree (architecture 3, contract 5)."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import byref
+
+import bpy
+import pytest
+from gradus import native, options, passes, renderer, settings
+
+DOCUMENTED = {
+    "samples": 64,
+    "noise_threshold": 0.01,
+    "time_limit": 0.0,
+    "seed": 0,
+    "use_animated_seed": True,
+    "integrator": "AUTO",
+    "reconstruction": "AUTO",
+    "reconstruction_alpha": 0.2,
+    "max_bounces": 12,
+    "diffuse_bounces": 4,
+    "glossy_bounces": 4,
+    "transmission_bounces": 12,
+    "volume_bounces": 0,
+    "transparent_max_bounces": 8,
+    "clamp_direct": 0.0,
+    "clamp_indirect": 0.0,
+    "frame_store": "",
+    "pixel_filter": "BLACKMAN_HARRIS",
+    "filter_width": 1.5,
+    "film_exposure": 1.0,
+    "min_samples": 0,
+    "roughness_threshold": 0.1,
+    "strict": False,
+    "preview_samples": 32,
+}
+"""Names that tests and users rely on, and their defaults."""
+
+
+def library_options() -> dict[str, native.OptionInfo]:
+    return {info.name.decode(): info for info in native.load().options()}
+
+
+def test_documented_defaults() -> None:
+    properties = bpy.context.scene.gradus
+    for name, default in DOCUMENTED.items():
+        value = getattr(properties, name)
+        assert value == (pytest.approx(default) if isinstance(default, float) else default), name
+
+
+def test_every_option_of_the_library_has_a_home() -> None:
+    known = {setting.name for setting in settings.native_settings()} | set(settings.FROM_BLENDER) | set(settings.TEST_SWITCHES)
+    assert set(library_options()) == known
+
+
+@pytest.mark.parametrize("setting", list(settings.native_settings()), ids=lambda setting: setting.name)
+def test_equals_the_library_s_table(setting: settings.Setting) -> None:
+    info = library_options()[setting.name]
+    kind = {settings.INT: 0, settings.FLOAT: 1, settings.BOOL: 2, settings.ENUM: 3}[setting.kind]
+    assert info.type == kind
+    if setting.kind == settings.ENUM:
+        names = info.choices.decode().split()
+        assert [names[choice[3]].upper() for choice in setting.choices] == [choice[0] for choice in setting.choices]
+        assert setting.value_of(setting.default) == info.default_value
+    else:
+        assert float(setting.default) == pytest.approx(info.default_value)
+        assert (setting.minimum, setting.maximum) == (pytest.approx(info.minimum), pytest.approx(info.maximum))
+
+
+def test_properties_have_the_limits_of_the_table() -> None:
+    described = bpy.context.scene.gradus.bl_rna.properties
+    for setting in settings.SETTINGS:
+        entry = described[setting.name]
+        assert entry.description == setting.doc
+        if setting.kind in (settings.INT, settings.FLOAT):
+            assert entry.hard_min == pytest.approx(setting.minimum)
+            assert entry.hard_max == pytest.approx(setting.maximum)
+
+
+def test_values_reach_the_library_and_options_win(scene: bpy.types.Scene) -> None:
+    scene.gradus.samples, scene.gradus.reconstruction, scene.gradus.filter_width = 5, "L1", 2.0
+    scene.view_layers[0].pass_alpha_threshold = 0.25
+    overrides = options.parse(["--gradus-samples", "9", "--gradus-integrator", "gradient"])
+    filled = renderer.native_settings(native.load(), scene, scene.view_layers[0], overrides)
+    assert (filled.samples, filled.reconstruction, filled.integrator) == (9, native.Reconstruction.L1, native.Integrator.GRADIENT)
+    assert (filled.filter_width, filled.alpha_threshold) == (2.0, 0.25)
+    assert scene.gradus.samples == 5
+
+
+def test_samples_of_the_view_layer_win_over_the_scene(scene: bpy.types.Scene) -> None:
+    scene.view_layers[0].samples = 3
+    assert renderer.native_settings(native.load(), scene, scene.view_layers[0], options.Overrides()).samples == 3
+
+
+def test_e8_zero_samples_is_an_error_text(scene: bpy.types.Scene) -> None:
+    with pytest.raises(native.GradusError, match="samples"):
+        renderer.native_settings(native.load(), scene, scene.view_layers[0], options.parse(["--gradus-samples", "0"]))
+
+
+def test_defaults_of_the_library_are_ours() -> None:
+    ours, theirs = native.Settings(), native.Settings()
+    library = native.load()
+    library.settings_default(byref(theirs))
+    library.settings_default(byref(ours))
+    settings.fill(ours, bpy.data.scenes.new("fresh").gradus)
+    for name, _ in native.Settings._fields_:
+        first, second = getattr(ours, name), getattr(theirs, name)
+        if isinstance(first, ctypes.Array):
+            first, second = list(first), list(second)
+        assert first == second, name
+
+
+def test_region_rounds_as_blender_does() -> None:
+    class Border:
+        use_border = True
+        border_min_x, border_min_y = (ctypes.c_float(value).value for value in (0.1, 0.2))
+        border_max_x, border_max_y = (ctypes.c_float(value).value for value in (0.7, 0.7))
+
+    assert renderer.region_of(Border, 100, 60) == (10, 12, 70, 42)
+    Border.use_border = False
+    assert renderer.region_of(Border, 100, 60) == (0, 0, 100, 60)
+
+
+def test_groups_name_planes_of_the_table() -> None:
+    planes = {info.plane for info in passes.TABLE}
+    assert all(set(group) <= planes for group in passes.GROUPS.values())
