@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Prints the path of a Debian 12 root folder with the hosts' packages and none of our development packages; makes it once
+# (about a minute) in the cache folder. For tests of what is shipped. Needs root.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/setup"
+packages=$(sed -e 's/#.*//' debian-blender.txt debian-bpy.txt | awk 'NF {print $1}' | sort -u | paste -sd,)
+hash=$(printf '%s' "$packages" | sha256sum | cut -c1-12)
+root=${XDG_CACHE_HOME:-$HOME/.cache}/gradus/bare-bookworm-$hash
+mkdir -p "$(dirname "$root")"
+exec 9>"$root.lock"
+flock 9
+if [ ! -e "$root/.complete" ]; then
+  rm -rf --one-file-system "$root"
+  mmdebstrap --quiet --mode=root --variant=apt --include="$packages" bookworm "$root" \
+    "deb ${GRADUS_DEBIAN_MIRROR:-http://deb.debian.org/debian} bookworm main" >&2
+  mkdir -p "$root/opt/bpy45" "$root/opt/bpy50" "$root/work"
+  touch "$root/.complete"
+fi
+echo "$root"
