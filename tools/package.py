@@ -10,11 +10,11 @@ import os
 import re
 import subprocess
 import sys
-import tomllib
 import zipfile
 from pathlib import Path
 
 import bundle
+import tomllib
 
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon" / "gradus"

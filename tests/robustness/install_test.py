@@ -20,7 +20,7 @@ set -e
 mount -t proc proc "$ROOTFS/proc"
 mount --bind "$WORK" "$ROOTFS/work"
 for venv in bpy45 bpy50; do mount --bind "$VENVS/$venv" "$ROOTFS/opt/$venv"; done
-exec env -i HOME=/work/home PATH=/usr/bin:/bin LC_ALL=C.UTF-8 TMPDIR=/work chroot "$ROOTFS" "$@"
+exec env -i HOME=/work/home PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 TMPDIR=/work chroot "$ROOTFS" "$@"
 """
 
 

@@ -29,7 +29,7 @@ def render() -> None:
 
 
 def addon_names() -> list[str]:
-    return [name for name in bpy.context.preferences.addons.keys() if name.endswith("gradus")]
+    return [addon.module for addon in bpy.context.preferences.addons if addon.module.endswith("gradus")]
 
 
 if STEP in ("install", "both"):
