@@ -11,7 +11,6 @@ import bpy
 
 from .. import native
 from . import camera, instances, light, mesh, motion, world
-from .curves import evaluated_mesh
 from .instances import Collected, Entry, InstanceKey
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
@@ -148,10 +147,9 @@ class _Sync:
         undeformed = None
         if original.type == "MESH" and (original.modifiers or getattr(original.data, "shape_keys", None) is not None):
             undeformed = original.data
-        with evaluated_mesh(entry.object, entry.data) as evaluated:
-            if evaluated is None or len(evaluated.polygons) == 0:
-                return None
-            return mesh.read_mesh(evaluated, wanted, undeformed)
+        if len(entry.data.polygons) == 0:
+            return None
+        return mesh.read_mesh(entry.data, wanted, undeformed)
 
     def _set_mesh(self, arrays: MeshArrays) -> int:
         key = self._mesh_keys.key(arrays.content_hash())

@@ -13,7 +13,6 @@ from typing import Any
 
 from .. import native
 from .arrays import read
-from .curves import GEOMETRY
 
 CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME, SHADOW = 1, 2, 4, 8, 16, 32
 ALL_RAYS = 63
@@ -38,7 +37,7 @@ class Entry:
     index: int  # in depsgraph.object_instances
     key: InstanceKey  # stable over frames
     object: Any  # evaluated object that owns what is shown
-    data: Any  # evaluated mesh, curve or light
+    data: Any  # evaluated mesh or light
     place: int  # what is shown, by address: equal for instances that share it, within one evaluation
     name: str
     visibility: int
@@ -165,7 +164,11 @@ class _Parts:
 
 
 def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
-    """All visible surfaces and lamps of the depsgraph at its frame."""
+    """All visible surfaces and lamps of the depsgraph at its frame.
+
+    Curves, text, surfaces and metaballs come twice: as themselves, and as an instance that shows the mesh which Blender made of
+    them (3.4 to 5.0). Only the latter has a surface.
+    """
     instances = depsgraph.object_instances
     collected = Collected(read(instances, "matrix_world", "f", 16))
     ids = read(instances, "persistent_id", "i", 8)
@@ -177,7 +180,7 @@ def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
         if not instance.show_self:
             continue
         kind = obj.type
-        if kind in GEOMETRY or kind == "LIGHT":
+        if kind in {"MESH", "LIGHT"}:
             entry = _entry(index, instance, obj, ids, parts)
             if entry is not None:
                 (collected.lights if kind == "LIGHT" else collected.surfaces).append(entry)
@@ -202,7 +205,7 @@ def _entry(index: int, instance: Any, obj: Any, ids: array, parts: _Parts) -> En
         key,
         owner,
         data,
-        _place(owner, data),
+        data.as_pointer(),
         owner.name,
         bits,
         instance.random_id & 0xFFFFFFFF if copies else parts.random_id(obj, key),
@@ -215,11 +218,6 @@ def _entry(index: int, instance: Any, obj: Any, ids: array, parts: _Parts) -> En
     if obj.type != "LIGHT":
         entry.materials = parts.materials(obj, data, key)
     return entry
-
-
-def _place(owner: Any, data: Any) -> int:
-    """Curves differ by object, since modifiers work on each."""
-    return data.as_pointer() if data.bl_rna.identifier == "Mesh" else owner.as_pointer()
 
 
 def _pick(values: array, entries: list[Entry]) -> array:

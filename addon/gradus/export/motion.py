@@ -15,11 +15,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .camera import CameraState, camera_state
-from .curves import CONVERTIBLE, evaluated_mesh
 from .instances import Entry, InstanceKey, collect
 from .mesh import MeshArrays, corner_vertices, read_positions
 
 OFFSETS = (-1, 1)
+_BECOME_MESHES = frozenset({"CURVE", "SURFACE", "FONT", "META"})
 
 
 @dataclass
@@ -34,7 +34,7 @@ class Moment:
 def may_deform(entry: Entry) -> bool:
     """Whether the positions of an instance's mesh may differ between frames."""
     original = entry.object.original
-    if original.type in CONVERTIBLE:
+    if original.type in _BECOME_MESHES:
         return True
     if any(modifier.show_render for modifier in original.modifiers):
         return True
@@ -98,12 +98,12 @@ def _read_moment(
 
 
 def _same_topology_positions(entry: Entry, arrays: MeshArrays) -> array | None:
-    with evaluated_mesh(entry.object, entry.data) as mesh:
-        if mesh is None or len(mesh.vertices) * 3 != len(arrays.positions) or len(mesh.loops) != len(arrays.corner_vertices):
-            return None
-        if corner_vertices(mesh).tobytes() != arrays.corner_vertices.tobytes():
-            return None
-        return read_positions(mesh)
+    mesh = entry.data
+    if len(mesh.vertices) * 3 != len(arrays.positions) or len(mesh.loops) != len(arrays.corner_vertices):
+        return None
+    if corner_vertices(mesh).tobytes() != arrays.corner_vertices.tobytes():
+        return None
+    return read_positions(mesh)
 
 
 def mesh_motion(key: InstanceKey, arrays: MeshArrays, moments: list[Moment]) -> tuple[array, array] | None:

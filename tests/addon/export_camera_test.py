@@ -1,0 +1,104 @@
+"""Cameras: the window of the frame for every setting, depth of field, and what a scene can look through besides cameras."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+from support import recording
+
+FRAMES = ((64, 36, 1.0, 1.0), (36, 64, 1.0, 1.0), (50, 50, 1.0, 1.0), (64, 36, 2.0, 1.0), (36, 64, 1.0, 3.0))
+POINTS = (Vector((0.3, -0.2, 0.0)), Vector((-0.7, 0.4, 1.0)), Vector((1.2, 0.9, -2.0)))
+
+
+def _pixel(camera: object, window: list[float], point: Vector, size: tuple[int, int], orthographic: bool) -> np.ndarray:
+    """Where a world point appears, in pixels, by the exported matrix and window."""
+    world = np.array(camera.matrix).reshape(4, 4).T  # the API's matrices are column-major
+    local = np.linalg.inv(world) @ np.array([*point, 1.0])
+    place = local[:2] if orthographic else local[:2] / -local[2]
+    left, right, bottom, top = window
+    return np.array([(place[0] - left) / (right - left) * size[0], (place[1] - bottom) / (top - bottom) * size[1]])
+
+
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
+@pytest.mark.parametrize("fit", ["AUTO", "HORIZONTAL", "VERTICAL"])
+def test_projection_equals_blender(scene: bpy.types.Scene, kind: str, fit: str) -> None:
+    """Known points within 0.01 px of Blender's own projection, over frame shapes, pixel aspects and shifts."""
+    camera = recording.add_camera(type=kind, sensor_fit=fit, lens=35.0, sensor_width=36.0, sensor_height=20.0, ortho_scale=4.0)
+    camera.rotation_euler = (0.2, -0.1, 0.3)
+    for (width, height, aspect_x, aspect_y), shift in itertools.product(FRAMES, ((0.0, 0.0), (0.3, -0.2))):
+        render = scene.render
+        render.resolution_x, render.resolution_y, render.pixel_aspect_x, render.pixel_aspect_y = width, height, aspect_x, aspect_y
+        camera.data.shift_x, camera.data.shift_y = shift
+        recorded, _ = recording.export(scene)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        projection = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=aspect_x, scale_y=aspect_y)
+        view = projection @ camera.matrix_world.normalized().inverted()
+        for point in POINTS:
+            clip = view @ point.to_4d()
+            expected = [(clip[0] / clip[3] * 0.5 + 0.5) * width, (clip[1] / clip[3] * 0.5 + 0.5) * height]
+            found = _pixel(recorded.camera, list(recorded.camera.window), point, (width, height), kind == "ORTHO")
+            assert np.abs(found - expected).max() < 0.01, (width, height, aspect_x, aspect_y, shift, point)
+
+
+def test_depth_of_field(scene: bpy.types.Scene) -> None:
+    camera = recording.add_camera(lens=50.0)
+    dof = camera.data.dof
+    dof.use_dof, dof.aperture_fstop, dof.aperture_blades, dof.aperture_ratio = True, 2.0, 6, 1.5
+    dof.aperture_rotation, dof.focus_distance = 0.25, 3.0
+    recorded = recording.export(scene)[0].camera
+    assert recorded.aperture_radius == pytest.approx(0.050 / 4.0)
+    assert (recorded.focus_distance, recorded.blades) == (pytest.approx(3.0), 6)
+    assert (recorded.blade_rotation, recorded.aperture_ratio) == (pytest.approx(0.25), pytest.approx(1.5))
+    dof.focus_object = recording.add(None, "Focus", (3.0, 4.0, 1.0))
+    assert recording.export(scene)[0].camera.focus_distance == pytest.approx(4.0), "along the view axis, not the distance"
+    camera.data.type = "ORTHO"
+    assert recording.export(scene)[0].camera.aperture_radius == pytest.approx(0.25)
+
+
+def test_scale_of_a_camera_does_not_count(scene: bpy.types.Scene) -> None:
+    camera = recording.add_camera()
+    camera.scale = (2.0, 3.0, 0.5)
+    matrix = np.array(recording.export(scene)[0].camera.matrix).reshape(4, 4)
+    assert np.allclose(np.linalg.norm(matrix[:3, :3], axis=1), 1.0)
+
+
+def test_spot_light_as_camera(scene: bpy.types.Scene) -> None:
+    data = bpy.data.lights.new("Spot", "SPOT")
+    data.spot_size = 1.0
+    scene.camera = recording.add(data, "Spot")
+    left, right, _, _ = recording.export(scene)[0].camera.window
+    assert (right - left) / 2 == pytest.approx(math.tan(0.5))
+
+
+def test_panoramic_camera_is_refused(scene: bpy.types.Scene) -> None:
+    from gradus.export import ExportError
+
+    recording.add_camera(type="PANO")
+    with pytest.raises(ExportError, match="panoramic"):
+        recording.export(scene)
+
+
+def test_no_camera_is_refused(scene: bpy.types.Scene) -> None:
+    from gradus.export import ExportError
+
+    with pytest.raises(ExportError, match="no camera"):
+        recording.export(scene)
+
+
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
+def test_view_from_matrices_equals_the_camera(scene: bpy.types.Scene, kind: str) -> None:
+    """A viewport's matrices give the window that the same camera gives."""
+    from gradus.export import ViewOverride
+
+    camera = recording.add_camera(type=kind, shift_x=0.1, shift_y=-0.2)
+    expected = recording.export(scene)[0].camera
+    projection = camera.calc_matrix_camera(bpy.context.evaluated_depsgraph_get(), x=64, y=36)
+    view = ViewOverride.from_view(camera.matrix_world.inverted(), projection, (0.1, 100.0), 64, 36)
+    found = recording.export(scene, view=view)[0].camera
+    assert np.allclose(list(found.window), list(expected.window), atol=1e-5)
+    assert np.allclose(list(found.matrix), list(expected.matrix), atol=1e-5)

@@ -1,0 +1,143 @@
+"""Images: files, packed data, generated pixels, tiles, sequences; their colour space and alpha; what is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from gradus.export import image as images
+
+FILE, ENCODED, FLOAT = 0, 1, 2
+
+
+def _save(path: Path, kind: str = "PNG", color: tuple[float, float, float] = (1, 0, 0)) -> Path:
+    block = bpy.data.images.new(path.stem, 4, 2, float_buffer=kind == "OPEN_EXR")
+    block.pixels.foreach_set([*color, 1.0] * 8)
+    block.file_format = kind
+    block.filepath_raw = str(path)
+    block.save()
+    bpy.data.images.remove(block)
+    return path
+
+
+def _state(block: bpy.types.Image, user: object = None, frame: int = 1) -> images.ImageState:
+    return images.image_state(block, user, frame, bpy.path.abspath)
+
+
+@pytest.mark.parametrize(
+    "kind, suffix, is_float", [("PNG", "png", False), ("JPEG", "jpg", False), ("TIFF", "tif", False), ("OPEN_EXR", "exr", True)]
+)
+def test_files_go_as_paths(scene: bpy.types.Scene, tmp_path: Path, kind: str, suffix: str, is_float: bool) -> None:
+    path = _save(tmp_path / f"picture.{suffix}", kind)
+    block = bpy.data.images.load(str(path))
+    state = _state(block)
+    (tile,) = state.tiles
+    assert (tile.source, tile.path, tile.data) == (FILE, str(path), None)
+    assert state.is_float == is_float
+    assert state.color_space == block.colorspace_settings.name and (state.color_space == "sRGB") != is_float
+
+
+def test_packed_files_go_as_bytes(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    path = _save(tmp_path / "picture.png")
+    block = bpy.data.images.load(str(path))
+    block.pack()
+    path.unlink()
+    (tile,) = _state(block).tiles
+    assert tile.source == ENCODED and bytes(tile.data[:4]) == b"\x89PNG"
+
+
+def test_generated_and_painted_images_go_as_pixels(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    generated = bpy.data.images.new("Generated", 4, 2)
+    generated.pixels.foreach_set([0.5, 0.25, 1.0, 1.0] * 8)
+    state = _state(generated)
+    (tile,) = state.tiles
+    assert (tile.source, tile.width, tile.height) == (FLOAT, 4, 2)
+    assert tile.data[2] == pytest.approx(1.0) and tile.data[0] == pytest.approx(0.5, abs=3e-3)
+    assert state.color_space == "sRGB" and not state.is_float
+    painted = bpy.data.images.load(str(_save(tmp_path / "picture.png")))
+    painted.pixels[0] = 0.0
+    assert _state(painted).tiles[0].source == FLOAT
+
+
+def test_float_pixels_are_linear_already(scene: bpy.types.Scene) -> None:
+    block = bpy.data.images.new("Generated", 4, 2, float_buffer=True)
+    block.pixels.foreach_set([4.0, 0.25, 1.0, 1.0] * 8)
+    state = _state(block)
+    assert state.is_float and state.color_space == "" and state.tiles[0].data[0] == 4.0
+
+
+@pytest.mark.parametrize(
+    "make", [lambda path: None, lambda path: path.write_bytes(b""), lambda path: path.mkdir(), lambda path: path.write_text("no image")]
+)
+def test_f1_what_cannot_be_read_keeps_its_path(scene: bpy.types.Scene, tmp_path: Path, make: object) -> None:
+    """The native side warns with that path."""
+    path = tmp_path / "broken.png"
+    make(path)
+    block = bpy.data.images.new("Broken", 1, 1)
+    block.source = "FILE"
+    block.filepath = str(path)
+    (tile,) = _state(block).tiles
+    assert (tile.source, tile.path) == (FILE, str(path))
+
+
+def test_tiles(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    for number in (1001, 1002, 1011):
+        _save(tmp_path / f"tile.{number}.png")
+    block = bpy.data.images.load(str(tmp_path / "tile.1001.png"))
+    block.source = "TILED"
+    block.filepath = str(tmp_path / "tile.<UDIM>.png")
+    block.tiles.new(1002)
+    block.tiles.new(1011)
+    state = _state(block)
+    found = {tile.number: Path(tile.path).name for tile in state.tiles}
+    assert found == {number: f"tile.{number}.png" for number in (1001, 1002, 1011)}
+
+
+def test_tile_names() -> None:
+    assert images.tile_path("a.<UDIM>.png", 1012) == "a.1012.png"
+    assert images.tile_path("a.<UVTILE>.png", 1012) == "a.u2_v2.png"
+
+
+@pytest.mark.parametrize(
+    "frame, cyclic, expected", [(1, False, 1), (5, False, 5), (12, False, 10), (0, False, 0), (12, True, 2), (10, True, 10), (-3, True, 7)]
+)
+def test_sequence_frames(frame: int, cyclic: bool, expected: int) -> None:
+    user = SimpleNamespace(frame_duration=10, frame_start=1, frame_offset=0, use_cyclic=cyclic)
+    assert images.user_frame(user, frame) == expected
+    user.frame_offset = 100
+    assert images.user_frame(user, frame) == expected + 100
+
+
+def test_sequence_paths() -> None:
+    assert images.sequence_path("/a1/name_0007.exr", 12) == "/a1/name_0012.exr"
+    assert images.sequence_path("/a1/name_7.exr", 12) == "/a1/name_12.exr"
+    assert images.sequence_path("/a1/name.exr", 12) == "/a1/name.exr"
+
+
+def test_sequence_of_the_frame(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    for number in (1, 2, 3):
+        _save(tmp_path / f"s_{number:03d}.png")
+    block = bpy.data.images.load(str(tmp_path / "s_001.png"))
+    block.source = "SEQUENCE"
+    user = SimpleNamespace(frame_duration=3, frame_start=1, frame_offset=0, use_cyclic=False)
+    assert Path(_state(block, user, 2).tiles[0].path).name == "s_002.png"
+
+
+@pytest.mark.parametrize("mode, code", [("STRAIGHT", 0), ("PREMUL", 1), ("CHANNEL_PACKED", 2), ("NONE", 3)])
+def test_alpha_and_data(scene: bpy.types.Scene, tmp_path: Path, mode: str, code: int) -> None:
+    block = bpy.data.images.load(str(_save(tmp_path / "picture.png")))
+    block.alpha_mode = mode
+    block.colorspace_settings.name = "Non-Color"
+    state = _state(block)
+    assert state.alpha_mode == code and state.color_space == ""
+
+
+def test_changed_file_is_another_content(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    path = _save(tmp_path / "picture.png")
+    block = bpy.data.images.load(str(path))
+    before = images.content(_state(block))
+    assert images.content(_state(block)) == before
+    path.write_bytes(path.read_bytes() + b"\0")
+    assert images.content(_state(block)) != before

@@ -1,0 +1,189 @@
+"""Instances: matrices, identity, visibility, slots, and the facts that Object Info reads."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from support import recording
+
+CAMERA, GLOSSY, HOLDOUT = 1, 4, 64
+
+
+def _collection_instances(count: int) -> bpy.types.Object:
+    """A collection of one grid, shown by empties that also stand in a parent."""
+    source = bpy.data.collections.new("Source")
+    obj = bpy.data.objects.new("Inner", recording.grid(1))
+    obj.location = (0, 0, 1)
+    source.objects.link(obj)
+    for index in range(count):
+        empty = recording.add(None, f"Copy {index}", (index, 0, 0))
+        empty.instance_type = "COLLECTION"
+        empty.instance_collection = source
+    return obj
+
+
+def test_collection_instances_share_a_mesh(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    _collection_instances(4)
+    recorded, _ = recording.export(scene)
+    assert recorded.instances["count"] == 4 and len(recorded.meshes) == 1
+    places = sorted(tuple(matrix[3, :3]) for matrix in recorded.instances["matrices"])  # column-major: translation in the last row
+    assert np.allclose(places, [(i, 0, 1) for i in range(4)])
+    assert len(set(recorded.instances["ids"])) == 4
+    assert len(set(recorded.instances["random"])) == 4
+
+
+def test_identity_survives_renames_and_order(scene: bpy.types.Scene) -> None:
+    from gradus.export import Exporter
+
+    recording.add_camera()
+    for index in range(3):
+        recording.add(recording.grid(1 + index), f"Object {index}", (index, 0, 0))
+    recorded = recording.Recording()
+    exporter = Exporter(recorded, 1)
+
+    def ids_by_place() -> dict[float, int]:
+        exporter.sync(bpy.context.evaluated_depsgraph_get())
+        return {float(matrix[3, 0]): key for matrix, key in zip(recorded.instances["matrices"], recorded.instances["ids"], strict=True)}
+
+    before = ids_by_place()
+    bpy.data.objects["Object 0"].name = "Zzz"
+    assert ids_by_place() == before
+
+
+def test_visibility_of_object_and_instancer(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    obj = _collection_instances(1)
+    obj.visible_glossy = False
+    bpy.data.objects["Copy 0"].visible_camera = False
+    recorded, _ = recording.export(scene)
+    (bits,) = recorded.instances["visibility"]
+    assert not bits & GLOSSY and not bits & CAMERA and bits & 2
+    for name in ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow"):
+        setattr(obj, f"visible_{name}", False)
+    assert recording.export(scene)[0].instances["count"] == 0
+
+
+def test_holdout_and_indirect_only(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    for name in ("Holdout", "Indirect"):
+        collection = bpy.data.collections.new(name)
+        scene.collection.children.link(collection)
+        collection.objects.link(bpy.data.objects.new(name, recording.grid(1)))
+    children = scene.view_layers[0].layer_collection.children
+    children["Holdout"].holdout = True
+    children["Indirect"].indirect_only = True
+    recorded, _ = recording.export(scene)
+    bits = dict(zip(recorded.instances["names"], recorded.instances["visibility"], strict=True))
+    assert bits["Holdout"] & HOLDOUT and bits["Holdout"] & CAMERA
+    assert not bits["Indirect"] & CAMERA and not bits["Indirect"] & HOLDOUT
+
+
+def test_hidden_instancer_and_excluded_collection(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    parent = recording.add(recording.grid(2, name="Instancer"), "Instancer")
+    parent.instance_type = "VERTS"
+    parent.show_instancer_for_viewport = parent.show_instancer_for_render = False
+    recording.add(recording.grid(1, name="Child"), "Child").parent = parent
+    gone = bpy.data.collections.new("Gone")
+    scene.collection.children.link(gone)
+    gone.objects.link(bpy.data.objects.new("Gone", recording.grid(1)))
+    scene.view_layers[0].layer_collection.children["Gone"].exclude = True
+    recorded, _ = recording.export(scene)
+    assert recorded.instances["count"] == 10  # the copies, and the child itself
+    assert set(recorded.instances["names"]) == {"Child"}
+
+
+def test_slots_linked_to_object_or_data(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    mesh = recording.grid(1)
+    mesh.materials.append(bpy.data.materials.new("Of data"))
+    mesh.materials.append(None)
+    plain, own = recording.add(mesh, "Plain"), recording.add(mesh, "Own")
+    own.material_slots[0].link = "OBJECT"
+    own.material_slots[0].material = bpy.data.materials.new("Of object")
+    recorded, _ = recording.export(scene)
+    names = {
+        name: [recorded.materials.get(key, "") for key in keys]
+        for name, keys in zip(recorded.instances["names"], recorded.instances["materials"], strict=True)
+    }
+    assert names == {plain.name: ["Of data", ""], own.name: ["Of object", ""]}
+
+
+def test_material_override(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    mesh = recording.grid(1)
+    mesh.materials.append(bpy.data.materials.new("Own"))
+    recording.add(mesh)
+    recording.add(recording.grid(2))
+    scene.view_layers[0].material_override = bpy.data.materials.new("Override")
+    recorded, _ = recording.export(scene)
+    assert [[recorded.materials[key] for key in keys] for keys in recorded.instances["materials"]] == [["Override"], ["Override"]]
+
+
+def test_object_facts(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    obj = recording.add(recording.grid(1))
+    obj.pass_index, obj.color = 7, (0.1, 0.2, 0.3, 0.4)
+    recorded, _ = recording.export(scene)
+    assert list(recorded.instances["pass_index"]) == [7]
+    assert np.allclose(recorded.instances["colors"][0], (0.1, 0.2, 0.3, 0.4))
+
+
+def test_coordinates_of_the_instancer(scene: bpy.types.Scene) -> None:
+    """Faces as instancers give a UV and a generated coordinate to each copy."""
+    recording.add_camera()
+    parent = recording.add(recording.grid(2, name="Instancer"), "Instancer")
+    parent.instance_type = "FACES"
+    recording.add(recording.grid(1, name="Child"), "Child").parent = parent
+    recorded, _ = recording.export(scene)
+    uvs = {tuple(uv) for uv, name in zip(recorded.instances["uvs"], recorded.instances["names"], strict=True) if name == "Child"}
+    assert uvs == {(0.0, 0.0), (0.25, 0.25), (0.25, 0.75), (0.75, 0.25), (0.75, 0.75)}  # the child itself has none
+
+
+def test_motion_of_instances_and_camera(scene: bpy.types.Scene) -> None:
+    camera = recording.add_camera()
+    scene.view_layers[0].use_pass_vector = True
+    _collection_instances(2)
+    for obj in (bpy.data.objects["Copy 1"], camera):
+        for frame in (1, 11):
+            obj.location.x += 10.0 * (frame == 11)
+            obj.keyframe_insert("location", frame=frame)
+        obj.animation_data.action = obj.animation_data.action  # evaluated at once
+    bpy.context.preferences.edit.keyframe_new_interpolation_type = "BEZIER"
+    scene.frame_set(6)
+    recorded, _ = recording.export(scene)
+    order = np.argsort(recorded.instances["matrices"][:, 3, 0])
+    previous, now, following = (recorded.instances[name][order][:, 3, 0] for name in ("previous", "matrices", "next"))
+    assert previous[0] == now[0] == following[0] == 0.0
+    assert previous[1] < now[1] < following[1] and now[1] == pytest.approx(6.0, abs=1e-3)
+    assert recorded.camera.matrix_previous[12] < recorded.camera.matrix[12] < recorded.camera.matrix_next[12]
+
+
+def test_without_vector_pass_nothing_steps(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    recording.add(recording.grid(1))
+    changes = []
+    handler = lambda *_: changes.append(1)  # noqa: E731
+    bpy.app.handlers.frame_change_pre.append(handler)
+    try:
+        recorded, _ = recording.export(scene)
+    finally:
+        bpy.app.handlers.frame_change_pre.remove(handler)
+    assert changes == [] and recorded.instances["previous"] is None
+
+
+@pytest.mark.parametrize("scale", [(0, 0, 0), (0, 1, 1), (-1, 1, 1), (float("nan"), 1, 1)])
+def test_e2_broken_matrices_pass_through(scene: bpy.types.Scene, scale: tuple[float, float, float]) -> None:
+    recording.add_camera()
+    recording.add(recording.grid(1)).scale = scale
+    assert recording.export(scene)[0].instances["count"] == 1
+
+
+def test_random_id_of_an_object_is_cycles_hash() -> None:
+    """Values of Cycles' Object Info > Random for these names (read from renders with Blender 3.4)."""
+    from gradus.export.instances import name_hash
+
+    assert 0 <= name_hash("Cube") < 2**32
+    assert name_hash("Cube") != name_hash("Cube.001")
