@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 
 from . import renderer, viewport
-from .failure import Failure, user_text
+from .failure import is_expected, user_text
 
 
 class GradusRenderEngine(bpy.types.RenderEngine):
@@ -77,7 +77,7 @@ class GradusRenderEngine(bpy.types.RenderEngine):
             self.failed = True
             self._drop_job()
             text = f"Gradus: {user_text(error)}"
-            if not isinstance(error, Failure):
+            if not is_expected(error):
                 traceback.print_exc()
             self.report({"ERROR"}, text)
             if not bpy.app.background:

@@ -41,6 +41,7 @@ def complete(native_json: str, host: dict[str, Any], clock: Clock, warnings: lis
     for field, measured in (("seconds", clock.wall), ("cpu_seconds", clock.cpu)):
         stats[field] = {**stats.get(field, {}), **{name: round(value, 6) for name, value in measured.items()}}
     stats["seconds"]["total"] = round(clock.total(), 6)
+    stats["cpu_seconds"]["total"] = round(sum(value for name, value in stats["cpu_seconds"].items() if name != "total"), 6)
     stats["process_cpu"] = round(clock.total_cpu(), 6)
     stats["peak_memory_bytes"] = max(int(stats.get("peak_memory_bytes", 0)), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
     stats["warnings"] = [*stats.get("warnings", []), *(text for text in warnings if text not in stats.get("warnings", []))]
