@@ -1,0 +1,19 @@
+// From decoded files to stored tiles: colour space, alpha, broken numbers.
+#pragma once
+
+#include <string>
+
+#include "scene/image.h"
+
+namespace gradus {
+
+class ColorManager;
+
+// 8 bit data and sRGB stay 8 bit; 16 bit data stay 16 bit; other integers become half, floats stay what they are. Straight alpha that
+// is not associated yet becomes so if `associate`.
+ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool associate);
+
+// Mean colour over at most about a million texels, and whether some alpha is below 1.
+void measure_tile(const ImageTile& tile, Rgb* mean, bool* has_alpha);
+
+}  // namespace gradus

@@ -1,0 +1,176 @@
+// Look-ups in images: extension, interpolation, UDIM tiles, as Cycles has them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "color/color.h"
+#include "scene/image.h"
+#include "scene/image_store.h"
+
+namespace gradus {
+namespace {
+
+const Vec4 kMissing(1.0f, 0.0f, 1.0f, 1.0f);
+
+// The sRGB curve by linear interpolation: exact in the straight part, 1e-6 elsewhere.
+class SrgbTable {
+ public:
+  SrgbTable() {
+    for (size_t i = 0; i < values_.size(); i++) {
+      values_[i] = srgb_to_linear(static_cast<float>(i) / kSteps);
+    }
+  }
+  float operator()(float x) const {
+    if (!(x >= 0.0f && x < 1.0f)) {
+      return srgb_to_linear(x);
+    }
+    const float position = x * kSteps;
+    const size_t i = static_cast<size_t>(position);
+    return values_[i] + (values_[i + 1] - values_[i]) * (position - static_cast<float>(i));
+  }
+
+ private:
+  static constexpr float kSteps = 1024.0f;
+  std::array<float, 1026> values_;
+};
+
+// One axis: brings any coordinate close to 0…1 without changing what it means, then texel numbers into the image.
+float reduce(float u, Extension extension) {
+  if (!is_finite(u)) {
+    return 0.0f;
+  }
+  switch (extension) {
+    case Extension::Repeat:
+      return u - std::floor(u);
+    case Extension::Mirror:
+      return u - 2.0f * std::floor(0.5f * u);
+    default:
+      return std::clamp(u, 0.0f, 1.0f);
+  }
+}
+
+uint32_t wrap(int i, uint32_t size, Extension extension) {
+  const int n = static_cast<int>(size);
+  switch (extension) {
+    case Extension::Repeat: {
+      const int m = i % n;
+      return static_cast<uint32_t>(m < 0 ? m + n : m);
+    }
+    case Extension::Mirror: {
+      const int m = std::abs(i + (i < 0 ? 1 : 0)) % (2 * n);
+      return static_cast<uint32_t>(m >= n ? 2 * n - m - 1 : m);
+    }
+    default:
+      return static_cast<uint32_t>(std::clamp(i, 0, n - 1));
+  }
+}
+
+// Texels and weights along one axis.
+template <int N>
+struct Taps {
+  std::array<uint32_t, N> texel;
+  std::array<float, N> weight;
+};
+
+Taps<2> linear_taps(float u, uint32_t size, Extension extension) {
+  const float x = u * static_cast<float>(size) - 0.5f;
+  const float first = std::floor(x);
+  const int i = static_cast<int>(first);
+  const float t = x - first;
+  return {{wrap(i, size, extension), wrap(i + 1, size, extension)}, {1.0f - t, t}};
+}
+
+// Uniform cubic B-spline: smooth, and not interpolating, as in Cycles.
+Taps<4> cubic_taps(float u, uint32_t size, Extension extension) {
+  const float x = u * static_cast<float>(size) - 0.5f;
+  const float first = std::floor(x);
+  const int i = static_cast<int>(first);
+  const float t = x - first;
+  const float t2 = t * t;
+  const float t3 = t2 * t;
+  const std::array<float, 4> weight = {(1.0f - 3.0f * t + 3.0f * t2 - t3) / 6.0f, (4.0f - 6.0f * t2 + 3.0f * t3) / 6.0f,
+                                       (1.0f + 3.0f * t + 3.0f * t2 - 3.0f * t3) / 6.0f, t3 / 6.0f};
+  return {{wrap(i - 1, size, extension), wrap(i, size, extension), wrap(i + 1, size, extension), wrap(i + 2, size, extension)}, weight};
+}
+
+template <int N>
+Vec4 gather(const ImageTile& tile, const Taps<N>& x, const Taps<N>& y) {
+  Vec4 sum(0.0f);
+  for (size_t j = 0; j < N; j++) {
+    Vec4 row(0.0f);
+    for (size_t i = 0; i < N; i++) {
+      row += x.weight[i] * tile.texel(x.texel[i], y.texel[j]);
+    }
+    sum += y.weight[j] * row;
+  }
+  return sum;
+}
+
+Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolation, Extension extension) {
+  const float u = reduce(uv.x, extension);
+  const float v = reduce(uv.y, extension);
+  switch (interpolation) {
+    case Interpolation::Closest:
+      return tile.texel(wrap(static_cast<int>(u * static_cast<float>(tile.width)), tile.width, extension),
+                        wrap(static_cast<int>(v * static_cast<float>(tile.height)), tile.height, extension));
+    case Interpolation::Cubic:
+      return gather(tile, cubic_taps(u, tile.width, extension), cubic_taps(v, tile.height, extension));
+    default:
+      return gather(tile, linear_taps(u, tile.width, extension), linear_taps(v, tile.height, extension));
+  }
+}
+
+// The tile that holds uv, and uv within it; nullptr: none.
+const ImageTile* find_tile(const Image& image, Vec2* uv) {
+  if (image.tiles.empty()) {
+    return nullptr;
+  }
+  if (image.tiles[0].number == 0) {
+    return &image.tiles[0];
+  }
+  const float column = std::floor(uv->x);
+  const float row = std::floor(uv->y);
+  if (!(column >= 0.0f && column < 10.0f && row >= 0.0f && row < 1000.0f)) {
+    return nullptr;
+  }
+  const uint32_t number = 1001u + static_cast<uint32_t>(column) + 10u * static_cast<uint32_t>(row);
+  const auto found = std::find_if(image.tiles.begin(), image.tiles.end(), [&](const ImageTile& t) { return t.number == number; });
+  *uv -= Vec2(column, row);
+  return found == image.tiles.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Vec4 decode_texel(const ImageTile& tile, const Vec4& stored) {
+  static const SrgbTable table;
+  return tile.srgb ? Vec4(table(stored.x), table(stored.y), table(stored.z), stored.w) : stored;
+}
+
+Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension, bool unassociate) const {
+  if (index >= size()) {
+    return kMissing;
+  }
+  const Image& image = *images_[index];
+  Vec2 local = uv;
+  const ImageTile* tile = find_tile(image, &local);
+  if (tile == nullptr || tile->width == 0) {
+    return kMissing;
+  }
+  const bool outside = local.x < 0.0f || local.y < 0.0f || local.x > 1.0f || local.y > 1.0f;
+  if (extension == Extension::Clip && outside) {
+    return Vec4(0.0f);
+  }
+  Vec4 value = interpolate(*tile, local, interpolation, extension);
+  if (image.ignores_alpha) {
+    value.w = 1.0f;
+  }
+  if (unassociate && value.w != 0.0f && value.w != 1.0f) {
+    const float alpha = value.w;
+    value /= alpha;
+    value = tile->srgb ? glm::min(value, Vec4(1.0f)) : value;
+    value.w = alpha;
+  }
+  return decode_texel(*tile, value);
+}
+
+}  // namespace gradus
