@@ -154,8 +154,8 @@ def _floor_pieces() -> None:
     _smooth(common.lathe("Pot", POT, terracotta, (1.65, HALF - 0.6, 0.0), 24))
     common.sphere("Moss", (1.65, HALF - 0.6, 0.45), 0.27, common.diffuse("Moss", (0.1, 0.2, 0.06)), 32)
     brass = common.principled("Brass", (0.85, 0.62, 0.28), 0.18, 1.0)
-    common.sphere("Brass ball", (0.75, HALF - 1.35, 0.16), 0.16, brass)
-    common.sphere("Glass ball", (-0.2, HALF - 1.5, 0.13), 0.13, common.glass("Clear glass"), 48)
+    common.sphere("Brass ball", (0.85, HALF - 1.12, 0.16), 0.16, brass)
+    common.sphere("Glass ball", (-0.15, HALF - 1.2, 0.13), 0.13, common.glass("Clear glass"), 48)
 
 
 def build() -> None:
