@@ -11,6 +11,7 @@ Contribution found(const PathContext& context, const RaySource& source, const Pa
   c.pdf_light = pdf_light;
   c.pdf_bsdf = source.sampled_light() ? source.event->pdf : 0.0f;
   c.indirect = state.depth > 1;
+  c.light = radiance;
   c.tail = radiance * bsdf_weight(c.pdf_light, c.pdf_bsdf);
   c.clamped = clamp_contribution(context, throughput * c.tail, c.indirect);
   return c;
@@ -66,7 +67,8 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
   c.pdf_light = light.view.pdf;
   c.pdf_bsdf = lit.pdf_bsdf;
   c.indirect = state.depth > 0;
-  c.tail = light_estimate(lit, light.view, transmittance);
+  c.light = light.view.radiance * transmittance;
+  c.tail = lit.value * c.light / (c.pdf_light + c.pdf_bsdf);
   c.clamped = clamp_contribution(context, state.throughput * c.tail, c.indirect);
   return c;
 }

@@ -10,6 +10,7 @@ namespace gradus {
 struct Contribution {
   Rgb clamped = Rgb(0.0f);
   Rgb tail = Rgb(0.0f);
+  Rgb light = Rgb(0.0f);   // radiance and transmittance of the tail
   float pdf_light = 0.0f;  // of the techniques that could have found the emitter, in solid angle
   float pdf_bsdf = 0.0f;
   bool indirect = false;

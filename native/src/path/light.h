@@ -27,11 +27,6 @@ bool sample_light(const PathContext& context, const Sampler& sampler, const Vert
 LitClass light_class(const Vertex& vertex, ScatterClass c, const EmitterView& view, bool dirac_emitter);
 // Transmittance for shadow rays.
 Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterView& view, uint32_t crossed);
-// f / (p_light + p_bsdf), without throughput: one class's part of the estimate.
-inline Rgb light_estimate(const LitClass& lit, const EmitterView& view, const Rgb& transmittance) {
-  return lit.value * view.radiance * transmittance / (view.pdf + lit.pdf_bsdf);
-}
-
 // The event from which a ray came; nullptr for the camera.
 struct RaySource {
   const Vertex* vertex = nullptr;

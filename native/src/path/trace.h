@@ -27,6 +27,7 @@ struct NoObserver {
   void begin(const Sampler&, const Vec2&, const Vec2&) {}
   void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
   void lamp(const RaySource&, const Contribution&, const LampSighting&) {}
+  void passed(const Segment&) {}
   void world(const RaySource&, const Contribution&) {}
   void emission(const RaySource&, const Contribution&, const Vertex&) {}
   void transparent(float) {}
@@ -66,6 +67,7 @@ class PathTracer {
     observer_.arrive(source, state_, s_.segment, *vertex);
     add_lamps(source);
     apply_segment(s_.segment, &state_);
+    observer_.passed(s_.segment);
     if (s_.segment.end == SegmentEnd::Escaped) {
       add_world(source);
     }

@@ -1,10 +1,82 @@
-#include "base/error.h"
+// Gradient-domain path tracing (thesis 5.4): each base path with four offsets. The primal is that of plain path tracing, bit for bit.
+// Unbiased, and so are the gradients.
+#include "integrator/gradient/offset_paths.h"
 #include "integrator/integrator.h"
+#include "integrator/pixel_loop.h"
 
 namespace gradus {
 
-std::unique_ptr<Integrator> make_gradient_integrator(const IntegratorContext&) {
-  throw unsupported("gradient-domain path tracing is not there yet: use integrator PATH");
+namespace {
+
+// What one worker needs; large, so kept from sample to sample.
+struct Worker {
+  Worker(const PathContext& context, Frame* frame, Counters* counters)
+      : recorder(context, frame, counters), offsets(context, counters), tracer(context, &scratch, &recorder, counters, &offsets) {}
+  PathScratch scratch;
+  PassRecorder recorder;
+  OffsetPaths offsets;
+  PathTracer<OffsetPaths> tracer;
+};
+
+// Counts of a pixel's half and its neighbours' (contract 1.5): none outside of the sampled region, so that such pairs are absent.
+std::array<PairCount, kOffsets> pair_counts(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, int half) {
+  std::array<PairCount, kOffsets> pairs{};
+  for (int k = 0; k < kOffsets; ++k) {
+    const int32_t nx = x + kOffsetX[k];
+    const int32_t ny = y + kOffsetY[k];
+    if (frame.region.contains(nx, ny)) {
+      pairs[k].own = static_cast<float>(half_count(unit, frame.index(x, y), half));
+      pairs[k].other = static_cast<float>(half_count(unit, frame.index(nx, ny), half));
+    }
+  }
+  return pairs;
+}
+
+// Normalisation of the pairs that this batch adds to, for the pixels of the tile.
+void add_pair_counts(const WorkUnit& unit, Frame* frame) {
+  for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
+    for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
+      for (int half = 0; half < kHalves; ++half) {
+        const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, x, y, half);
+        for (int axis = 0; axis < 2; ++axis) {
+          frame->pair_count[half][axis][frame->index(x, y)] += pairs[axis].present() ? pairs[axis].norm() : 0.0f;
+        }
+      }
+    }
+  }
+}
+
+class GradientIntegrator final : public Integrator {
+ public:
+  explicit GradientIntegrator(const IntegratorContext& context)
+      : context_(context), path_(*context_.snapshot, context_.camera, context_.settings) {}
+
+  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
+    const auto worker = std::make_unique<Worker>(path_, frame, counters);
+    add_pair_counts(unit, frame);
+    for_each_sample(path_, unit, *frame, stop, [&](const PixelSample& s) {
+      worker->recorder.begin_sample(s.pixel, s.number == path_.settings.first_sample);
+      worker->offsets.start(pair_counts(unit, *frame, s.x, s.y, s.half));
+      add_primal(worker->tracer.trace(s.sampler, s.film), s, frame, counters);
+      for (int k = 0; k < kOffsets; ++k) {
+        Radiance gradient = worker->offsets.gradient(k);
+        if (frame->channels < 4) {
+          gradient.w = 0.0f;
+        }
+        add_gradient(gradient, &frame->components[0].gradient[s.half][k][s.pixel], counters);
+      }
+    });
+  }
+
+ private:
+  IntegratorContext context_;
+  PathContext path_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_gradient_integrator(const IntegratorContext& context) {
+  return std::make_unique<GradientIntegrator>(context);
 }
 
 }  // namespace gradus

@@ -1,0 +1,112 @@
+// Reconnection of offsets to the base's next vertex.
+#include "integrator/gradient/offset_paths.h"
+
+namespace gradus {
+
+// Everything but visibility.
+ShiftFailure OffsetPaths::try_link(OffsetPath* o, const Vertex& vertex, ShiftedEvent* event) const {
+  const Reconnection connection =
+      reconnect(base_from_->point.position, o->here->point.position, vertex.point.position, vertex.point.geometric_normal);
+  if (connection.failure != ShiftFailure::None) {
+    return connection.failure;
+  }
+  *event = event_towards(base_event_, *o->here, connection.direction, connection.jacobian);
+  return event->failure;
+}
+
+// The offset arrives at the shared vertex. The base's decisions on its segment were made for both paths: the offset's own surfaces on the
+// way weigh with their expectation.
+void OffsetPaths::open_link(OffsetPath* o, const Vertex& vertex, const ShiftedEvent& event, const Rgb& through) {
+  o->link.open = true;
+  o->link.throughput = o->state.throughput * event.factor * through / base_segment_->probability;
+  o->link.ratio = o->ratio * event.ratio;
+  o->link.pdf = event.pdf;
+  o->linked->point = vertex.point;
+  o->linked->wo = -event.wi;
+  RayState ray = base_state_.ray.state;
+  ray.length = glm::length(vertex.point.position - o->here->point.position);
+  shade_surface(context_.scene, vertex.point, o->linked->wo, ray, context_.settings.roughness_threshold, &o->linked->shade);
+}
+
+// Connects all pending offsets that have not tried yet.
+void OffsetPaths::link_all(const Vertex& vertex) {
+  const bool packet = !context_.has_transparency && context_.uniform_visibility;
+  ShiftedEvent events[kOffsets];
+  Ray rays[kOffsets];
+  bool wanted[kOffsets];
+  bool blocked[kOffsets] = {};
+  bool any = false;
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    rays[k] = Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
+    wanted[k] = o.stage == OffsetStage::Pending && !o.link.known;
+    if (wanted[k]) {
+      o.link = OffsetLink{};
+      o.link.known = true;
+      const ShiftFailure failure = try_link(&o, vertex, &events[k]);
+      wanted[k] = failure == ShiftFailure::None;
+      count_failure(&counters_, failure);
+    }
+    if (wanted[k]) {
+      ++counters_.rays_shift_shadow;
+      rays[k] = spawn_ray_to(o.here->point, vertex.point);
+      any = true;
+    }
+  }
+  if (any && packet) {
+    context_.scene.occluded4(rays, blocked);
+  }
+  for (int k = 0; k < kOffsets; ++k) {
+    if (!wanted[k]) {
+      continue;
+    }
+    const Rgb through = packet ? Rgb(blocked[k] ? 0.0f : 1.0f) : segment_transmittance(context_, rays[k], base_state_.ray);
+    if (is_black(through)) {
+      ++counters_.fail_occluded;
+    } else {
+      open_link(&offsets_[k], vertex, events[k], through);
+    }
+  }
+}
+
+void OffsetPaths::scatter(const Vertex& vertex, const ScatterEvent& event) {
+  bool pending = false;
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Linked) {
+      o.state.throughput *= event.factor;
+    }
+    pending |= o.stage == OffsetStage::Pending;
+  }
+  if (pending && reconnects(event.scatter_class)) {
+    link_all(vertex);
+  }
+  for (OffsetPath& o : offsets_) {
+    if (o.stage != OffsetStage::Pending) {
+      continue;
+    }
+    if (!reconnects(event.scatter_class)) {
+      copy_direction(&o);
+      continue;
+    }
+    if (!o.link.open) {
+      o.stage = OffsetStage::Dead;  // its cause was counted
+      continue;
+    }
+    // Both must see the same side of the shared surface.
+    if (!(glm::dot(vertex.facing_normal(), o.linked->wo) > 0.0f)) {
+      fail(&o, ShiftFailure::Side);
+      continue;
+    }
+    const ShiftedEvent shared = event_towards(event, *o.linked, event.sample.wi, 1.0f);
+    if (shared.failure != ShiftFailure::None) {
+      fail(&o, shared.failure);
+      continue;
+    }
+    ++counters_.shifts_reconnected;
+    o.state.throughput = o.link.throughput * shared.factor;
+    o.ratio = o.link.ratio * shared.ratio;
+    o.stage = OffsetStage::Linked;
+  }
+}
+
+}  // namespace gradus

@@ -1,0 +1,62 @@
+// The four shifted paths that follow a base path (thesis 5.4).
+//
+// Which shift a path takes is decided by its classes alone, which a shift copies; so base and offset always decide alike:
+//   - a vertex of class D whose successor is of class D, or emits, or is a light sample: reconnection at the successor, the rest is shared;
+//   - class D before class R or T: the direction is copied and the offset traces a ray of its own;
+//   - class R or T: the event is copied (half-vector, or the Dirac lobe), the offset traces a ray of its own.
+// A light sample at a vertex of its own: the emitter point is copied.
+//
+// An offset carries throughput f(y)/p(y) and the ratio r = |T'|·p(y)/p(x), a product of one factor per vertex. Russian roulette and the
+// decisions at transparent surfaces are made by the base; both contributions are divided by their probability and r leaves them out.
+#pragma once
+
+#include "path/trace.h"
+#include "shift/event_copy.h"
+#include "shift/reconnection.h"
+
+namespace gradus {
+
+enum class OffsetStage : uint8_t {
+  Absent,   // no such neighbour, or it takes no samples
+  Dead,     // the shift failed: base contributions count alone
+  Traced,   // stands at a vertex of its own that corresponds to the base's
+  Pending,  // the base left in class D: stands where it was until it is known what the next vertex is used for
+  Linked,   // shares the base's vertices from here on
+};
+
+// Connection from an offset's vertex to the base's next one.
+struct OffsetLink {
+  bool known = false;
+  bool open = false;
+  Rgb throughput = Rgb(0.0f);
+  float ratio = 0.0f;
+  float pdf = 0.0f;  // of the direction to the shared vertex
+};
+
+// A light sample seen from an offset's own vertex.
+struct OffsetLight {
+  bool known = false;
+  EmitterView view;
+  Rgb transmittance = Rgb(0.0f);
+};
+
+struct OffsetPath {
+  OffsetStage stage = OffsetStage::Absent;
+  float ratio = 1.0f;
+  PathState state;          // throughput, and the ray of the last segment that it traced
+  Segment segment;          // that segment
+  ScatterEvent event;       // density and kind of the event that began it
+  bool from_camera = true;  // there was no such event
+  OffsetLink link;
+  OffsetLight light;
+  // Own vertices, the current one first; and the base's vertex as seen from here.
+  Vertex* here = nullptr;
+  Vertex* previous = nullptr;
+  Vertex* linked = nullptr;
+  Vertex storage[3];
+
+  // Where its last segment came from.
+  RaySource source() const { return from_camera ? RaySource{} : RaySource{previous, &event}; }
+};
+
+}  // namespace gradus

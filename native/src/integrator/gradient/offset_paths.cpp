@@ -1,0 +1,109 @@
+#include "integrator/gradient/offset_paths.h"
+
+namespace gradus {
+
+void count_failure(Counters* counters, ShiftFailure cause) {
+  switch (cause) {
+    case ShiftFailure::Missed:
+      ++counters->fail_missed;
+      break;
+    case ShiftFailure::Occluded:
+      ++counters->fail_occluded;
+      break;
+    case ShiftFailure::Class:
+      ++counters->fail_class;
+      break;
+    case ShiftFailure::TotalReflection:
+      ++counters->fail_total_reflection;
+      break;
+    case ShiftFailure::Side:
+      ++counters->fail_side;
+      break;
+    case ShiftFailure::Density:
+      ++counters->fail_density;
+      break;
+    case ShiftFailure::Jacobian:
+      ++counters->fail_jacobian;
+      break;
+    case ShiftFailure::NotInvertible:
+      ++counters->fail_not_invertible;
+      break;
+    case ShiftFailure::None:
+      break;
+  }
+}
+
+OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters)
+    : context_(context), counters_(*counters), joint_(!context.has_transparency && context.uniform_visibility) {
+  for (OffsetPath& o : offsets_) {
+    o.here = &o.storage[0];
+    o.previous = &o.storage[1];
+    o.linked = &o.storage[2];
+  }
+}
+
+void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs) {
+  pairs_ = pairs;
+  gradient_.fill(Radiance(0.0f));
+}
+
+void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
+  offset->stage = OffsetStage::Dead;
+  count_failure(&counters_, cause);
+}
+
+void OffsetPaths::pair(int k, const Contribution& c, const Rgb& offset_value, float ratio) {
+  if (!(ratio > 0.0f) || !is_finite(ratio)) {
+    ++counters_.fail_jacobian;
+    alone(k, c);
+    return;
+  }
+  gradient_[k] +=
+      pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(clamp_contribution(context_, offset_value, c.indirect), 0.0f), ratio);
+}
+
+void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& lens) {
+  sampler_ = &sampler;
+  film_ = film;
+  lens_ = lens;
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    o.stage = pairs_[k].present() ? OffsetStage::Traced : OffsetStage::Absent;
+    o.state = PathState{};
+    o.ratio = 1.0f;
+    o.from_camera = true;
+    ++(o.stage == OffsetStage::Absent ? counters_.fail_border : counters_.shifts_attempted);
+  }
+}
+
+void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex&) {
+  base_segment_ = &segment;
+  base_state_ = state;
+  for (OffsetPath& o : offsets_) {
+    o.light.known = false;
+  }
+  if (source.vertex == nullptr) {
+    trace_camera(state);
+  } else if (!reconnects(source.event->scatter_class)) {
+    copy_events(source, state);
+  } else {
+    base_event_ = *source.event;
+    base_from_ = source.vertex;
+    for (OffsetPath& o : offsets_) {
+      if (o.stage == OffsetStage::Traced) {
+        o.stage = OffsetStage::Pending;
+        o.link.known = false;
+      }
+    }
+  }
+}
+
+void OffsetPaths::passed(const Segment& segment) {
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Linked || o.stage == OffsetStage::Traced) {
+      o.state.throughput *= o.stage == OffsetStage::Linked ? segment.weight : o.segment.weight;
+    }
+  }
+}
+
+}  // namespace gradus

@@ -1,0 +1,73 @@
+// Observer of a base path that makes its gradient samples.
+#pragma once
+
+#include "integrator/gradient/offset_path.h"
+#include "integrator/gradient/pair.h"
+
+namespace gradus {
+
+class OffsetPaths {
+ public:
+  OffsetPaths(const PathContext& context, Counters* counters);
+
+  // Before each sample.
+  void start(const std::array<PairCount, kOffsets>& pairs);
+  // After it: the weighted gradient sample of a pair, alpha included.
+  const Radiance& gradient(int offset) const { return gradient_[offset]; }
+
+  // What PathTracer tells.
+  void begin(const Sampler& sampler, const Vec2& film, const Vec2& lens);
+  void arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex);
+  void passed(const Segment& segment);
+  void lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp);
+  void world(const RaySource& source, const Contribution& c);
+  void emission(const RaySource& source, const Contribution& c, const Vertex& vertex);
+  void transparent(float value);
+  void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
+  void scatter(const Vertex& vertex, const ScatterEvent& event);
+
+ private:
+  // Adds the gradient sample of one contribution: with the offset's, or alone.
+  void pair(int k, const Contribution& c, const Rgb& offset_value, float ratio);
+  void alone(int k, const Contribution& c) { gradient_[k] += pairs_[k].unpaired(Radiance(c.clamped, 0.0f)); }
+  void fail(OffsetPath* offset, ShiftFailure cause);
+
+  // Rays of their own (offset_rays.cpp).
+  void trace_camera(const PathState& state);
+  void copy_events(const RaySource& source, const PathState& state);
+  void copy_direction(OffsetPath* offset);
+  void leave(OffsetPath* offset, const ShiftedEvent& event, const PathState& state);
+  void trace_all(const bool wanted[kOffsets]);
+
+  // Reconnection (offset_link.cpp).
+  void link_all(const Vertex& vertex);
+  ShiftFailure try_link(OffsetPath* offset, const Vertex& vertex, ShiftedEvent* event) const;
+  void open_link(OffsetPath* offset, const Vertex& vertex, const ShiftedEvent& event, const Rgb& through);
+
+  // Emitters (offset_light.cpp).
+  void light_all(const LightSample& sample);
+  void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
+  void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
+  void copy_emitter(int k, const Contribution& c, const EmitterView& base, const EmitterView& offset, float jacobian, float probability);
+  bool joint(const EmitterView& view) const;
+
+  const PathContext& context_;
+  Counters& counters_;
+  const Sampler* sampler_ = nullptr;
+  Vec2 film_ = Vec2(0.0f);
+  Vec2 lens_ = Vec2(0.0f);
+  std::array<PairCount, kOffsets> pairs_{};
+  std::array<Radiance, kOffsets> gradient_{};
+  std::array<OffsetPath, kOffsets> offsets_;
+  // Of the base: what its last ray met, and if that ray left in class D, from where and how.
+  const Segment* base_segment_ = nullptr;
+  const Vertex* base_from_ = nullptr;
+  ScatterEvent base_event_;
+  PathState base_state_;
+  // Light and BSDF sampling see the same integrand, so that all four strategies can be weighed together.
+  bool joint_ = false;
+};
+
+void count_failure(Counters* counters, ShiftFailure cause);
+
+}  // namespace gradus

@@ -1,0 +1,103 @@
+// Segments that offsets trace themselves, before they share the base's.
+#include <utility>
+
+#include "integrator/gradient/offset_paths.h"
+
+namespace gradus {
+
+// Traces the rays of the offsets in `wanted`, the first hit of all four together. The end must be that of the base: surface with surface,
+// background with background.
+void OffsetPaths::trace_all(const bool wanted[kOffsets]) {
+  Ray rays[kOffsets];
+  Hit hits[kOffsets];
+  uint32_t visibility = 0;
+  for (int k = 0; k < kOffsets; ++k) {
+    rays[k] = wanted[k] ? offsets_[k].state.ray.ray : Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
+    visibility |= wanted[k] ? offsets_[k].state.ray.visibility : 0u;  // the same for all: that of the base
+  }
+  if (visibility != 0) {
+    context_.scene.intersect4(rays, visibility, hits);
+  }
+  for (int k = 0; k < kOffsets; ++k) {
+    if (wanted[k]) {
+      OffsetPath& o = offsets_[k];
+      ++counters_.rays_shift;
+      std::swap(o.here, o.previous);
+      trace_segment(context_, *sampler_, base_state_.depth, &hits[k], &o.state.ray, o.here, &o.segment);
+      if (o.segment.end != base_segment_->end) {
+        fail(&o, ShiftFailure::Missed);
+      }
+    }
+  }
+}
+
+// Same position in the pixel, same point of the lens: the camera's part of r is 1.
+void OffsetPaths::trace_camera(const PathState& state) {
+  bool wanted[kOffsets];
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    wanted[k] = o.stage == OffsetStage::Traced;
+    o.state.ray = PathRay{};
+    o.state.ray.visibility = state.ray.visibility;
+    o.state.ray.ray = context_.camera.ray(film_ + Vec2(kOffsetX[k], kOffsetY[k]), lens_);
+  }
+  trace_all(wanted);
+}
+
+// The offset scatters; its ray looks like the base's to the scene.
+void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathState& state) {
+  const uint16_t transparent_depth = o->state.ray.state.transparent_depth;
+  o->state.ray = state.ray;
+  o->state.ray.state.transparent_depth = transparent_depth;
+  o->state.ray.ray = spawn_ray(o->here->point, event.wi);
+  o->state.depth = state.depth;
+  o->state.throughput *= event.factor;
+  o->ratio *= event.ratio;
+  o->event.pdf = event.pdf;
+  o->from_camera = false;
+}
+
+// A class R or T event of the base at its last vertex, replayed at the offsets' last vertices.
+void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
+  bool wanted[kOffsets];
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    wanted[k] = o.stage == OffsetStage::Traced;
+    if (!wanted[k]) {
+      continue;
+    }
+    const ShiftedEvent event = copy_event(*source.vertex, *source.event, *o.here);
+    if (event.failure != ShiftFailure::None) {
+      fail(&o, event.failure);
+      wanted[k] = false;
+      continue;
+    }
+    ++counters_.shifts_half_vector;
+    leave(&o, event, state);
+    o.event.sample.dirac = source.event->sample.dirac;
+  }
+  trace_all(wanted);
+}
+
+// Class D before class R or T: no connection is possible, so the offset leaves in the base's direction.
+void OffsetPaths::copy_direction(OffsetPath* o) {
+  const ShiftedEvent event = event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f);
+  if (event.failure != ShiftFailure::None) {
+    fail(o, event.failure);
+    return;
+  }
+  ++counters_.shifts_replayed;
+  ++counters_.rays_shift;
+  leave(o, event, base_state_);
+  o->event.sample.dirac = false;
+  std::swap(o->here, o->previous);
+  trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->segment);
+  if (o->segment.end != SegmentEnd::Surface) {
+    fail(o, ShiftFailure::Missed);
+    return;
+  }
+  o->state.throughput *= o->segment.weight;
+  o->stage = OffsetStage::Traced;
+}
+
+}  // namespace gradus

@@ -1,0 +1,28 @@
+#include "shift/reconnection.h"
+
+#include <cmath>
+
+namespace gradus {
+
+float emitter_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset) {
+  const float ratio = distance_base / distance_offset;
+  return cosine_offset / cosine_base * ratio * ratio;
+}
+
+Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal) {
+  Reconnection result;
+  const Vec3 from_base = target - base;
+  const Vec3 from_offset = target - offset;
+  const float distance_base = glm::length(from_base);
+  result.distance = glm::length(from_offset);
+  result.direction = from_offset / result.distance;
+  const float cosine_base = std::fabs(glm::dot(target_normal, from_base)) / distance_base;
+  const float cosine_offset = std::fabs(glm::dot(target_normal, result.direction));
+  result.jacobian = emitter_jacobian(cosine_base, distance_base, cosine_offset, result.distance);
+  if (!(result.jacobian > 0.0f) || !is_finite(result.jacobian)) {
+    result.failure = ShiftFailure::Jacobian;
+  }
+  return result;
+}
+
+}  // namespace gradus

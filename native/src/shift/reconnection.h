@@ -1,0 +1,24 @@
+// Reconnection: an offset path joins its base at the base's next vertex (thesis 5.4.2, step 3).
+#pragma once
+
+#include "scene/surface.h"
+#include "shift/half_vector.h"
+
+namespace gradus {
+
+struct Reconnection {
+  Vec3 direction = Vec3(0.0f);  // from the offset vertex to the shared one
+  float distance = 0.0f;
+  float jacobian = 0.0f;  // |∂ω'/∂ω|: solid angle at the offset vertex over that at the base vertex
+  ShiftFailure failure = ShiftFailure::None;
+};
+
+// Both vertices see the same area dA at `target`: dω = |cosθ|/d² dA, so J = (|cosθ'|/d'²) / (|cosθ|/d²) with the geometric normal of the
+// target. Inverse: base and offset exchanged.
+Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal);
+
+// Jacobian of copying an emitter point, in solid angle at the receivers; 1 at infinity, where the direction is copied, and for Dirac
+// emitters, whose choice is discrete.
+float emitter_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset);
+
+}  // namespace gradus
