@@ -5,17 +5,18 @@
 #include "base/device.h"
 #include "base/error.h"
 #include "base/fpu.h"
+#include "scene/emitter_table.h"
+#include "scene/lamp_scene.h"
 #include "scene/scene_state.h"
+#include "shading/material.h"
 
 namespace gradus {
 
 namespace {
 
-using MaterialIndex = std::unordered_map<uint64_t, uint32_t>;
-
-uint32_t index_of(const MaterialIndex& indices, uint64_t key) {
+uint32_t index_of(const MaterialIndex& indices, uint64_t key, uint32_t otherwise) {
   const auto found = indices.find(key);
-  return found == indices.end() ? 0 : found->second;
+  return found == indices.end() ? otherwise : found->second;
 }
 
 void assign_materials(const InstanceArrays& arrays, const std::vector<size_t>& chosen, const MaterialIndex& indices, Snapshot* snapshot) {
@@ -24,8 +25,18 @@ void assign_materials(const InstanceArrays& arrays, const std::vector<size_t>& c
     const uint64_t* keys = arrays.materials.data() + arrays.material_first[chosen[k]];
     auto& slots = snapshot->instances[k].materials;
     slots.resize(arrays.material_count[chosen[k]]);
-    for (size_t s = 0; s < slots.size(); ++s) slots[s] = index_of(indices, keys[s]);
+    for (size_t s = 0; s < slots.size(); ++s) slots[s] = index_of(indices, keys[s], 0);
   }
+}
+
+template <class Test>
+bool any_material(const Snapshot& snapshot, const InstanceData& instance, Test&& test) {
+  if (instance.materials.empty()) return test(*snapshot.materials[0]);
+  return std::any_of(instance.materials.begin(), instance.materials.end(), [&](uint32_t m) { return test(*snapshot.materials[m]); });
+}
+
+bool lets_shadows_through(const Snapshot& snapshot, const InstanceData& instance) {
+  return any_material(snapshot, instance, [](const MaterialData& m) { return m.may_be_transparent && m.transparent_shadow; });
 }
 
 uint32_t embree_mask(const InstanceData& instance, bool transparent) {
@@ -34,23 +45,74 @@ uint32_t embree_mask(const InstanceData& instance, bool transparent) {
   return mask;
 }
 
+void build_geometry(const std::shared_ptr<Device>& device, const std::vector<size_t>& chosen, const BuildProgress& progress,
+                    Scene::State* state, Snapshot* snapshot) {
+  std::vector<uint32_t> masks(chosen.size());
+  for (size_t k = 0; k < chosen.size(); ++k) {
+    const bool transparent = lets_shadows_through(*snapshot, snapshot->instances[k]);
+    masks[k] = embree_mask(snapshot->instances[k], transparent);
+    snapshot->features.has_transparent_shadows |= transparent && (masks[k] & kMaskTransparentShadow);
+  }
+  const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
+  snapshot->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, &state->mesh_scenes);
+}
+
 void move_matrix(float* matrix, const Vec3& origin) {
   for (int i = 0; i < 3; ++i) matrix[12 + i] = float(double(matrix[12 + i]) - double(origin[i]));
 }
 
-GradusCamera moved_camera(GradusCamera camera, const Vec3& origin) {
-  move_matrix(camera.matrix, origin);
-  move_matrix(camera.matrix_previous, origin);
-  move_matrix(camera.matrix_next, origin);
-  return camera;
+void place_camera(const Scene::State& state, Snapshot* snapshot) {
+  snapshot->has_camera = state.has_camera;
+  snapshot->camera = state.camera;
+  for (float* matrix : {snapshot->camera.matrix, snapshot->camera.matrix_previous, snapshot->camera.matrix_next})
+    move_matrix(matrix, snapshot->origin);
 }
 
-void build_geometry(const std::shared_ptr<Device>& device, const std::vector<size_t>& chosen, const BuildProgress& progress,
-                    Scene::State* state, Snapshot* snapshot) {
-  std::vector<uint32_t> masks(chosen.size());
-  for (size_t k = 0; k < chosen.size(); ++k) masks[k] = embree_mask(snapshot->instances[k], false);
-  const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
-  snapshot->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, &state->mesh_scenes);
+void place_world(const Scene::State& state, const MaterialIndex& indices, Snapshot* snapshot) {
+  snapshot->world = state.world;
+  if (state.has_world) snapshot->world_material = index_of(indices, state.world.material, UINT32_MAX);
+}
+
+// A program that emits the same everywhere is folded into the lamp's strength.
+void set_lamp_material(const Snapshot& snapshot, uint32_t material, Lamp* lamp) {
+  lamp->material = material;
+  if (material == UINT32_MAX || !snapshot.materials[material]->emission_is_constant) return;
+  lamp->intensity *= snapshot.materials[material]->constant_emission;
+  lamp->material = UINT32_MAX;
+}
+
+std::vector<Lamp> place_lamps(const Scene::State& state, const MaterialIndex& indices, Snapshot* snapshot) {
+  std::vector<Lamp> lamps;
+  std::vector<std::string> broken;
+  for (const LightSource& light : state.lights) {
+    Lamp lamp;
+    if (!make_lamp(light.desc, snapshot->origin, &lamp)) {
+      if (!is_finite_light(light.desc)) broken.push_back(light.name);
+      continue;
+    }
+    set_lamp_material(*snapshot, index_of(indices, light.desc.material, UINT32_MAX), &lamp);
+    if (!is_black(lamp.intensity)) lamps.push_back(lamp);
+  }
+  if (!broken.empty())
+    snapshot->warnings.push_back(std::to_string(broken.size()) + " lights were left out, the first is '" + broken[0] +
+                                 "': their values are not finite");
+  return lamps;
+}
+
+void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps, const CommitMonitor& monitor, Snapshot* snapshot) {
+  const auto lamp_scene = std::make_shared<const LampScene>(device, lamps);
+  SceneFeatures& features = snapshot->features;
+  features.has_lamps_with_extent = std::any_of(lamps.begin(), lamps.end(), [](const Lamp& lamp) { return !lamp.dirac(); });
+  auto table = build_emitters(*snapshot, std::move(lamps), monitor);
+  table->lamps_with_extent = features.has_lamps_with_extent ? lamp_scene : nullptr;
+  features.has_emitters = !table->lamps.empty() || !table->triangles.empty() || !table->world.black();
+  snapshot->emitters = std::move(table);
+}
+
+void find_specular(Snapshot* snapshot) {
+  const auto specular = [](const MaterialData& m) { return m.may_be_specular; };
+  snapshot->features.has_specular = std::any_of(snapshot->instances.begin(), snapshot->instances.end(),
+                                                [&](const InstanceData& i) { return any_material(*snapshot, i, specular); });
 }
 
 }  // namespace
@@ -82,13 +144,18 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
   auto snapshot = std::make_shared<Snapshot>();
   device_->arena().execute([&] {
     const FlushDenormals flush;
+    load_images(*device_, monitor, state_.get(), snapshot.get());
+    monitor.report(0.2f);
+    const MaterialIndex materials = compile_materials(monitor, state_.get(), snapshot.get());
     const std::vector<size_t> chosen = place_instances(*state_, snapshot.get());
-    assign_materials(state_->instances, chosen, {}, snapshot.get());
-    build_geometry(device_, chosen, monitor.step(0.0f, 0.9f), state_.get(), snapshot.get());
-    if (state_->has_camera) snapshot->camera = moved_camera(state_->camera, snapshot->origin);
-    snapshot->has_camera = state_->has_camera;
-    snapshot->world = state_->world;
+    assign_materials(state_->instances, chosen, materials, snapshot.get());
+    build_geometry(device_, chosen, monitor.step(0.25f, 0.8f), state_.get(), snapshot.get());
+    place_camera(*state_, snapshot.get());
+    place_world(*state_, materials, snapshot.get());
+    build_lights(device_, place_lamps(*state_, materials, snapshot.get()), monitor, snapshot.get());
+    find_specular(snapshot.get());
   });
+  snapshot->content_key = content_key(*state_);
   for (const std::string& text : snapshot->warnings) device_->warn(text);
   monitor.report(1.0f);
   state_->current = std::move(snapshot);

@@ -19,10 +19,11 @@ struct EmitterPoint {
   uint32_t index = 0;              // lamp, or emissive triangle
   uint32_t instance = UINT32_MAX;  // of an emissive triangle
   uint32_t triangle = UINT32_MAX;
-  Vec2 barycentric = Vec2(0.0f);
-  Vec3 position = Vec3(0.0f);   // finite emitters
-  Vec3 normal = Vec3(0.0f);     // geometric; 0 for points
-  Vec3 direction = Vec3(0.0f);  // towards the emitter: world and suns
+  Vec2 barycentric = Vec2(0.0f);  // on the triangle; of a lamp that is a facing disk: coordinates on the unit disk
+  Vec3 position = Vec3(0.0f);     // finite emitters; a facing disk turns with its receiver: take direction and distance of the view
+  Vec3 normal = Vec3(0.0f);       // geometric; 0 for points
+  Vec3 direction = Vec3(0.0f);    // towards the emitter: world and suns
+  float error = 0.0f;             // bound on the rounding error of `position` along the normal
   bool at_infinity() const {
     return kind == EmitterKind::World || (kind == EmitterKind::Lamp && normal == Vec3(0.0f) && direction != Vec3(0.0f));
   }
@@ -51,13 +52,17 @@ struct Receiver {
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u);
 // The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine there.
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
+// The density of view_emitter() alone: for weights, where the radiance is known or not needed.
+float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
+// The segment from a surface to an emitter, both ends moved off their surfaces by what rounding may do.
+Ray shadow_ray(const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view);
 // The emitter point of a surface that a ray hit (kind None if it is not sampled as a light).
 EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& point);
 // The emitter point of a ray that left the scene.
 EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction);
 
 // Lamps do not stop rays: a ray sees all that it crosses before its hit. Calls visit(EmitterPoint, distance) for each
-// lamp with extent between ray.t_min and ray.t_max.
+// lamp with extent between ray.t_min and ray.t_max, and for each sun with extent, at infinity, if ray.t_max is infinite.
 struct LampHit {
   EmitterPoint point;
   float distance;

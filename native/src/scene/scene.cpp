@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "scene/scene_state.h"
+#include "shading/material.h"
 
 namespace gradus {
 
@@ -34,8 +35,11 @@ void Scene::set_image(uint64_t key, const GradusImage& image) {
 void Scene::set_material(uint64_t key, const GradusMaterial& material) {
   if (key == 0) throw invalid_argument("material: key 0 is the default grey");
   auto source = std::make_shared<const MaterialSource>(material);
+  // Finds mistakes now, while the caller knows what it does; the images may come later.
+  compile_material(source->view(), ImageStore());
   const Lock lock(state_->mutex);
-  state_->materials[key] = std::move(source);
+  std::shared_ptr<const MaterialSource>& slot = state_->materials[key];
+  if (!slot || slot->content_hash() != source->content_hash()) slot = std::move(source);
 }
 
 void Scene::set_instances(const GradusInstances& instances) {

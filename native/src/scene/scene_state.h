@@ -28,6 +28,16 @@ struct LoadedImage {
   std::shared_ptr<const Image> image;  // null: to be loaded by the next commit
 };
 
+struct MaterialData;
+
+struct CompiledMaterial {
+  std::shared_ptr<const MaterialSource> source;
+  std::shared_ptr<const MaterialData> data;
+};
+
+// Material key -> index in Snapshot::materials.
+using MaterialIndex = std::unordered_map<uint64_t, uint32_t>;
+
 struct Scene::State {
   mutable std::mutex mutex;
   std::unordered_map<uint64_t, std::shared_ptr<const MeshData>> meshes;
@@ -40,7 +50,12 @@ struct Scene::State {
   GradusWorld world{};
   bool has_world = false;
 
+  // Results of the last commit that the next may take over.
   std::shared_ptr<const Snapshot> current;
+  std::shared_ptr<const ImageStore> image_store;
+  std::vector<uint64_t> stored_images;
+  std::map<uint64_t, CompiledMaterial> compiled;
+  uint64_t geometry_key = 0;
   MeshSceneCache mesh_scenes;
 };
 
@@ -64,5 +79,12 @@ glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin);
 
 // Fills instances (without materials), origin, radius and warnings; returns the index in InstanceArrays of each.
 std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapshot);
+
+// Fills images and warnings.
+void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
+// Fills materials: the default one first. Needs load_images().
+MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
+// Hash of all that was set.
+uint64_t content_key(const Scene::State& state);
 
 }  // namespace gradus

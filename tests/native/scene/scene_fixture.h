@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/device.h"
+#include "gradus/gradus_nodes.h"
 #include "scene/scene.h"
 #include "scene/snapshot.h"
 
@@ -76,11 +77,78 @@ inline Mat4 scaling(const Vec3& s) {
   return m;
 }
 
+// A program of at most two nodes: a value and a closure.
+class MaterialDesc {
+ public:
+  MaterialDesc(uint32_t closure, const Rgb& color, float strength = 1.0f) {
+    nodes_.push_back({closure, 0, 0, closure == GRADUS_OP_EMISSION || closure == GRADUS_OP_DIFFUSE ? 2u : 1u, 0, 0, 0});
+    inputs_.push_back({-1, 0, {color.x, color.y, color.z, 1.0f}});
+    inputs_.push_back({-1, 0, {strength, strength, strength, strength}});
+    if (closure == GRADUS_OP_DIFFUSE) complete_diffuse();
+  }
+  // Emission of the coordinates Generated: of a world the direction.
+  static MaterialDesc colored_by_generated() {
+    MaterialDesc m(GRADUS_OP_EMISSION, Rgb(1.0f));
+    m.nodes_.insert(m.nodes_.begin(), {GRADUS_OP_TEX_COORD, GRADUS_TEX_COORD_GENERATED, 0, 0, 0, 0, 0});
+    m.inputs_[0].node = 0;
+    return m;
+  }
+  GradusMaterial desc() const {
+    GradusMaterial d{};
+    d.struct_size = sizeof(d);
+    d.node_count = uint32_t(nodes_.size());
+    d.nodes = nodes_.data();
+    d.inputs = inputs_.data();
+    d.input_count = inputs_.size();
+    d.surface = int32_t(nodes_.size()) - 1;
+    d.sample_as_light = 1;
+    d.transparent_shadow = 1;
+    d.name = "material";
+    return d;
+  }
+
+ private:
+  // DIFFUSE has color, roughness, normal; a normal of 0 is the shading normal.
+  void complete_diffuse() {
+    inputs_[1] = {-1, 0, {0, 0, 0, 0}};
+    inputs_.push_back({-1, 0, {0, 0, 0, 0}});
+    nodes_[0].input_count = 3;
+  }
+  std::vector<GradusNode> nodes_;
+  std::vector<GradusInput> inputs_;
+};
+
+inline GradusLight make_light(GradusLightType type, const Mat4& matrix, const Rgb& strength) {
+  GradusLight light{};
+  light.struct_size = sizeof(light);
+  light.type = type;
+  light.visibility = GRADUS_VISIBLE_ALL;
+  for (int i = 0; i < 16; ++i) light.matrix[i] = matrix[i / 4][i % 4];
+  for (int i = 0; i < 3; ++i) light.strength[i] = strength[i];
+  light.size[0] = light.size[1] = 1.0f;
+  light.spread = kPi;
+  light.cone = kPi / 2;
+  light.max_bounces = UINT32_MAX;
+  light.name = "light";
+  return light;
+}
+
 class TestScene {
  public:
   TestScene() : scene(test_device()) {}
 
   void mesh(uint64_t key, const Soup& soup) { scene.set_mesh(key, MeshDesc(soup).desc); }
+  void material(uint64_t key, const MaterialDesc& material) { scene.set_material(key, material.desc()); }
+  void lights(const std::vector<GradusLight>& lights) { scene.set_lights(lights.data(), lights.size()); }
+  void world(uint64_t material_key, uint32_t map_size = 0) {
+    GradusWorld w{};
+    w.struct_size = sizeof(w);
+    w.visibility = GRADUS_VISIBLE_ALL;
+    w.material = material_key;
+    w.importance = map_size ? 2 : 1;
+    w.map_size = map_size;
+    scene.set_world(w);
+  }
   void instance(uint64_t mesh_key, const Mat4& matrix = Mat4(1.0f), uint32_t visibility = GRADUS_VISIBLE_ALL, uint64_t material = 0) {
     meshes_.push_back(mesh_key);
     matrices_.push_back(matrix);

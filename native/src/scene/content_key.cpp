@@ -1,0 +1,67 @@
+// Key of all that a commit depends on (contract 7.2: the scene key of a frame).
+#include "scene/scene_state.h"
+
+namespace gradus {
+
+namespace {
+
+void hash_matrix(const float* m, ContentHash* hash) { hash->bytes(m, 16 * sizeof(float)); }
+
+void hash_light(const LightSource& light, ContentHash* hash) {
+  const GradusLight& d = light.desc;
+  for (const uint32_t v : {d.type, d.flags, d.visibility, d.max_bounces, uint32_t(d.pass_index)}) hash->value(v);
+  hash_matrix(d.matrix, hash);
+  for (const float v : {d.strength[0], d.strength[1], d.strength[2], d.radius, d.angle, d.size[0], d.size[1], d.spread, d.cone, d.blend,
+                        d.sun_radiance_per_irradiance})
+    hash->value(v);
+  hash->value(d.material);
+}
+
+void hash_camera(const GradusCamera& c, ContentHash* hash) {
+  hash->value(c.type);
+  for (const float* m : {c.matrix, c.matrix_previous, c.matrix_next}) hash_matrix(m, hash);
+  for (const float* w : {c.window, c.window_previous, c.window_next}) hash->bytes(w, 4 * sizeof(float));
+  for (const float v : {c.clip_start, c.clip_end, c.aperture_radius, c.focus_distance, c.blade_rotation, c.aperture_ratio}) hash->value(v);
+  hash->value(c.blades);
+}
+
+void hash_world(const GradusWorld& w, ContentHash* hash) {
+  for (const uint32_t v : {w.visibility, w.importance, w.map_size, w.mist_falloff}) hash->value(v);
+  hash->value(w.material);
+  for (const float v : {w.mist_start, w.mist_depth, w.ao_distance}) hash->value(v);
+}
+
+void hash_images(const Scene::State& state, ContentHash* hash) {
+  for (const auto& [key, image] : state.images) {
+    hash->value(key);
+    hash->value(image.source.color_space);
+    hash->value(image.source.alpha_mode);
+    for (const auto& tile : image.source.tiles) {
+      hash->value(tile.number);
+      hash->value(tile.path);
+      hash->array(tile.data);
+    }
+  }
+}
+
+}  // namespace
+
+uint64_t content_key(const Scene::State& state) {
+  ContentHash hash;
+  state.instances.hash(&hash);
+  for (const uint64_t key : state.instances.meshes) {
+    const auto mesh = state.meshes.find(key);
+    hash.value(mesh == state.meshes.end() ? uint64_t(0) : mesh->second->content_hash);
+  }
+  for (const auto& [key, material] : state.materials) {
+    hash.value(key);
+    hash.value(material->content_hash());
+  }
+  hash_images(state, &hash);
+  for (const LightSource& light : state.lights) hash_light(light, &hash);
+  if (state.has_camera) hash_camera(state.camera, &hash);
+  if (state.has_world) hash_world(state.world, &hash);
+  return hash.result();
+}
+
+}  // namespace gradus

@@ -1,0 +1,158 @@
+// The emitters of a commit: lamps, emissive triangles with their power, the world's map, the tree.
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+#include "scene/emitter_table.h"
+#include "scene/mesh.h"
+#include "scene/scene_state.h"
+#include "scene/snapshot.h"
+#include "shading/material.h"
+#include "shading/shade.h"
+
+namespace gradus {
+
+namespace {
+
+// More emissive triangles than this are left to BSDF sampling: 100 bytes and 2 µs of building each.
+constexpr size_t kMaxTriangles = 4u << 20;
+// Triangles whose textured emission is measured point by point; beyond, the material's estimate serves for all.
+constexpr size_t kMaxMeasured = 1u << 19;
+
+struct Candidates {
+  std::vector<EmissiveTriangle> triangles;
+  std::vector<uint32_t> first;
+};
+
+bool is_light(const MaterialData* material) { return material && material->emits && material->sample_as_light; }
+
+std::array<Vec3, 3> internal_corners(const InstanceData& instance, uint32_t triangle) {
+  if (instance.flat_positions) {
+    const uint32_t* v = instance.mesh->triangle_vertices.data() + size_t(triangle) * 3;
+    return {instance.flat_positions[v[0]], instance.flat_positions[v[1]], instance.flat_positions[v[2]]};
+  }
+  std::array<Vec3, 3> p = triangle_positions(*instance.mesh, triangle);
+  for (Vec3& v : p) v = Vec3(instance.to_world * Vec4(v, 1.0f));
+  return p;
+}
+
+bool any_light(const Snapshot& snapshot, const InstanceData& instance) {
+  if (instance.materials.empty()) return is_light(snapshot.materials[0].get());
+  return std::any_of(instance.materials.begin(), instance.materials.end(),
+                     [&](uint32_t m) { return is_light(snapshot.materials[m].get()); });
+}
+
+Candidates find_triangles(const Snapshot& snapshot, const CommitMonitor& monitor) {
+  Candidates found;
+  for (uint32_t i = 0; i < snapshot.instances.size(); ++i) {
+    found.first.push_back(uint32_t(found.triangles.size()));
+    const InstanceData& instance = snapshot.instances[i];
+    if (!any_light(snapshot, instance) || found.triangles.size() + instance.mesh->triangle_count > kMaxTriangles) continue;
+    monitor.check();
+    for (uint32_t t = 0; t < instance.mesh->triangle_count; ++t) {
+      if (instance.mesh->is_dropped(t) || !is_light(snapshot.materials[snapshot.material_of(i, t)].get())) continue;
+      const std::array<Vec3, 3> p = internal_corners(instance, t);
+      const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+      if (area > 0.0f && is_finite(area)) found.triangles.push_back({i, t, area});
+    }
+  }
+  found.first.push_back(uint32_t(found.triangles.size()));
+  return found;
+}
+
+// Mean radiance of a triangle over four points and both sides.
+float measure_radiance(const Snapshot& snapshot, const EmissiveTriangle& triangle) {
+  constexpr float kPoints[4][2] = {{1 / 3.0f, 1 / 3.0f}, {0.15f, 0.15f}, {0.7f, 0.15f}, {0.15f, 0.7f}};
+  RayState state;
+  state.flags = 0;
+  float sum = 0.0f;
+  for (const auto& b : kPoints) {
+    Hit hit;
+    hit.instance = triangle.instance;
+    hit.triangle = triangle.triangle;
+    hit.barycentric = Vec2(b[0], b[1]);
+    const SurfacePoint point = snapshot.surface_point(hit);
+    for (const float side : {1.0f, -1.0f}) {
+      const float value = mean_component(glm::abs(shade_emission(snapshot, point, point.geometric_normal * side, state)));
+      if (is_finite(value)) sum += std::min(value, 1e30f);
+    }
+  }
+  return sum / 8.0f;
+}
+
+float radiance_estimate(const Snapshot& snapshot, const EmissiveTriangle& triangle, bool measure) {
+  const MaterialData& material = *snapshot.materials[snapshot.material_of(triangle.instance, triangle.triangle)];
+  if (material.emission_is_constant) return mean_component(glm::abs(material.constant_emission));
+  if (!measure) return std::max(material.emission_estimate, 1e-6f);
+  // The points may all lie on dark texels: keep a part of the estimate for the whole material.
+  return measure_radiance(snapshot, triangle) + 0.05f * std::max(material.emission_estimate, 0.0f) + 1e-6f;
+}
+
+LightBounds triangle_bounds(const Snapshot& snapshot, const EmissiveTriangle& triangle, bool measure) {
+  const std::array<Vec3, 3> p = internal_corners(snapshot.instances[triangle.instance], triangle.triangle);
+  LightBounds b;
+  b.lower = glm::min(p[0], glm::min(p[1], p[2]));
+  b.upper = glm::max(p[0], glm::max(p[1], p[2]));
+  const Vec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const float length = glm::length(n);
+  if (length > 0.0f) b.axis = n / length;
+  b.two_sided = true;
+  b.power = std::min(radiance_estimate(snapshot, triangle, measure) * triangle.area, 1e30f);
+  return b;
+}
+
+std::vector<LightBounds> all_bounds(const Snapshot& snapshot, const EmitterTable& table, const CommitMonitor& monitor) {
+  std::vector<LightBounds> bounds;
+  for (const uint32_t lamp : table.tree_lamps) bounds.push_back(lamp_bounds(table.lamps[lamp]));
+  const size_t lamps = bounds.size();
+  bounds.resize(lamps + table.triangles.size());
+  const bool measure = table.triangles.size() <= kMaxMeasured;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, table.triangles.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
+    if (!monitor.go_on()) return;
+    for (size_t i = range.begin(); i < range.end(); ++i) bounds[lamps + i] = triangle_bounds(snapshot, table.triangles[i], measure);
+  });
+  monitor.check();
+  return bounds;
+}
+
+void sort_lamps(EmitterTable* table) {
+  for (uint32_t i = 0; i < table->lamps.size(); ++i) {
+    const Lamp& lamp = table->lamps[i];
+    auto& list = lamp.at_infinity() ? table->suns : table->tree_lamps;
+    table->slot.push_back(uint32_t(list.size()));
+    list.push_back(i);
+    if (!lamp.at_infinity()) continue;
+    // Irradiance facing the disk: radiance times its projected solid angle pi sin².
+    const float projected = kPi * lamp.one_minus_cos_sun * (2.0f - lamp.one_minus_cos_sun);
+    table->sun_irradiance.push_back(mean_component(glm::abs(lamp.intensity)) * (lamp.dirac() ? 1.0f : projected));
+  }
+}
+
+void build_world(const Snapshot& snapshot, const CommitMonitor& monitor, Environment* world) {
+  if (snapshot.world_material == UINT32_MAX || snapshot.world.importance == 0) return;
+  const auto& material = snapshot.materials[snapshot.world_material];
+  if (!material || !material->emits) return;
+  RayState state;
+  state.flags = 0;
+  const auto radiance = [&](const Vec3& direction) { return shade_world(snapshot, direction, state); };
+  world->build(radiance, snapshot.world.importance == 2 ? snapshot.world.map_size : 0, [&] { return monitor.go_on(); });
+  monitor.check();
+}
+
+}  // namespace
+
+std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, const CommitMonitor& monitor) {
+  auto table = std::make_shared<EmitterTable>();
+  table->lamps = std::move(lamps);
+  sort_lamps(table.get());
+  Candidates found = find_triangles(snapshot, monitor);
+  table->triangles = std::move(found.triangles);
+  table->first_triangle = std::move(found.first);
+  table->tree.build(all_bounds(snapshot, *table, monitor), [&] { return monitor.go_on(); });
+  monitor.check();
+  build_world(snapshot, monitor, &table->world);
+  return table;
+}
+
+}  // namespace gradus

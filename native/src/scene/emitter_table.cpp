@@ -1,0 +1,54 @@
+#include "scene/emitter_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+namespace {
+
+// Every group that can shine at all gets its share of this part of the samples, whatever the estimates say.
+constexpr double kDefensive = 0.2;
+
+float sun_importance(float irradiance, const Lamp& sun, const Receiver& receiver) {
+  if (receiver.normal == Vec3(0.0f)) return irradiance;
+  float cosine = -glm::dot(receiver.normal, sun.shine);
+  if (receiver.transmits) cosine = std::fabs(cosine);
+  // The part of the disk that is highest; its sine is that of half the sun's angle.
+  const float c = 1.0f - sun.one_minus_cos_sun;
+  const float s = std::sqrt(std::max(0.0f, 1.0f - c * c));
+  const float highest = cosine > c ? 1.0f : cosine * c + std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) * s;
+  return irradiance * std::max(highest, 0.0f);
+}
+
+double defended(double weight, double sum, int groups) {
+  return weight > 0.0 ? (1.0 - kDefensive) * weight / sum + kDefensive / groups : 0.0;
+}
+
+}  // namespace
+
+GroupChoice EmitterTable::choose_group(const Receiver& receiver) const {
+  const bool only_tree = suns.empty() && world.black();
+  const double in_tree = tree.empty() ? 0.0 : (only_tree ? 1.0 : tree.irradiance(receiver));
+  double in_suns = 0.0;
+  for (size_t i = 0; i < suns.size(); ++i) in_suns += sun_importance(sun_irradiance[i], lamps[suns[i]], receiver);
+  const double in_world = world.black() ? 0.0 : world.mean() * kPi;
+  const double sum = in_tree + in_suns + in_world;
+  const int groups = (in_tree > 0.0) + (in_suns > 0.0) + (in_world > 0.0);
+  if (groups == 0 || !std::isfinite(sum)) return {};
+  return {defended(in_tree, sum, groups), defended(in_suns, sum, groups), defended(in_world, sum, groups)};
+}
+
+double EmitterTable::sun_probability(size_t sun, const Receiver& receiver) const {
+  double sum = 0.0;
+  for (size_t i = 0; i < suns.size(); ++i) sum += sun_importance(sun_irradiance[i], lamps[suns[i]], receiver);
+  return sum > 0.0 ? sun_importance(sun_irradiance[sun], lamps[suns[sun]], receiver) / sum : 0.0;
+}
+
+uint32_t EmitterTable::find_triangle(uint32_t instance, uint32_t triangle) const {
+  const auto first = triangles.begin() + first_triangle[instance], last = triangles.begin() + first_triangle[instance + 1];
+  const auto found = std::lower_bound(first, last, triangle, [](const EmissiveTriangle& t, uint32_t id) { return t.triangle < id; });
+  return found != last && found->triangle == triangle ? uint32_t(found - triangles.begin()) : UINT32_MAX;
+}
+
+}  // namespace gradus

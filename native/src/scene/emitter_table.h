@@ -1,0 +1,49 @@
+// All emitters of a snapshot, and the choice among them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scene/environment.h"
+#include "scene/lamp.h"
+#include "scene/light_tree.h"
+
+namespace gradus {
+
+class LampScene;  // scene/lamp_scene.h
+class CommitMonitor;
+
+struct EmissiveTriangle {
+  uint32_t instance = 0;
+  uint32_t triangle = 0;
+  float area = 0.0f;
+};
+
+// Probabilities of the three kinds of emitters for one receiver; they sum to one, or are all 0: nothing reaches it.
+struct GroupChoice {
+  double tree = 0.0, suns = 0.0, world = 0.0;
+};
+
+struct EmitterTable {
+  std::vector<Lamp> lamps;
+  std::vector<EmissiveTriangle> triangles;  // instance after instance, ascending
+  std::vector<uint32_t> first_triangle;     // of each instance, in `triangles`; one more at the end
+  LightTree tree;                           // lights: those of tree_lamps, then the triangles
+  std::vector<uint32_t> tree_lamps;         // lamps that are not at infinity
+  std::vector<uint32_t> suns;               // lamps that are
+  std::vector<uint32_t> slot;               // of each lamp, in tree_lamps or suns
+  std::vector<float> sun_irradiance;        // of each sun
+  Environment world;
+  std::shared_ptr<const LampScene> lamps_with_extent;
+
+  GroupChoice choose_group(const Receiver& receiver) const;
+  // Of one sun among the suns.
+  double sun_probability(size_t sun, const Receiver& receiver) const;
+  // Index in `triangles`, UINT32_MAX if it is not sampled as a light.
+  uint32_t find_triangle(uint32_t instance, uint32_t triangle) const;
+};
+
+// The snapshot is complete but for its emitters. lamps_with_extent is left to the caller. Throws Error CANCELLED.
+std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, const CommitMonitor& monitor);
+
+}  // namespace gradus

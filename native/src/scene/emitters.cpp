@@ -1,0 +1,192 @@
+#include "scene/emitters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/emitter_table.h"
+#include "scene/snapshot.h"
+#include "shading/shade.h"
+
+namespace gradus {
+
+namespace {
+
+// Light sampling does not know which lobe asks: the Light Path node sees no kind of ray (as in Cycles).
+RayState light_ray(float length) {
+  RayState state;
+  state.flags = 0;
+  state.length = length;
+  return state;
+}
+
+EmitterPoint sample_triangle(const Snapshot& snapshot, uint32_t index, const Vec2& u) {
+  const EmissiveTriangle& t = snapshot.emitters->triangles[index];
+  Hit hit;
+  hit.instance = t.instance;
+  hit.triangle = t.triangle;
+  const float root = std::sqrt(u.x);
+  hit.barycentric = Vec2(1.0f - root, u.y * root);
+  return emitter_of_surface(snapshot, snapshot.surface_point(hit));
+}
+
+EmitterPoint sample_lamp_at(const Snapshot& snapshot, uint32_t lamp, const Receiver& receiver, const Vec2& u) {
+  EmitterPoint point;
+  if (!sample_lamp(snapshot.emitters->lamps[lamp], receiver.position, u, &point)) return {};
+  point.index = lamp;
+  return point;
+}
+
+EmitterPoint sample_tree(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
+  const EmitterTable& table = *snapshot.emitters;
+  const uint32_t light = table.tree.sample(receiver, choice);
+  if (light < table.tree_lamps.size()) return sample_lamp_at(snapshot, table.tree_lamps[light], receiver, u);
+  return sample_triangle(snapshot, light - uint32_t(table.tree_lamps.size()), u);
+}
+
+EmitterPoint sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
+  const EmitterTable& table = *snapshot.emitters;
+  size_t sun = 0;
+  double below = 0.0;
+  for (; sun + 1 < table.suns.size(); ++sun) {
+    below += table.sun_probability(sun, receiver);
+    if (choice < below) break;
+  }
+  return sample_lamp_at(snapshot, table.suns[sun], receiver, u);
+}
+
+// Probability that the emitter of the point is chosen.
+double choice_probability(const EmitterTable& table, const EmitterPoint& point, const Receiver& receiver) {
+  const GroupChoice group = table.choose_group(receiver);
+  if (point.kind == EmitterKind::World) return group.world;
+  const auto lamps_in_tree = uint32_t(table.tree_lamps.size());
+  if (point.kind == EmitterKind::Triangle) return group.tree * table.tree.probability(lamps_in_tree + point.index, receiver);
+  const uint32_t slot = table.slot[point.index];
+  if (table.lamps[point.index].at_infinity()) return group.suns * table.sun_probability(slot, receiver);
+  return group.tree * table.tree.probability(slot, receiver);
+}
+
+SurfacePoint surface_of(const Snapshot& snapshot, const EmitterPoint& point) {
+  Hit hit;
+  hit.instance = point.instance;
+  hit.triangle = point.triangle;
+  hit.barycentric = point.barycentric;
+  return snapshot.surface_point(hit);
+}
+
+// The program of a lamp sees no mesh: Hit is not valid.
+Rgb lamp_emission(const Snapshot& snapshot, const Lamp& lamp, const EmitterPoint& point, const EmitterView& view) {
+  if (lamp.material == UINT32_MAX || is_black(view.radiance)) return Rgb(1.0f);
+  SurfacePoint surface;
+  surface.position = point.position;
+  surface.geometric_normal = surface.shading_normal = point.normal == Vec3(0.0f) ? -view.direction : point.normal;
+  surface.material = lamp.material;
+  return shade_emission(snapshot, surface, -view.direction, light_ray(view.distance));
+}
+
+// Geometry and solid angle density of an emissive triangle.
+EmitterView view_triangle(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
+  EmitterView view;
+  view.visibility = snapshot.instances[point.instance].visibility & GRADUS_VISIBLE_ALL;
+  const Vec3 to_light = point.position - receiver.position;
+  const float distance2 = glm::dot(to_light, to_light);
+  if (!(distance2 > 0.0f)) return view;
+  view.distance = std::sqrt(distance2);
+  view.direction = to_light / view.distance;
+  view.cosine = std::fabs(glm::dot(point.normal, view.direction));
+  const float area = snapshot.emitters->triangles[point.index].area;
+  if (view.cosine > 0.0f) view.pdf = distance2 / (view.cosine * area);
+  return view;
+}
+
+EmitterView view_world(const Snapshot& snapshot, const EmitterPoint& point) {
+  EmitterView view;
+  view.direction = point.direction;
+  view.visibility = snapshot.world.visibility;
+  view.pdf = snapshot.emitters->world.density(point.direction);
+  return view;
+}
+
+// All but the radiance of triangles and world, and the lamp's program.
+EmitterView view_geometry(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
+  EmitterView view;
+  if (point.kind == EmitterKind::Lamp) view = view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position);
+  if (point.kind == EmitterKind::Triangle) view = view_triangle(snapshot, point, receiver);
+  if (point.kind == EmitterKind::World) view = view_world(snapshot, point);
+  if (view.pdf > 0.0f) view.pdf = float(view.pdf * choice_probability(*snapshot.emitters, point, receiver));
+  if (!is_finite(view.pdf)) view.pdf = 0.0f;
+  return view;
+}
+
+}  // namespace
+
+EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u) {
+  const GroupChoice group = snapshot.emitters->choose_group(receiver);
+  const double c = choice;
+  if (c < group.tree) return sample_tree(snapshot, receiver, c / group.tree, u);
+  const double rest = c - group.tree;
+  if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) return sample_suns(snapshot, receiver, rest / group.suns, u);
+  if (group.world > 0.0) return emitter_of_world(snapshot, snapshot.emitters->world.sample(u));
+  // Only rounding leads here where there is a tree.
+  return group.tree > 0.0 ? sample_tree(snapshot, receiver, 1.0 - 1e-12, u) : EmitterPoint();
+}
+
+EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
+  EmitterView view = view_geometry(snapshot, point, receiver);
+  if (point.kind == EmitterKind::Lamp) view.radiance *= lamp_emission(snapshot, snapshot.emitters->lamps[point.index], point, view);
+  if (point.kind == EmitterKind::Triangle && view.cosine > 0.0f)
+    view.radiance = shade_emission(snapshot, surface_of(snapshot, point), -view.direction, light_ray(view.distance));
+  if (point.kind == EmitterKind::World) view.radiance = shade_world(snapshot, point.direction, light_ray(kInfinity));
+  return view;
+}
+
+float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
+  return view_geometry(snapshot, point, receiver).pdf;
+}
+
+EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& surface) {
+  EmitterPoint point;
+  const uint32_t index = snapshot.emitters->find_triangle(surface.hit.instance, surface.hit.triangle);
+  if (index == UINT32_MAX) return point;
+  point.kind = EmitterKind::Triangle;
+  point.index = index;
+  point.instance = surface.hit.instance;
+  point.triangle = surface.hit.triangle;
+  point.barycentric = surface.hit.barycentric;
+  point.position = surface.position;
+  point.normal = surface.geometric_normal;
+  point.error = surface.error;
+  return point;
+}
+
+EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction) {
+  EmitterPoint point;
+  if (snapshot.emitters->world.black()) return point;
+  point.kind = EmitterKind::World;
+  point.direction = direction;
+  return point;
+}
+
+Ray shadow_ray(const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view) {
+  Ray ray{offset_origin(from, view.direction), 0.0f, view.direction, kInfinity};
+  if (to.at_infinity()) return ray;
+  Vec3 target = from.position + view.direction * view.distance;
+  if (to.kind == EmitterKind::Triangle) {
+    SurfacePoint end;
+    end.position = to.position;
+    end.geometric_normal = to.normal;
+    end.error = to.error;
+    target = offset_origin(end, -view.direction);
+  }
+  const Vec3 d = target - ray.origin;
+  const float length = glm::length(d);
+  // From the same place, or closer than both errors: nothing lies between.
+  if (!(length > 0.0f) || glm::dot(d, view.direction) <= 0.0f) {
+    ray.t_max = -1.0f;
+    return ray;
+  }
+  ray.direction = d / length;
+  ray.t_max = length * (1.0f - 1e-6f);
+  return ray;
+}
+
+}  // namespace gradus

@@ -1,0 +1,119 @@
+#include "scene/environment.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+namespace gradus {
+
+namespace {
+
+constexpr uint32_t kProbeWidth = 64;
+constexpr uint32_t kAutomaticWidth = 1024;
+constexpr uint32_t kMinWidth = 16, kMaxWidth = 4096;
+
+Vec3 to_direction(const Vec2& p) {
+  const float phi = 2.0f * kPi * p.x, theta = kPi * p.y;
+  const float s = std::sin(theta);
+  return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
+}
+
+Vec2 to_map(const Vec3& d) {
+  const float phi = std::atan2(d.y, d.x);
+  return {(phi < 0.0f ? phi + 2.0f * kPi : phi) / (2.0f * kPi), std::acos(std::clamp(d.z, -1.0f, 1.0f)) / kPi};
+}
+
+// Mean channel of the radiance in each cell, from 2×2 points, so that a small sun is not missed between cell centres. Negative and
+// non-finite radiance counts as none. Returns false when stopped.
+bool measure(const Environment::Radiance& radiance, uint32_t width, const std::function<bool()>& go_on, std::vector<float>* out) {
+  const uint32_t height = width / 2;
+  out->assign(size_t(width) * height, 0.0f);
+  std::atomic<bool> stopped{false};
+  tbb::parallel_for(0u, height, [&](uint32_t y) {
+    if (stopped || !go_on()) {
+      stopped = true;
+      return;
+    }
+    for (uint32_t x = 0; x < width; ++x) {
+      float sum = 0.0f;
+      for (int k = 0; k < 4; ++k) {
+        const Vec2 p((float(x) + 0.25f + 0.5f * float(k & 1)) / float(width), (float(y) + 0.25f + 0.5f * float(k >> 1)) / float(height));
+        const float value = mean_component(glm::max(radiance(to_direction(p)), Rgb(0.0f)));
+        sum += is_finite(value) ? std::min(value, 1e15f) : 0.0f;
+      }
+      (*out)[size_t(y) * width + x] = 0.25f * sum;
+    }
+  });
+  return !stopped;
+}
+
+float row_sine(uint32_t y, uint32_t height) { return std::sin(kPi * (float(y) + 0.5f) / float(height)); }
+
+float mean_over_sphere(const std::vector<float>& values, uint32_t width) {
+  const uint32_t height = width / 2;
+  double sum = 0.0, weight = 0.0;
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      sum += double(values[size_t(y) * width + x]) * row_sine(y, height);
+      weight += row_sine(y, height);
+    }
+  return float(sum / weight);
+}
+
+// Weight of a cell: the largest of it and its neighbours, because within a cell the density is constant while the radiance is
+// interpolated; and a little everywhere, so that what the map's points missed can still be found.
+std::vector<float> weights(const std::vector<float>& values, uint32_t width, float mean) {
+  const uint32_t height = width / 2;
+  std::vector<float> out(values.size());
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      const auto at = [&](uint32_t cx, uint32_t cy) { return values[size_t(cy) * width + cx]; };
+      float around = std::max(at((x + 1) % width, y), at((x + width - 1) % width, y));
+      if (y > 0) around = std::max(around, at(x, y - 1));
+      if (y + 1 < height) around = std::max(around, at(x, y + 1));
+      const float here = at(x, y);
+      out[size_t(y) * width + x] = (std::max(here, 0.25f * around) + 0.01f * mean) * row_sine(y, height);
+    }
+  return out;
+}
+
+bool is_constant(const std::vector<float>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low <= 1e-4f * *high;
+}
+
+}  // namespace
+
+void Environment::build(const Radiance& radiance, uint32_t map_width, const std::function<bool()>& go_on) {
+  map_ = Distribution2D();
+  mean_ = 0.0f;
+  std::vector<float> values;
+  if (!measure(radiance, kProbeWidth, go_on, &values)) return;
+  const bool constant = is_constant(values);
+  uint32_t width = kProbeWidth;
+  if (!constant || map_width != 0) {
+    width = std::clamp(map_width == 0 ? kAutomaticWidth : map_width, kMinWidth, kMaxWidth) & ~1u;
+    if (!measure(radiance, width, go_on, &values)) return;
+  }
+  mean_ = mean_over_sphere(values, width);
+  // A constant world is sampled uniformly; the fine map decides, where it was made.
+  if (mean_ > 0.0f && !is_constant(values)) map_ = Distribution2D(width, width / 2, weights(values, width, mean_));
+}
+
+Vec3 Environment::sample(const Vec2& u) const {
+  if (!map_.empty()) return to_direction(map_.sample(u));
+  const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+  return {r * std::cos(2.0f * kPi * u.y), r * std::sin(2.0f * kPi * u.y), z};
+}
+
+float Environment::density(const Vec3& direction) const {
+  if (black()) return 0.0f;
+  if (map_.empty()) return 0.25f * kInvPi;
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - direction.z * direction.z));
+  if (sine <= 0.0f) return 0.0f;
+  return map_.density(to_map(direction)) / (2.0f * kPi * kPi * sine);
+}
+
+}  // namespace gradus

@@ -1,0 +1,54 @@
+// Lamps: lights that are not surfaces. Units as in gradus.h (blender.md 7.1).
+#pragma once
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+#include "scene/emitters.h"
+#include "scene/light_tree.h"
+
+namespace gradus {
+
+// In the snapshot's internal space, with what sampling needs worked out.
+struct Lamp {
+  enum class Shape : uint8_t { Point, Sphere, FacingDisk, Rectangle, Ellipse, Direction, Cone };
+
+  Shape shape = Shape::Point;
+  bool is_spot = false;
+  bool spot_cosine = false;
+  bool casts_shadow = true;
+  uint32_t visibility = GRADUS_VISIBLE_ALL;
+  uint32_t max_bounces = UINT32_MAX;
+  int32_t pass_index = 0;
+  uint32_t material = UINT32_MAX;  // index in the snapshot whose emission multiplies; UINT32_MAX: constant
+  Vec3 position{0.0f};
+  Vec3 axis_x{1, 0, 0};
+  Vec3 axis_y{0, 1, 0};
+  Vec3 shine{0, 0, -1};  // where it shines to
+  Rgb intensity{0.0f};   // point: W/sr; direction: W/m2; all with extent: radiance
+  float radius = 0.0f;
+  float half_width = 0.0f, half_height = 0.0f;
+  float area = 0.0f;        // of rectangle, ellipse, disk
+  float cos_cone = -1.0f;   // spot
+  float cone_slope = 0.0f;  // 1 / ((1 - cos_cone)·blend)
+  float tan_spread = kInfinity;
+  float spread_scale = 1.0f;
+  float one_minus_cos_sun = 0.0f;  // of half the angle
+
+  bool dirac() const { return shape == Shape::Point || shape == Shape::Direction; }
+  bool at_infinity() const { return shape == Shape::Direction || shape == Shape::Cone; }
+};
+
+bool is_finite_light(const GradusLight& desc);
+// False: it cannot shine (non-finite values, no strength, no area).
+bool make_lamp(const GradusLight& desc, const Vec3& origin, Lamp* lamp);
+// Of lamps that are not at infinity.
+LightBounds lamp_bounds(const Lamp& lamp);
+
+// A point of the lamp as sampled from `from`; false: it does not shine there.
+bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point);
+// Direction, distance, cosine, radiance (material left out), and the density of sample_lamp() in solid angle (1 if Dirac).
+EmitterView view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from);
+// Where a ray crosses a lamp with extent; false: nowhere between t_min and t_max.
+bool intersect_lamp(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance);
+
+}  // namespace gradus

@@ -1,0 +1,31 @@
+// Lamps with extent, for rays: a list while they are few, else user geometry in a scene of its own.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scene/lamp.h"
+
+struct RTCSceneTy;
+
+namespace gradus {
+
+class Device;
+
+class LampScene {
+ public:
+  LampScene(const std::shared_ptr<Device>& device, const std::vector<Lamp>& lamps);
+  ~LampScene();
+  LampScene(const LampScene&) = delete;
+  LampScene& operator=(const LampScene&) = delete;
+  // lamps: as given to the constructor. The nearest `capacity` hits, sorted; returns their number.
+  int intersect(const std::vector<Lamp>& lamps, const Ray& ray, LampHit* hits, int capacity) const;
+
+ private:
+  std::shared_ptr<Device> device_;
+  std::vector<uint32_t> listed_;  // suns, and all lamps while they are few
+  std::vector<uint32_t> placed_;  // primitives of the scene
+  RTCSceneTy* scene_ = nullptr;
+};
+
+}  // namespace gradus

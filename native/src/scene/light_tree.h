@@ -1,0 +1,57 @@
+// Choice of one emitter among many: a binary tree whose nodes bound where, how strongly and in which directions their emitters shine.
+//
+// Conty Estévez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (HPG 2018), without the splitting: at each
+// node a child is taken with probability proportional to a bound of its irradiance. The probability of an emitter can be asked for any
+// receiver, because its path from the root is stored.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/types.h"
+#include "scene/emitters.h"
+
+namespace gradus {
+
+// Bounds of one emitter or of a group.
+struct LightBounds {
+  Vec3 lower{kInfinity};
+  Vec3 upper{-kInfinity};
+  Vec3 axis{0, 0, 1};      // of the cone of normals
+  float cos_normals = 1;   // half angle of that cone
+  float cos_emission = 0;  // half angle of emission around a normal
+  float power = 0;         // largest radiant intensity, W/sr (mean of the channels)
+  bool two_sided = false;
+};
+
+class LightTree {
+ public:
+  // go_on is polled; false: the tree is left unfinished.
+  void build(const std::vector<LightBounds>& lights, const std::function<bool()>& go_on);
+  bool empty() const { return nodes_.empty(); }
+  size_t size() const { return trails_.size(); }
+
+  // Index of the chosen light, by u in [0, 1).
+  uint32_t sample(const Receiver& receiver, double u) const;
+  // Probability that sample() gives `light`. Over all lights it sums to one.
+  double probability(uint32_t light, const Receiver& receiver) const;
+  // Estimate of the irradiance of all lights together, to weigh the tree against other emitters; 0: none can reach the receiver.
+  float irradiance(const Receiver& receiver) const;
+
+ private:
+  struct Node {
+    LightBounds bounds;
+    uint32_t second_child = 0;  // the first is the next node; 0: a leaf
+    uint32_t light = 0;
+  };
+  struct Builder;
+  double first_probability(uint32_t node, const Receiver& receiver) const;
+
+  std::vector<Node> nodes_;
+  std::vector<uint64_t> trails_;  // of each light: bit i = second child at depth i
+};
+
+// Upper bound, in the main, of the irradiance that emitters within bounds can give the receiver.
+float importance(const LightBounds& bounds, const Receiver& receiver);
+
+}  // namespace gradus

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "scene/light_bounds.h"
+
+namespace gradus {
+
+// Top-down, by the cheapest of kBuckets - 1 planes in each of three directions.
+struct LightTree::Builder {
+  static constexpr int kBuckets = 12;
+  // Trails have 64 bits: from here on halves are taken, which ends within 32 more levels.
+  static constexpr int kMaxUnbalanced = 30;
+
+  LightTree* tree;
+  const std::vector<LightBounds>& lights;
+  const std::function<bool()>& go_on;
+  std::vector<uint32_t> order;
+  bool stopped = false;
+
+  struct Split {
+    int axis = -1;
+    float position = 0.0f;
+    float cost = kInfinity;
+  };
+
+  Vec3 centre(uint32_t light) const { return 0.5f * (lights[light].lower + lights[light].upper); }
+
+  static int bucket(float position, float lower, float extent) {
+    return std::clamp(int(float(kBuckets) * ((position - lower) / extent)), 0, kBuckets - 1);
+  }
+
+  Split best_along(int axis, uint32_t first, uint32_t last, const Vec3& lower, const Vec3& extent) const {
+    std::array<LightBounds, kBuckets> buckets;
+    for (uint32_t i = first; i < last; ++i) {
+      LightBounds& b = buckets[size_t(bucket(centre(order[i])[axis], lower[axis], extent[axis]))];
+      b = unite(b, lights[order[i]]);
+    }
+    const float stretch = std::max(extent.x, std::max(extent.y, extent.z)) / extent[axis];
+    std::array<float, kBuckets> below{};
+    LightBounds sum;
+    for (size_t i = 0; i + 1 < kBuckets; ++i) {
+      sum = unite(sum, buckets[i]);
+      below[i] = sum.lower.x > sum.upper.x ? kInfinity : orientation_cost(sum, stretch);
+    }
+    Split best;
+    sum = LightBounds();
+    for (size_t i = kBuckets - 1; i > 0; --i) {
+      sum = unite(sum, buckets[i]);
+      const float above = sum.lower.x > sum.upper.x ? kInfinity : orientation_cost(sum, stretch);
+      if (below[i - 1] + above < best.cost) best = {axis, float(i), below[i - 1] + above};
+    }
+    return best;
+  }
+
+  uint32_t split_at_middle(uint32_t first, uint32_t last, int axis) {
+    const uint32_t middle = (first + last) / 2;
+    std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last, [&](uint32_t a, uint32_t b) {
+      const float x = centre(a)[axis], y = centre(b)[axis];
+      return x != y ? x < y : a < b;
+    });
+    return middle;
+  }
+
+  uint32_t split(uint32_t first, uint32_t last, int depth) {
+    Vec3 lower(kInfinity), upper(-kInfinity);
+    for (uint32_t i = first; i < last; ++i) {
+      lower = glm::min(lower, centre(order[i]));
+      upper = glm::max(upper, centre(order[i]));
+    }
+    const Vec3 extent = upper - lower;
+    const int widest = extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
+    Split best;
+    for (int axis = 0; axis < 3 && depth < kMaxUnbalanced; ++axis) {
+      if (!(extent[axis] > 0.0f)) continue;
+      const Split s = best_along(axis, first, last, lower, extent);
+      if (s.cost < best.cost) best = s;
+    }
+    if (best.axis < 0) return split_at_middle(first, last, widest);
+    const auto middle = std::stable_partition(order.begin() + first, order.begin() + last, [&](uint32_t light) {
+      return bucket(centre(light)[best.axis], lower[best.axis], extent[best.axis]) < int(best.position);
+    });
+    return uint32_t(middle - order.begin());
+  }
+
+  LightBounds build(uint32_t first, uint32_t last, int depth, uint64_t trail) {
+    const auto index = uint32_t(tree->nodes_.size());
+    tree->nodes_.emplace_back();
+    if (last - first == 1) {
+      tree->nodes_[index].light = order[first];
+      tree->trails_[order[first]] = trail;
+      return tree->nodes_[index].bounds = lights[order[first]];
+    }
+    if (stopped || (last - first > 512 && !go_on())) {
+      stopped = true;
+      return {};
+    }
+    const uint32_t middle = split(first, last, depth);
+    const LightBounds a = build(first, middle, depth + 1, trail);
+    const auto second = uint32_t(tree->nodes_.size());
+    const LightBounds b = build(middle, last, depth + 1, trail | (uint64_t(1) << depth));
+    tree->nodes_[index].second_child = second;
+    return tree->nodes_[index].bounds = unite(a, b);
+  }
+};
+
+void LightTree::build(const std::vector<LightBounds>& lights, const std::function<bool()>& go_on) {
+  nodes_.clear();
+  trails_.assign(lights.size(), 0);
+  if (lights.empty()) return;
+  nodes_.reserve(2 * lights.size());
+  Builder builder{this, lights, go_on, std::vector<uint32_t>(lights.size())};
+  std::iota(builder.order.begin(), builder.order.end(), 0u);
+  builder.build(0, uint32_t(lights.size()), 0, 0);
+}
+
+}  // namespace gradus

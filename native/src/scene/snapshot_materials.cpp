@@ -1,0 +1,69 @@
+// Images and materials of a commit: what did not change since the one before is taken over.
+#include <set>
+
+#include <tbb/parallel_for.h>
+
+#include "base/device.h"
+#include "scene/scene_state.h"
+#include "shading/material.h"
+
+namespace gradus {
+
+namespace {
+
+// Decodes what is new, several at once. True if any was.
+bool load_new_images(Device& device, Scene::State* state, const CommitMonitor& monitor) {
+  std::vector<LoadedImage*> pending;
+  for (auto& [key, image] : state->images)
+    if (!image.image) pending.push_back(&image);
+  tbb::parallel_for(size_t(0), pending.size(), [&](size_t i) {
+    if (monitor.go_on()) pending[i]->image = load_image(pending[i]->source, device.color());
+  });
+  monitor.check();
+  return !pending.empty();
+}
+
+std::vector<uint64_t> image_keys(const Scene::State& state) {
+  std::vector<uint64_t> keys;
+  for (const auto& entry : state.images) keys.push_back(entry.first);
+  return keys;
+}
+
+}  // namespace
+
+void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
+  const bool loaded = load_new_images(device, state, monitor);
+  const std::vector<uint64_t> keys = image_keys(*state);
+  if (loaded || !state->image_store || keys != state->stored_images) {
+    auto store = std::make_shared<ImageStore>();
+    for (const auto& [key, image] : state->images) store->add(key, image.image);
+    state->image_store = std::move(store);
+    state->stored_images = keys;
+    // A program may have been folded with what an image holds.
+    state->compiled.clear();
+  }
+  snapshot->images = state->image_store;
+  const std::vector<std::string> warnings = state->image_store->warnings();
+  snapshot->warnings.insert(snapshot->warnings.end(), warnings.begin(), warnings.end());
+}
+
+MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
+  MaterialIndex index;
+  snapshot->materials.push_back(default_material());
+  std::map<uint64_t, CompiledMaterial> kept;
+  for (const auto& [key, source] : state->materials) {
+    monitor.check();
+    const auto old = state->compiled.find(key);
+    CompiledMaterial& material = kept[key];
+    if (old != state->compiled.end() && old->second.source == source)
+      material = old->second;
+    else
+      material = {source, compile_material(source->view(), *state->image_store)};
+    index[key] = uint32_t(snapshot->materials.size());
+    snapshot->materials.push_back(material.data);
+  }
+  state->compiled = std::move(kept);
+  return index;
+}
+
+}  // namespace gradus

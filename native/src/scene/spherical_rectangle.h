@@ -1,0 +1,26 @@
+// A rectangle as seen from a point: uniform sampling of its solid angle.
+// Ureña, Fajardo and King, "An Area-Preserving Parametrization for Spherical Rectangles" (EGSR 2013).
+#pragma once
+
+#include "base/types.h"
+
+namespace gradus {
+
+class SphericalRectangle {
+ public:
+  // axis_x, axis_y: unit, at right angles.
+  SphericalRectangle(const Vec3& centre, const Vec3& axis_x, const Vec3& axis_y, float half_width, float half_height, const Vec3& from);
+  // Small solid angles cancel in float, and there sampling by area is as good.
+  bool usable() const { return solid_angle_ > 1e-3f; }
+  float solid_angle() const { return solid_angle_; }
+  // Position on the rectangle.
+  Vec3 sample(const Vec2& u) const;
+
+ private:
+  Vec3 from_, x_, y_, z_;
+  float x0_, x1_, y0_, y1_, z0_;
+  float b0_ = 0.0f, b1_ = 0.0f, k_ = 0.0f;
+  float solid_angle_ = 0.0f;
+};
+
+}  // namespace gradus

@@ -1,0 +1,220 @@
+// A4 for lights: densities of points, whichever way they were found; the choice among many.
+#include <gtest/gtest.h>
+
+#include "scene/emitter_table.h"
+#include "scene/emitters.h"
+#include "scene_fixture.h"
+
+namespace gradus::test {
+namespace {
+
+Mat4 random_pose(std::mt19937& random, float extent) {
+  std::uniform_real_distribution<float> u(-extent, extent);
+  const Vec3 z = random_direction(random);
+  const Vec3 x = glm::normalize(glm::cross(z, std::fabs(z.x) > 0.5f ? Vec3(0, 1, 0) : Vec3(1, 0, 0)));
+  const float a = u(random), b = u(random);
+  return Mat4(Vec4(x, 0), Vec4(glm::cross(z, x), 0), Vec4(z, 0), Vec4(a, b, u(random), 1));
+}
+
+std::vector<GradusLight> random_lights(std::mt19937& random, int count, bool dirac) {
+  std::uniform_real_distribution<float> u(0.1f, 2.0f);
+  std::vector<GradusLight> lights;
+  for (int i = 0; i < count; ++i) {
+    GradusLight light = make_light(GradusLightType(i % 5), random_pose(random, 5.0f), Rgb(u(random)));
+    light.radius = dirac ? 0.0f : 0.3f * u(random);
+    light.angle = dirac ? 0.0f : 0.2f * u(random);
+    light.size[0] = u(random);
+    light.size[1] = u(random);
+    if (i % 10 == 1) light.flags = GRADUS_LIGHT_DISK_FACING;
+    if (i % 10 == 3) light.spread = 1.5f;
+    lights.push_back(light);
+  }
+  return lights;
+}
+
+// Lamps of all kinds, an emissive sphere, a world.
+std::shared_ptr<const Snapshot> mixed_scene(int lamps) {
+  std::mt19937 random(11);
+  TestScene scene;
+  scene.lights(random_lights(random, lamps, false));
+  scene.mesh(1, sphere(Vec3(2, 1, 0), 0.5f, 8, 12));
+  scene.material(5, MaterialDesc(GRADUS_OP_EMISSION, Rgb(1.0f), 5.0f));
+  scene.material(6, MaterialDesc::colored_by_generated());
+  scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 5);
+  scene.world(6, 64);
+  return scene.commit();
+}
+
+Receiver random_receiver(std::mt19937& random) {
+  std::uniform_real_distribution<float> u(-6.0f, 6.0f);
+  const float x = u(random), y = u(random);
+  return {Vec3(x, y, u(random)), random_direction(random), (random() & 3) == 0};
+}
+
+TEST(A4_LightDensity, SampledPointsHaveADensity) {
+  const auto snapshot = mixed_scene(20);
+  std::mt19937 random(12);
+  std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
+  int sampled = 0, without = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Receiver receiver = random_receiver(random);
+    const float choice = u(random), x = u(random);
+    const EmitterPoint point = sample_emitter(*snapshot, receiver, choice, Vec2(x, u(random)));
+    if (point.kind == EmitterKind::None) continue;
+    const EmitterView view = view_emitter(*snapshot, point, receiver);
+    ++sampled;
+    without += !(view.pdf > 0.0f);
+    EXPECT_FLOAT_EQ(view.pdf, emitter_pdf(*snapshot, point, receiver));
+    EXPECT_GE(view.pdf, 0.0f);
+  }
+  EXPECT_GT(sampled, 50000);
+  // Only rounding at the rim of a sphere or at grazing angles.
+  EXPECT_LE(without, sampled / 10000);
+}
+
+// What a ray meets in the sampled direction is the same point with the same density: else MIS weights would not sum to one.
+TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
+  const auto snapshot = mixed_scene(40);
+  std::mt19937 random(13);
+  std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
+  int compared = 0, different = 0, missed = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Receiver receiver = random_receiver(random);
+    const float choice = u(random), x = u(random);
+    const EmitterPoint point = sample_emitter(*snapshot, receiver, choice, Vec2(x, u(random)));
+    if (point.kind != EmitterKind::Lamp || point.dirac) continue;
+    const EmitterView view = view_emitter(*snapshot, point, receiver);
+    if (!(view.pdf > 0.0f)) continue;
+    LampHit hits[64];
+    const int count = intersect_lamps(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, hits, 64);
+    const LampHit* met = nullptr;
+    for (int k = 0; k < count; ++k) {
+      if (hits[k].point.index == point.index) met = &hits[k];
+      if (k > 0) {
+        EXPECT_LE(hits[k - 1].distance, hits[k].distance);
+      }
+    }
+    ++compared;
+    if (!met) {
+      ++missed;
+      continue;
+    }
+    const EmitterView again = view_emitter(*snapshot, met->point, receiver);
+    different += std::fabs(again.pdf - view.pdf) > 1e-3f * view.pdf;
+    if (view.distance != kInfinity) {
+      EXPECT_NEAR(met->distance, view.distance, 1e-3f * view.distance + 1e-4f);
+    }
+  }
+  EXPECT_GT(compared, 20000);
+  EXPECT_LE(missed, compared / 2000);  // rims
+  EXPECT_LE(different, compared / 1000);
+}
+
+TEST(A4_LightDensity, TriangleMetByRay) {
+  const auto snapshot = mixed_scene(0);
+  std::mt19937 random(14);
+  int met = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Receiver receiver{Vec3(0, 0, 3), Vec3(0, 0, -1), true};
+    const Vec3 direction = glm::normalize(Vec3(2, 1, 0) + 0.5f * random_direction(random) - receiver.position);
+    Hit hit;
+    if (!snapshot->intersect({receiver.position, 0.0f, direction, kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) continue;
+    const EmitterPoint point = emitter_of_surface(*snapshot, snapshot->surface_point(hit));
+    ASSERT_EQ(point.kind, EmitterKind::Triangle);
+    const EmitterView view = view_emitter(*snapshot, point, receiver);
+    EXPECT_GT(view.pdf, 0.0f);
+    EXPECT_NEAR(view.radiance.x, 5.0f, 1e-5f);
+    EXPECT_NEAR(view.distance, hit.t, 1e-4f);
+    // Seen from there, nothing lies between but the emitter itself, which must not shadow itself.
+    SurfacePoint from;
+    from.position = receiver.position;
+    from.geometric_normal = receiver.normal;
+    EXPECT_FALSE(snapshot->occluded(shadow_ray(from, point, view)));
+    ++met;
+  }
+  EXPECT_GT(met, 500);
+}
+
+double probability_sum(const EmitterTable& table, const Receiver& receiver) {
+  const GroupChoice group = table.choose_group(receiver);
+  double sum = group.world;
+  for (size_t i = 0; i < table.suns.size(); ++i) sum += group.suns * table.sun_probability(i, receiver);
+  for (uint32_t i = 0; i < table.tree.size(); ++i) sum += group.tree * table.tree.probability(i, receiver);
+  return sum;
+}
+
+TEST(A4_LightChoice, ProbabilitiesSumToOne) {
+  const auto snapshot = mixed_scene(1000);
+  std::mt19937 random(15);
+  for (int i = 0; i < 200; ++i)
+    EXPECT_NEAR(probability_sum(*snapshot->emitters, random_receiver(random)), 1.0, 4.0 * std::numeric_limits<float>::epsilon());
+}
+
+TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
+  const auto snapshot = mixed_scene(60);
+  const EmitterTable& table = *snapshot->emitters;
+  std::mt19937 random(16);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  for (int k = 0; k < 5; ++k) {
+    const Receiver receiver = random_receiver(random);
+    constexpr int kCount = 200000;
+    std::vector<int> frequency(table.tree.size());
+    for (int i = 0; i < kCount; ++i) ++frequency[table.tree.sample(receiver, u(random))];
+    double chi2 = 0.0;
+    int cells = 0;
+    for (uint32_t i = 0; i < frequency.size(); ++i) {
+      const double expected = table.tree.probability(i, receiver) * kCount;
+      if (expected < 1e-9) {
+        EXPECT_EQ(frequency[i], 0);
+      }
+      if (expected < 5.0) continue;
+      chi2 += (frequency[i] - expected) * (frequency[i] - expected) / expected;
+      ++cells;
+    }
+    ASSERT_GT(cells, 10);
+    // Mean cells, variance 2·cells: five standard deviations.
+    EXPECT_LT(chi2, cells + 5.0 * std::sqrt(2.0 * cells));
+  }
+}
+
+// E4: variance with 10,000 lamps not above that of uniform choice.
+TEST(E4_ManyLights, TreeBeatsUniformChoice) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<float> u(-50.0f, 50.0f), v(0.0f, 0.9999999f);
+  std::vector<GradusLight> lights;
+  for (int i = 0; i < 10000; ++i) {
+    const float x = u(random), y = u(random);
+    lights.push_back(make_light(GRADUS_LIGHT_POINT, translation(Vec3(x, y, 3.0f + 0.02f * u(random))), Rgb(1.0f)));
+  }
+  TestScene scene;
+  scene.lights(lights);
+  const auto snapshot = scene.commit();
+  double tree = 0.0, uniform = 0.0, exact_sum = 0.0, mean_sum = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    const Receiver receiver{Vec3(0.5f * u(random), 0.5f * u(random), 0), Vec3(0, 0, 1), false};
+    const auto value = [&](uint32_t i) {
+      const Vec3 d = snapshot->emitters->lamps[i].position - receiver.position;
+      return double(d.z) / std::pow(double(glm::dot(d, d)), 1.5);
+    };
+    double exact = 0.0, squares = 0.0;
+    for (uint32_t i = 0; i < 10000; ++i) exact += value(i), squares += value(i) * value(i);
+    double mean = 0.0, second = 0.0;
+    constexpr int kCount = 2000;
+    for (int i = 0; i < kCount; ++i) {
+      const EmitterPoint point = sample_emitter(*snapshot, receiver, v(random), Vec2(0.5f));
+      const EmitterView view = view_emitter(*snapshot, point, receiver);
+      const double x = view.radiance.x * view.direction.z / view.pdf;
+      mean += x / kCount;
+      second += x * x / kCount;
+    }
+    exact_sum += exact;
+    mean_sum += mean;
+    tree += (second - mean * mean) / (exact * exact);
+    uniform += (squares * 10000 - exact * exact) / (exact * exact);
+  }
+  EXPECT_NEAR(mean_sum / exact_sum, 1.0, 0.05);
+  EXPECT_LT(tree, 0.25 * uniform);
+}
+
+}  // namespace
+}  // namespace gradus::test
