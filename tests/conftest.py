@@ -22,10 +22,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leaves out what belongs to another host or to the long run; skips, visibly, what lacks the shared scenes."""
     out = []
     for item in list(items):
-        if "blender" in getattr(item, "fixturenames", ()) or item.get_closest_marker("application"):
-            wrong_host = bpy.app.module if hasattr(bpy.app, "module") else False
-        else:
-            wrong_host = False
+        needs_application = "blender" in getattr(item, "fixturenames", ()) or item.get_closest_marker("application")
+        wrong_host = needs_application and getattr(bpy.app, "module", False)
         if wrong_host or (item.get_closest_marker("full") and os.environ.get("GRADUS_TEST_FULL") != "1"):
             out.append(item)
     items[:] = [item for item in items if item not in out]

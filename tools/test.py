@@ -95,7 +95,16 @@ def host(name: str, file: Path, limit: float, environment: dict[str, str]) -> Re
     result = Result(f"{name} {relative}")
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        command = [*HOSTS[name], str(relative), "-q", "--tb=short", "-p", "no:cacheprovider", f"--junitxml={report}", f"--basetemp={folder}/tmp"]
+        command = [
+            *HOSTS[name],
+            str(relative),
+            "-q",
+            "--tb=short",
+            "-p",
+            "no:cacheprovider",
+            f"--junitxml={report}",
+            f"--basetemp={folder}/tmp",
+        ]
         code, output = run(command, limit, environment)
         if report.exists():
             count_report(report, result)

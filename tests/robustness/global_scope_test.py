@@ -1,0 +1,52 @@
+"""In an application Blender's libraries are in the global symbol scope, where an Embree of ours could be hijacked: rays would miss
+silently. The bpy modules load theirs locally and hide that; so their process is made app-like here."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+from support import one_ray
+
+TESTS = Path(__file__).resolve().parent.parent
+
+APP_LIKE = """
+import os, sys
+order, tests, addon = sys.argv[1:]
+sys.path[:0] = [tests, addon]
+def library():
+    from gradus import native
+    native.load()
+if order == "library first":
+    library()
+sys.setdlopenflags(os.RTLD_NOW | os.RTLD_GLOBAL)
+import bpy
+sys.setdlopenflags(os.RTLD_NOW | os.RTLD_LOCAL)
+from support import one_ray
+one_ray.check()
+bpy.context.scene.render.resolution_percentage = 2
+bpy.context.scene.render.engine = "CYCLES"
+bpy.context.scene.cycles.samples = 1
+bpy.ops.render.render()
+one_ray.check()
+print("RAYS-HIT", flush=True)
+os._exit(0)
+"""
+
+
+def test_rays_hit_in_this_process() -> None:
+    """In Blender 3.4 this is the application itself."""
+    one_ray.check()
+
+
+@pytest.mark.parametrize("order", ["host first", "library first"])
+def test_rays_hit_in_global_scope(order: str) -> None:
+    if not getattr(bpy.app, "module", False):
+        pytest.skip("this host is an application; see the test above")
+    command = [sys.executable, "-c", APP_LIKE, order, str(TESTS), str(TESTS.parent / "addon")]
+    done = subprocess.run(command, env=os.environ, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
+    assert "RAYS-HIT" in done.stdout, done.stdout + done.stderr
