@@ -23,7 +23,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     out = []
     for item in list(items):
         needs_application = "blender" in getattr(item, "fixturenames", ()) or item.get_closest_marker("application")
-        wrong_host = needs_application and getattr(bpy.app, "module", False)
+        module = getattr(bpy.app, "module", False)
+        wrong_host = needs_application and module or item.get_closest_marker("module") and not module
         if wrong_host or (item.get_closest_marker("full") and os.environ.get("GRADUS_TEST_FULL") != "1"):
             out.append(item)
     items[:] = [item for item in items if item not in out]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import struct
 import threading
 from array import array
 from collections.abc import Iterable, Sequence
@@ -66,6 +67,16 @@ class GradusError(Exception):
         self.text = text
 
 
+def is_cut_short(path: Path) -> bool:
+    """Whether an ELF file ends before its section headers, which lie behind all else: the loader would map what is missing and crash."""
+    with path.open("rb") as file:
+        header = file.read(64)
+    if len(header) < 64 or header[:5] != b"\x7fELF\x02":
+        return False  # not a 64-bit ELF file: the loader says so
+    offset, entry_size, count = struct.unpack_from("<Q10xHH", header, 40)
+    return path.stat().st_size < offset + entry_size * count
+
+
 class Library:
     """A loaded and checked library. Thread-safe; ctypes releases the interpreter lock during calls."""
 
@@ -73,6 +84,8 @@ class Library:
         self.path = Path(path)
         if not self.path.is_file():
             raise GradusError(Error.UNSUPPORTED, f"library not found: {self.path}")
+        if is_cut_short(self.path):
+            raise GradusError(Error.UNSUPPORTED, f"library cannot be loaded: {self.path}: the file is cut short")
         try:
             # RTLD_LOCAL: nothing of ours may enter the host's global scope (architecture, rule 10).
             self.cdll = ctypes.CDLL(str(self.path), mode=ctypes.RTLD_LOCAL)

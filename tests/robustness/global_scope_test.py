@@ -8,7 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import bpy
 import pytest
 from support import one_ray
 
@@ -43,10 +42,9 @@ def test_rays_hit_in_this_process() -> None:
     one_ray.check()
 
 
+@pytest.mark.module
 @pytest.mark.parametrize("order", ["host first", "library first"])
 def test_rays_hit_in_global_scope(order: str) -> None:
-    if not getattr(bpy.app, "module", False):
-        pytest.skip("this host is an application; see the test above")
     command = [sys.executable, "-c", APP_LIKE, order, str(TESTS), str(TESTS.parent / "addon")]
     done = subprocess.run(command, env=os.environ, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
     assert "RAYS-HIT" in done.stdout, done.stdout + done.stderr
