@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/fpu.h"
+#include "color/color.h"
 
 namespace gradus {
 
@@ -74,6 +75,8 @@ uint32_t thread_count(uint32_t wanted) {
 
 Device::Device(const GradusDeviceSettings& settings) : threads_(thread_count(settings.threads)) {
   check_tbb();
+  color_ =
+      std::make_unique<ColorManager>(settings.color_config ? settings.color_config : "", [this](const std::string& text) { warn(text); });
   embree_ = rtcNewDevice(("threads=" + std::to_string(threads_) + ",set_affinity=0,start_threads=0").c_str());
   if (!embree_) throw unsupported("Embree cannot start on this processor (AVX2 is needed)");
   try {

@@ -39,7 +39,7 @@ class Device {
   RTCDeviceTy* embree_ = nullptr;
   uint32_t threads_ = 0;
   tbb::task_arena arena_;
-  std::shared_ptr<ColorManager> color_;  // null until made; shared_ptr, because the type is incomplete here
+  std::unique_ptr<ColorManager> color_;
   std::mutex mutex_;
   std::deque<std::string> warnings_;
   std::deque<std::string> seen_;
