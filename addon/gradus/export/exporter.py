@@ -46,9 +46,10 @@ class Exporter:
         start = time.perf_counter()
         run = _Sync(self, depsgraph, engine, view, is_preview, Poll(cancelled))
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
-        for _, table in tables:
+        for table in (self._ids, *(table for _, table in tables)):
             table.begin()
         run.run()
+        self._ids.sweep()
         for kind, table in tables:
             for key in table.sweep():
                 self._target.remove(kind, key)

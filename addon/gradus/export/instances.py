@@ -94,7 +94,7 @@ def name_hash(name: str) -> int:
     """
     value = 0
     for byte in name.encode("utf-8", "surrogateescape"):
-        value = (value * 37 + (byte - 256 if byte > 127 else byte)) & 0xFFFFFFFF
+        value = (value * 37 + byte) & 0xFFFFFFFF
     return _mix(value)
 
 
@@ -193,7 +193,8 @@ def _entry(index: int, instance: Any, obj: Any, ids: array, parts: _Parts) -> En
     copies = instance.is_instance
     parent = instance.parent if copies else None
     owner = instance.instance_object if copies else obj
-    key = (owner.as_pointer(), parent.as_pointer() if parent is not None else 0)
+    # Originals: a new depsgraph, as each frame of an animation may have, has other evaluated addresses.
+    key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
     if copies:
         key += tuple(ids[8 * index : 8 * index + 8])
     bits = parts.visibility(obj, parent, key)
