@@ -76,10 +76,10 @@ float worst(const Sums& rr, const Sums& bb) {
 
 }  // namespace
 
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, float tolerance, int most_steps,
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, float tolerance, int most_steps,
                             const CancelTest& cancel) {
   const WeightedSystem& a = preconditioner->system();
-  Field r(b.width(), b.height(), b.channels()), z = r, p = r, q = r;
+  auto& [r, z, p, q] = *fields;
   const Sums bb = dot(b, b);
   CgReport report;
   report.residual = worst(residual(a, b, *x, &r), bb);

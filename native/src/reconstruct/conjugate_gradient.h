@@ -11,7 +11,14 @@ struct CgReport {
   float residual = 0.0f;  // ‖b - Ax‖ / ‖b‖, the worst channel
 };
 
+// Work space, kept from solve to solve.
+struct CgFields {
+  CgFields(int width, int height, int channels) : r(width, height, channels), z(r), p(r), q(r) {}
+  Field r, z, p, q;
+};
+
 // Improves x until the residual is below `tolerance` or `most_steps` are done. Floats with sums in double.
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, float tolerance, int most_steps, const CancelTest& cancel);
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, float tolerance, int most_steps,
+                            const CancelTest& cancel);
 
 }  // namespace gradus

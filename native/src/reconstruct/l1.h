@@ -2,10 +2,10 @@
 // Consistent, not unbiased; darkens slightly at few samples.
 #pragma once
 
-#include <vector>
+#include <memory>
 
+#include "reconstruct/multigrid.h"
 #include "reconstruct/solver.h"
-#include "reconstruct/weighted_system.h"
 
 namespace gradus {
 
@@ -20,7 +20,7 @@ class L1Solver final : public LinearOperator {
   int solved_channels() const { return solution_.channels(); }
 
  private:
-  WeightedSystem weights_;
+  Multigrid multigrid_;  // holds the weights
   Field solution_;
   float alpha_;
 };

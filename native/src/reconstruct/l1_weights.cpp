@@ -63,13 +63,14 @@ float robust_scale(const L1Planes& planes) {
   return *middle;
 }
 
-WeightedSystem reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor) {
+void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor, WeightedSystem* system) {
   const int w = x.width(), h = x.height(), channels = x.channels();
-  WeightedSystem system(w, h);
+
   const RowNorm norm{1.0f / (static_cast<float>(channels) * scale * scale), floor * floor};
   const RowNorm data_norm{norm.factor * alpha * alpha, norm.floor_squared};
   for_rows(h, [&](int y) {
-    float *data = system.data.row(y), *right = system.right.row(y), *up = system.up.row(y);
+    float *data = system->data.row(y), *right = system->right.row(y), *up = system->up.row(y);
+    for (float* sums : {data, right, up}) std::fill_n(sums, w, 0.0f);
     for (int c = 0; c < channels; ++c) {
       const float *here = x.row(y, c), *primal = planes.primal.row(y, c), *dx = planes.dx.row(y, c), *dy = planes.dy.row(y, c);
       const float* above = y + 1 < h ? x.row(y + 1, c) : here;
@@ -88,20 +89,19 @@ WeightedSystem reweight(const L1Planes& planes, const Field& x, float alpha, flo
     right[w - 1] = 0.0f;  // the last column and row carry no difference
     if (y == h - 1) std::fill_n(up, w, 0.0f);
   });
-  system.finish();
-  return system;
+  system->finish();
 }
 
-Field right_side(const WeightedSystem& weights, const L1Planes& planes) {
+void right_side(const WeightedSystem& weights, const L1Planes& planes, Field* b) {
   const int w = weights.width(), h = weights.height(), channels = planes.primal.channels();
-  Field b(w, h, channels);
+
   for_rows(h, [&](int y) {
     const float *data = weights.data.row(y), *right = weights.right.row(y), *up = weights.up.row(y);
     const float* down = y > 0 ? weights.up.row(y - 1) : nullptr;
     for (int c = 0; c < channels; ++c) {
       const float *primal = planes.primal.row(y, c), *dx = planes.dx.row(y, c), *dy = planes.dy.row(y, c);
       const float* below = y > 0 ? planes.dy.row(y - 1, c) : nullptr;
-      float* to = b.row(y, c);
+      float* to = b->row(y, c);
       float flux = 0.0f;  // of the difference from the left
       for (int i = 0; i < w; ++i) {
         const float out = right[i] * finite_or_zero(dx[i]);
@@ -112,7 +112,6 @@ Field right_side(const WeightedSystem& weights, const L1Planes& planes) {
       for (int i = 0; i < w; ++i) to[i] += down[i] * finite_or_zero(below[i]);
     }
   });
-  return b;
 }
 
 }  // namespace gradus

@@ -20,8 +20,8 @@ float robust_scale(const L1Planes& planes);
 
 // Weights 1/√(e² + floor²) of every row of the system at x, e being the row's residual over the scale: the Huber floor keeps the systems
 // solvable, and less of it makes the result worse (measured). Rows that are not finite get weight 0.
-WeightedSystem reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor);
+void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor, WeightedSystem* system);
 // W_d I + Dᵀ W_g g
-Field right_side(const WeightedSystem& weights, const L1Planes& planes);
+void right_side(const WeightedSystem& weights, const L1Planes& planes, Field* b);
 
 }  // namespace gradus

@@ -69,18 +69,18 @@ void add_interpolated(const Field& coarse, Field* x) {
 
 }  // namespace
 
-Multigrid::Multigrid(WeightedSystem fine, int channels) {
-  levels_.push_back({std::move(fine), {}, {}, {}});
-  while (std::max(levels_.back().system.width(), levels_.back().system.height()) > kCoarsestSide) {
-    levels_.push_back({coarsen(levels_.back().system), {}, {}, {}});
+Multigrid::Multigrid(int width, int height, int channels) {
+  for (;; width = (width + 1) / 2, height = (height + 1) / 2) {
+    Level& level = levels_.emplace_back();
+    level.system = WeightedSystem(width, height);
+    level.x = Field(width, height, channels);
+    if (levels_.size() > 1) level.b = level.z = level.x;
+    if (std::max(width, height) <= kCoarsestSide) break;
   }
-  for (size_t i = 0; i < levels_.size(); ++i) {
-    const int w = levels_[i].system.width(), h = levels_[i].system.height();
-    levels_[i].x = Field(w, h, channels);
-    if (i == 0) continue;
-    levels_[i].b = Field(w, h, channels);
-    levels_[i].z = Field(w, h, channels);
-  }
+}
+
+void Multigrid::update() {
+  for (size_t i = 0; i + 1 < levels_.size(); ++i) coarsen(levels_[i].system, &levels_[i + 1].system);
 }
 
 void Multigrid::cycle(const Field& b, Field* z) { cycle(0, b, z); }

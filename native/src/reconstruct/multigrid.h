@@ -9,8 +9,12 @@ namespace gradus {
 
 class Multigrid {
  public:
-  Multigrid(WeightedSystem fine, int channels);
+  Multigrid(int width, int height, int channels);
+  // The finest system, to be filled; then update().
+  WeightedSystem& system() { return levels_.front().system; }
   const WeightedSystem& system() const { return levels_.front().system; }
+  // Makes the coarse systems from the finest.
+  void update();
   // Overwrites z; b must have the grid's size and the multigrid's channels. Not for two threads at once: work space is its own.
   void cycle(const Field& b, Field* z);
 

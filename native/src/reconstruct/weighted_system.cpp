@@ -7,8 +7,8 @@
 namespace gradus {
 namespace {
 
-// Damped Jacobi: damps the upper half of the spectrum of a five-point stencil best.
-constexpr float kDamping = 0.8f;
+// Damped Jacobi. 0.8 is best for equal weights; weights that vary by decades bring the spectrum up to 2, and 0.67 takes fewest steps.
+constexpr float kDamping = 0.67f;
 
 // One row of the coarse conductances across the border between cells 2x, 2x+1 | 2x+2, 2x+3: half of the inner differences on both sides
 // and the crossing one in series. `at` gives the fine weight of difference i along the row, `count` how many cells the row has.
@@ -41,9 +41,8 @@ void WeightedSystem::finish() {
   });
 }
 
-WeightedSystem coarsen(const WeightedSystem& fine) {
-  const int fw = fine.width(), fh = fine.height(), w = (fw + 1) / 2, h = (fh + 1) / 2;
-  WeightedSystem coarse(w, h);
+void coarsen(const WeightedSystem& fine, WeightedSystem* coarse) {
+  const int fw = fine.width(), fh = fine.height(), w = coarse->width(), h = coarse->height();
   for_rows(h, [&](int y) {
     const int y1 = std::min(2 * y + 1, fh - 1);
     for (int x = 0; x < w; ++x) {
@@ -54,13 +53,12 @@ WeightedSystem coarsen(const WeightedSystem& fine) {
         right += series([&](int i) { return fine.right.row(fy)[i]; }, x, fw);
       }
       for (int fx = 2 * x; fx <= x1; ++fx) up += series([&](int i) { return fine.up.row(i)[fx]; }, y, fh);
-      coarse.data.row(y)[x] = data;
-      coarse.right.row(y)[x] = right;
-      coarse.up.row(y)[x] = up;
+      coarse->data.row(y)[x] = data;
+      coarse->right.row(y)[x] = right;
+      coarse->up.row(y)[x] = up;
     }
   });
-  coarse.finish();
-  return coarse;
+  coarse->finish();
 }
 
 void apply_row(const WeightedSystem& a, const Field& x, int y, int channel, float* out) {

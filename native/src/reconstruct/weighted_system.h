@@ -1,8 +1,6 @@
 // The matrix A = W_d + Dᵀ W_g D of a weighted screened Poisson problem on a grid with a free border, and its coarser versions.
 #pragma once
 
-#include <vector>
-
 #include "reconstruct/field.h"
 
 namespace gradus {
@@ -22,8 +20,8 @@ struct WeightedSystem {
 };
 
 // On cells of 2×2: data weights add up; difference weights are conductances, in series along the difference and in parallel across it, so
-// that a weak difference between strong ones stays weak (McAdams et al. 2010 use the same for Poisson problems of images).
-WeightedSystem coarsen(const WeightedSystem& fine);
+// that a weak difference between strong ones stays weak. `coarse` has half the size, rounded up.
+void coarsen(const WeightedSystem& fine, WeightedSystem* coarse);
 
 // out = A x for one row of one channel.
 void apply_row(const WeightedSystem& a, const Field& x, int y, int channel, float* out);

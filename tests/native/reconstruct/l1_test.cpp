@@ -1,0 +1,170 @@
+// B1, B2 for the L1 solver.
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include "reconstruct/test_images.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 3}, {33, 17}, {128, 96}};
+
+std::vector<float> solve(const GradientImages& images, SolveReport* report, float alpha = 0.2f) {
+  return reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, report);
+}
+
+// The objective: Σ α‖x−I‖ + ‖Dx−g‖ over all rows, in double.
+double energy(const GradientImages& images, const std::vector<float>& x, double alpha) {
+  const int w = images.width, h = images.height, n = images.channels;
+  double sum = 0.0;
+  for (int py = 0; py < h; ++py) {
+    for (int px = 0; px < w; ++px) {
+      double data = 0.0, dx = 0.0, dy = 0.0;
+      for (int c = 0; c < n; ++c) {
+        const size_t i = (size_t(py) * w + px) * n + c;
+        data += std::pow(double(x[i]) - images.primal[i], 2);
+        if (px + 1 < w) dx += std::pow(double(x[i + n]) - x[i] - images.dx[i], 2);
+        if (py + 1 < h) dy += std::pow(double(x[i + size_t(w) * n]) - x[i] - images.dy[i], 2);
+      }
+      sum += alpha * std::sqrt(data) + std::sqrt(dx) + std::sqrt(dy);
+    }
+  }
+  return sum;
+}
+
+TEST(B1_FixedPoint, L1KeepsAnImageWithItsOwnGradients) {
+  for (const auto& [w, h] : kSizes) {
+    const std::vector<float> image = smooth_image(w, h, 3);
+    SolveReport report;
+    EXPECT_LT(max_difference(solve(with_own_gradients(w, h, 3, image), &report), image), 2e-5) << w << "x" << h;
+    EXPECT_FALSE(report.hit_cap);
+  }
+}
+
+TEST(B2_Solver, L1ReportsItsResidual) {
+  for (const auto& [w, h] : kSizes) {
+    GradientImages images = with_own_gradients(w, h, 3, smooth_image(w, h, 3));
+    add_noise(&images.primal, 0.3f, 1);
+    add_noise(&images.dx, 0.05f, 2);
+    add_noise(&images.dy, 0.05f, 3);
+    SolveReport report;
+    solve(images, &report);
+    EXPECT_LE(report.residual, 1e-4f) << w << "x" << h;
+    EXPECT_FALSE(report.hit_cap);
+    EXPECT_GE(report.outer_steps, 5);
+    EXPECT_LE(report.outer_steps, 8);
+  }
+}
+
+TEST(B2_Solver, L1LowersItsObjective) {
+  GradientImages images = with_own_gradients(64, 48, 3, smooth_image(64, 48, 3));
+  add_noise(&images.primal, 0.3f, 1);
+  add_noise(&images.dx, 0.02f, 2);
+  for (size_t i = 5; i < images.dx.size(); i += 301) images.dx[i] += 3.0f;
+  SolveReport report;
+  const std::vector<float> l1 = solve(images, &report), l2 = reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report);
+  const double best = energy(images, l1, 0.2);
+  EXPECT_LT(best, 0.95 * energy(images, l2, 0.2));
+  // Near a minimum: small random steps do not help.
+  for (unsigned seed = 1; seed < 6; ++seed) {
+    std::vector<float> other = l1;
+    add_noise(&other, 0.005f, seed);
+    EXPECT_GT(energy(images, other, 0.2), best);
+  }
+}
+
+TEST(B2_Solver, L1IgnoresOutliersInGradientsAndPixels) {
+  const std::vector<float> truth = smooth_image(64, 48, 3);
+  GradientImages images = with_own_gradients(64, 48, 3, truth);
+  add_noise(&images.primal, 0.05f, 1);
+  for (const size_t pixel : {700u, 1501u, 2222u}) {
+    for (int c = 0; c < 3; ++c) {
+      images.primal[3 * pixel + c] = 1e4f;
+      images.dy[3 * (pixel + 200) + c] -= 50.0f;
+    }
+  }
+  SolveReport report;
+  const double l1 = rms_difference(solve(images, &report), truth);
+  const double l2 = rms_difference(reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report), truth);
+  EXPECT_LT(l1, 0.03);
+  EXPECT_GT(l2, 10 * l1);
+}
+
+// The result scales with the image (algorithms 14.2: the floor is relative to the image, not absolute).
+TEST(B2_Solver, L1ScalesWithTheImage) {
+  GradientImages images = with_own_gradients(64, 48, 3, smooth_image(64, 48, 3));
+  add_noise(&images.primal, 0.3f, 1);
+  SolveReport report;
+  std::vector<float> x = solve(images, &report);
+  for (auto* plane : {&images.primal, &images.dx, &images.dy}) {
+    for (float& v : *plane) v *= 1024.0f;
+  }
+  const std::vector<float> y = solve(images, &report);
+  for (float& v : x) v *= 1024.0f;
+  EXPECT_LT(max_difference(x, y), 1e-2 * 1024.0);
+}
+
+TEST(B2_Solver, L1LeavesOutWhatIsNotFinite) {
+  GradientImages images = with_own_gradients(33, 17, 3, std::vector<float>(33 * 17 * 3, 1.0f));
+  images.primal[41] = std::numeric_limits<float>::quiet_NaN();
+  images.dx[90] = std::numeric_limits<float>::infinity();
+  images.dy[130] = -std::numeric_limits<float>::infinity();
+  SolveReport report;
+  EXPECT_LT(max_difference(solve(images, &report), std::vector<float>(33 * 17 * 3, 1.0f)), 1e-4);
+}
+
+TEST(B2_Solver, L1OfABlackImageIsBlack) {
+  SolveReport report;
+  const std::vector<float> black(16 * 16 * 3, 0.0f);
+  EXPECT_EQ(solve(with_own_gradients(16, 16, 3, black), &report), black);
+}
+
+// Weights are frozen: a fourth channel goes through those of the first three, and parts add up (contract 3.4).
+TEST(B2_Solver, L1WeightsAreALinearOperator) {
+  GradientImages images = with_own_gradients(48, 32, 4, smooth_image(48, 32, 4));
+  add_noise(&images.primal, 0.2f, 1);
+  SolveReport report;
+  const auto solver = make_l1(images, 0.2f, never, &report);
+  const size_t pixels = 48 * 32;
+  std::vector<float> a(pixels * 4), b(pixels * 4), sum(pixels * 4);
+  GradientImages both = images;
+  for (auto* plane : {&both.primal, &both.dx, &both.dy}) {
+    for (size_t i = 0; i < pixels; ++i) (*plane)[4 * i] += (*plane)[4 * i + 1];
+  }
+  const auto channel = [](const GradientImages& from, int c) {
+    return PoissonPlanes{from.primal.data() + c, from.dx.data() + c, from.dy.data() + c, 4};
+  };
+  solver->apply(channel(images, 0), a.data());
+  solver->apply(channel(images, 1), b.data());
+  solver->apply(channel(both, 0), sum.data());
+  for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(a[4 * i] + b[4 * i], sum[4 * i], 1e-3) << i;
+  // And the solution that comes with the weights is theirs.
+  const std::vector<float> whole = solve(images, &report);
+  for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(whole[4 * i], a[4 * i], 1e-2) << i;
+}
+
+TEST(L1_Threads, L1HasTheSameBitsForAnyNumberOfThreads) {
+  GradientImages images = with_own_gradients(133, 71, 3, smooth_image(133, 71, 3));
+  add_noise(&images.primal, 0.3f, 1);
+  std::vector<float> first;
+  for (const int threads : {1, 2, 3, 7}) {
+    SolveReport report;
+    std::vector<float> x;
+    tbb::task_arena(threads).execute([&] { x = solve(images, &report); });
+    if (first.empty()) first = x;
+    EXPECT_EQ(x, first) << threads << " threads";
+  }
+}
+
+TEST(K2_Cancel, L1EndsAtOnce) {
+  const GradientImages images = with_own_gradients(64, 64, 3, smooth_image(64, 64, 3));
+  SolveReport report;
+  reconstruct(
+      images, GRADUS_RECONSTRUCTION_L1, 0.2f, [] { return true; }, &report);
+  EXPECT_EQ(report.inner_steps, 0);
+}
+
+}  // namespace
+}  // namespace gradus
