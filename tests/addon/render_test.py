@@ -1,0 +1,245 @@
+"""What Blender gets from a render: sizes, borders, layers, views, passes, animations, errors (E8 and the engine's part of I4)."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from support import images
+
+Render = Callable[..., images.Passes]
+
+
+@pytest.fixture
+def cube(scene: bpy.types.Scene) -> bpy.types.Scene:
+    """A cube, a sun, a grey world and a camera; 40x24 pixels, plain paths."""
+    bpy.ops.mesh.primitive_cube_add(size=2.0)
+    sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    sun.data.energy, sun.rotation_euler = 3.0, (0.6, 0.3, 0.0)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location, camera.rotation_euler = (4.0, -4.0, 3.0), (1.1, 0.0, 0.785)
+    for item in (sun, camera):
+        scene.collection.objects.link(item)
+    scene.camera = camera
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (0.3, 0.3, 0.3)
+    scene.render.resolution_x, scene.render.resolution_y = 40, 24
+    scene.gradus.integrator, scene.gradus.samples = "PATH", 2
+    return scene
+
+
+@pytest.fixture
+def arguments(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
+    """arguments("--gradus-x", "1"): the command line of the process, as the add-on sees it."""
+    yield lambda *given: monkeypatch.setattr(sys, "argv", ["blender", "--", *map(str, given)])
+
+
+def test_picture_is_there(cube: bpy.types.Scene, render: Render) -> None:
+    image = render(cube)["Combined"]
+    assert image.shape == (24, 40, 4)
+    assert np.isfinite(image).all()
+    assert image[12, 20, :3].max() > 0.0
+    assert np.ptp(image[:, :, 0]) > 0.0
+
+
+@pytest.mark.parametrize(("percentage", "size"), [(1, (1, 1)), (50, (12, 20)), (400, (96, 160))])
+def test_e8_percentage(cube: bpy.types.Scene, render: Render, percentage: int, size: tuple[int, int]) -> None:
+    cube.render.resolution_percentage = percentage
+    if percentage == 1:
+        cube.render.resolution_x = cube.render.resolution_y = 100
+    assert render(cube, samples=1)["Combined"].shape[:2] == size
+
+
+@pytest.mark.parametrize("size", [(4, 4), (4, 1024), (2048, 16)])
+def test_e8_odd_sizes(cube: bpy.types.Scene, render: Render, size: tuple[int, int]) -> None:
+    cube.render.resolution_x, cube.render.resolution_y = size
+    assert render(cube, samples=1)["Combined"].shape[:2] == size[::-1]
+
+
+@pytest.mark.parametrize("border", [(0.1, 0.5, 0.2, 0.7), (0.0, 0.033, 0.9, 1.0), (0.55, 1.0, 0.0, 0.31), (0.3, 0.7, 0.5, 0.55)])
+def test_e8_a_cropped_border_is_the_crop_of_the_whole(cube: bpy.types.Scene, render: Render, border: tuple[float, ...]) -> None:
+    whole = render(cube)["Combined"]
+    cube.render.use_border = cube.render.use_crop_to_border = True
+    cube.render.border_min_x, cube.render.border_max_x, cube.render.border_min_y, cube.render.border_max_y = border
+    part = render(cube)["Combined"]
+    x0, y0 = (int(np.float32(value) * np.float32(size)) for value, size in ((border[0], 40), (border[2], 24)))
+    assert np.array_equal(part, whole[y0 : y0 + part.shape[0], x0 : x0 + part.shape[1]])
+
+
+def test_e8_a_border_leaves_the_rest_black(cube: bpy.types.Scene, render: Render) -> None:
+    whole = render(cube)["Combined"]
+    cube.render.use_border = True
+    cube.render.border_min_x, cube.render.border_max_x, cube.render.border_min_y, cube.render.border_max_y = 0.25, 0.75, 0.25, 0.75
+    part = render(cube)["Combined"]
+    assert part.shape == whole.shape
+    assert np.array_equal(part[6:18, 10:30], whole[6:18, 10:30])
+    assert not part[:6].any()
+
+
+def test_e8_view_layers(cube: bpy.types.Scene, render: Render) -> None:
+    first = cube.view_layers[0]
+    second = cube.view_layers.new("Second/Ä")
+    off = cube.view_layers.new("Off")
+    off.use, second.use_pass_z, second.samples = False, True, 1
+    passes = render(cube)
+    assert f"{first.name}.Depth" not in passes
+    assert "Second/Ä.Depth" in passes
+    assert not any(name.startswith("Off.") for name in passes)
+    assert passes[f"{first.name}.Combined"].any()
+    assert not np.array_equal(passes[f"{first.name}.Combined"], passes["Second/Ä.Combined"])
+
+
+def test_film_transparent(cube: bpy.types.Scene, render: Render) -> None:
+    opaque = render(cube)["Combined"][:, :, 3]
+    assert (opaque == 1.0).all()
+    cube.render.film_transparent = True
+    alpha = render(cube)["Combined"][:, :, 3]
+    assert alpha[0, 0] == 0.0
+    assert alpha[12, 20] == 1.0
+
+
+def test_both_views_are_rendered(cube: bpy.types.Scene, tmp_path: Path) -> None:
+    cube.render.use_multiview = True
+    cube.view_layers[0].use_pass_z = True
+    images.use_exr(cube, tmp_path / "v")
+    cube.render.use_file_extension = True
+    bpy.ops.render.render(write_still=True)
+    left, right = (images.read(next(tmp_path.glob(f"v*{side}.exr"))) for side in "LR")
+    assert left["Combined"].any()
+    assert right["Combined"].any()
+    assert not np.array_equal(left["Combined"], right["Combined"])
+    assert 1.0 < right["Depth"][12, 20, 0] < 10.0
+
+
+def test_passes_are_in_the_file_under_this_version_s_names(cube: bpy.types.Scene, render: Render) -> None:
+    layer = cube.view_layers[0]
+    layer.use_pass_object_index = layer.use_pass_diffuse_color = layer.use_pass_vector = True
+    layer.gradus.use_pass_sample_count = True
+    passes = render(cube, samples=3)
+    long_names = bpy.app.version >= (5, 0, 0)
+    for name in ("Object Index", "Diffuse Color") if long_names else ("IndexOB", "DiffCol"):
+        assert name in passes
+    assert (passes["Debug Sample Count"] == 3.0).all()
+    assert passes["Vector"].shape[2] == 4
+    assert not passes["Vector"].any()  # at rest, and never Blender's 10000
+
+
+def test_noisy_image_beside_a_reconstruction(cube: bpy.types.Scene, render: Render) -> None:
+    assert "Noisy Image" not in render(cube)
+    passes = render(cube, integrator="AUTO")
+    assert passes["Noisy Image"].shape[2] == 4
+    assert passes["Noisy Image"].any()
+
+
+def frames_of(cube: bpy.types.Scene, folder: Path) -> list[np.ndarray]:
+    images.use_exr(cube, folder / "f")
+    cube.render.use_file_extension = True
+    bpy.ops.render.render(animation=True)
+    return [images.read(path)["Combined"] for path in sorted(folder.glob("f*.exr"))]
+
+
+def test_i4_frames_alone_and_in_a_row_are_equal(cube: bpy.types.Scene, render: Render, tmp_path: Path) -> None:
+    cube.frame_end = 3
+    cube.objects[0].keyframe_insert("location", frame=1)
+    cube.objects[0].location.x = 1.0
+    cube.objects[0].keyframe_insert("location", frame=3)
+    alone = [render(cube, frame=frame)["Combined"] for frame in (1, 2, 3)]
+    for persistent in (False, True):
+        cube.render.use_persistent_data = persistent
+        folder = tmp_path / str(persistent)
+        folder.mkdir()
+        together = frames_of(cube, folder)
+        assert len(together) == 3
+        for one, other in zip(alone, together, strict=True):
+            assert np.array_equal(one, other)
+    assert not np.array_equal(alone[0], alone[1])
+
+
+def test_stats_line(cube: bpy.types.Scene, render: Render, tmp_path: Path, arguments: Callable[..., None]) -> None:
+    path = tmp_path / "stats.jsonl"
+    arguments("--gradus-stats", path, "--gradus-samples", 3)
+    cube.view_layers.new("Second")
+    render(cube, frame=7)
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    assert [(line["frame"], line["layer"]) for line in lines] == [(7, cube.view_layers[0].name), (7, "Second")]
+    keys = (
+        "schema version scene view seed integrator reconstruction spp_base spp_offset unbiased resolution samples plan seconds cpu_seconds"
+    )
+    keys += " rays shifts nonfinite_dropped peak_memory_bytes process_cpu warnings"
+    assert set(keys.split()) <= lines[0].keys()
+    assert {"export", "build", "sample", "reconstruct", "filter", "upload", "total"} <= lines[0]["seconds"].keys()
+    assert lines[0]["samples"] == 3
+    assert lines[0]["resolution"] == [40, 24]
+
+
+def test_i7_an_unknown_option_is_an_error(cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]) -> None:
+    arguments("--gradus-sampels", 3)
+    with pytest.raises(RuntimeError, match="--gradus-sampels"):
+        render(cube)
+
+
+@pytest.mark.parametrize(("name", "value"), [("samples", "many"), ("samples", "0"), ("integrator", "best"), ("noise-threshold", "-1")])
+def test_i7_a_wrong_value_is_an_error(cube: Any, render: Render, arguments: Callable[..., None], name: str, value: str) -> None:
+    arguments(f"--gradus-{name}={value}")
+    with pytest.raises(RuntimeError, match=name.replace("-", "_")):
+        render(cube)
+
+
+def test_options_do_not_change_the_scene(cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]) -> None:
+    arguments("--gradus-samples", 1, "--gradus-passes", "depth,noisy-image")
+    passes = render(cube)
+    assert {"Depth", "Noisy Image"} <= passes.keys()
+    assert cube.gradus.samples == 2
+    assert not cube.view_layers[0].use_pass_z
+
+
+def test_what_cannot_be_obeyed_is_refused(cube: bpy.types.Scene, render: Render) -> None:
+    with pytest.raises(RuntimeError, match="(?i)gradient"):
+        render(cube, integrator="PATH", reconstruction="L2")
+
+
+def test_no_camera(cube: bpy.types.Scene, render: Render) -> None:
+    cube.camera = None
+    with pytest.raises(RuntimeError, match="camera"):
+        render(cube)
+
+
+def test_k5_a_cancelled_render_keeps_what_it_has(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
+    from gradus import engine
+
+    calls = []
+    monkeypatch.setattr(engine.GradusRenderEngine, "test_break", lambda self: calls.append(1) or len(calls) > 4, raising=False)
+    image = render(cube, samples=100000)["Combined"]
+    assert len(calls) > 4
+    assert np.isfinite(image).all()
+
+
+def test_k2_test_break_is_asked_often(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
+    import time
+
+    from gradus import engine
+
+    moments = []
+    monkeypatch.setattr(engine.GradusRenderEngine, "test_break", lambda self: moments.append(time.monotonic()), raising=False)
+    cube.gradus.time_limit = 1.0
+    render(cube, samples=1000000)
+    gaps = np.diff(moments)
+    assert len(gaps) >= 8
+    assert gaps.max() <= 0.25
+
+
+def test_warnings_are_reported_once(cube: bpy.types.Scene, render: Render) -> None:
+    from gradus import store
+
+    cube.frame_end = 2
+    summary = store.summaries
+    render(cube, frame=1)
+    assert summary[(cube.name, cube.view_layers[0].name)]["frame"] == 1
+    render(cube, frame=2)
+    assert summary[(cube.name, cube.view_layers[0].name)]["frame"] == 2
