@@ -19,6 +19,11 @@ VERSION = bpy.app.version
 _files = output.FrameFiles()
 
 
+def stop_requested(engine: Any) -> bool:
+    """Whether the user wants the render to end: Escape, or SIGINT in the background. Asked at least every 0.1 s in every phase."""
+    return engine.test_break()
+
+
 # ------------------------------------------------------------------------------------------------ settings
 
 
@@ -113,7 +118,7 @@ class Job:
         if view:
             self.engine.active_view_set(view)
         with self.clock.phase("export"):
-            report = self.session.exporter.sync(self.depsgraph, self.engine, None, self.is_preview, self.engine.test_break)
+            report = self.session.exporter.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop)
         self.settings.width, self.settings.height = report.width, report.height
         self.warn(report.warnings)
 
@@ -122,6 +127,9 @@ class Job:
             self.warnings.append(text)
             if not self.is_preview:
                 self.engine.report({"WARNING"}, f"Gradus: {text}")
+
+    def stop(self) -> bool:
+        return stop_requested(self.engine)
 
     def free(self) -> None:
         if self.is_preview:
@@ -187,7 +195,7 @@ def _render_view(job: Job, view: str) -> None:
     engine = job.engine
     engine.update_stats("", "Gradus: building the scene")
     with job.clock.phase("build"):
-        job.session.commit(engine.test_break)
+        job.session.commit(job.stop)
     _save_scene(job)
     result = engine.begin_result(0, 0, job.settings.width, job.settings.height, layer=job.layer.name, view=view)
     if result is None:
@@ -236,7 +244,7 @@ def _wait(job: Job, handle: int, result: Any) -> None:
                 running = False
             elif error.code != Error.INVALID_OPERATION:
                 raise
-        if running and not job.cancelled and engine.test_break():
+        if running and not job.cancelled and job.stop():
             job.cancelled = True
             library.render_cancel(handle)
         library.render_poll(handle, byref(progress))

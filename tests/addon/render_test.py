@@ -211,10 +211,10 @@ def test_no_camera(cube: bpy.types.Scene, render: Render) -> None:
 
 
 def test_k5_a_cancelled_render_keeps_what_it_has(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
-    from gradus import engine
+    from gradus import renderer
 
     calls = []
-    monkeypatch.setattr(engine.GradusRenderEngine, "test_break", lambda self: calls.append(1) or len(calls) > 4, raising=False)
+    monkeypatch.setattr(renderer, "stop_requested", lambda engine: calls.append(1) or len(calls) > 4)
     image = render(cube, samples=100000)["Combined"]
     assert len(calls) > 4
     assert np.isfinite(image).all()
@@ -223,10 +223,10 @@ def test_k5_a_cancelled_render_keeps_what_it_has(cube: Any, render: Render, monk
 def test_k2_test_break_is_asked_often(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
     import time
 
-    from gradus import engine
+    from gradus import renderer
 
     moments = []
-    monkeypatch.setattr(engine.GradusRenderEngine, "test_break", lambda self: moments.append(time.monotonic()), raising=False)
+    monkeypatch.setattr(renderer, "stop_requested", lambda engine: moments.append(time.monotonic()))
     cube.gradus.time_limit = 1.0
     render(cube, samples=1000000)
     gaps = np.diff(moments)
