@@ -1,0 +1,89 @@
+"""Blender with a window on a screen of its own (Xvfb), driven from outside by xdotool and looked at by screenshots."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from support import application
+
+WIDTH, HEIGHT = 1280, 800
+
+
+class Window:
+    """A running Blender. `log` is what it printed so far."""
+
+    def __init__(self, process: subprocess.Popen, display: str, folder: Path) -> None:
+        self.process, self.display, self.folder = process, display, folder
+
+    @property
+    def log(self) -> str:
+        return (self.folder / "log").read_text(errors="replace")
+
+    def wait_for(self, text: str, limit: float = 60) -> None:
+        end = time.monotonic() + limit
+        while text not in self.log:
+            assert self.process.poll() is None, f"Blender ended with code {self.process.returncode}\n{self.log}"
+            assert time.monotonic() < end, f"no '{text}' after {limit} s\n{self.log}"
+            time.sleep(0.1)
+
+    def press(self, key: str) -> None:
+        """A key, with the mouse in the middle of the window."""
+        command = ["xdotool", "mousemove", str(WIDTH // 2), str(HEIGHT // 2), "key", key]
+        subprocess.run(command, env=os.environ | {"DISPLAY": self.display}, check=True, timeout=20)
+
+    def screenshot(self) -> Path:
+        path = self.folder / "screen.png"
+        subprocess.run(["import", "-display", self.display, "-window", "root", path], check=True, timeout=30)
+        return path
+
+
+@contextmanager
+def screen() -> Iterator[str]:
+    """An X server without a screen; gives its DISPLAY."""
+    reader, writer = os.pipe()
+    command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "+extension", "GLX", "-nolisten", "tcp"]
+    server = subprocess.Popen(command, pass_fds=[writer], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(writer)
+    try:
+        number = os.read(reader, 32).decode().strip()
+        assert number, "Xvfb did not start"
+        yield f":{number}"
+    finally:
+        os.close(reader)
+        server.terminate()
+        server.wait(20)
+
+
+@contextmanager
+def blender(script: str) -> Iterator[Window]:
+    """Blender 3.4 in a full-screen window with the add-on enabled, running `script` once its window is there."""
+    with screen() as display, tempfile.TemporaryDirectory(prefix="gradus-window-") as name:
+        folder = Path(name)
+        (folder / "script.py").write_text(script)
+        environment = application.environment(folder, DISPLAY=display, MESA_SHADER_CACHE_DIR=str(cache()))
+        command = ["blender", "--factory-startup", "-noaudio", "--window-geometry", "0", "0", str(WIDTH), str(HEIGHT)]
+        with (folder / "log").open("wb") as log:
+            process = subprocess.Popen(
+                [*command, "--addons", "gradus", "--python", str(folder / "script.py")],
+                env=environment | {"PYTHONUNBUFFERED": "1"}, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
+            )  # fmt: skip
+        try:
+            yield Window(process, display, folder)
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait(20)
+
+
+def cache() -> Path:
+    """Compiled shaders are kept between runs: they take ten seconds."""
+    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gradus" / "mesa"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
