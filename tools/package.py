@@ -67,8 +67,8 @@ def licenses() -> dict[str, bytes]:
 
 
 def addon_files() -> dict[str, Path]:
-    listed = subprocess.run(["git", "ls-files", "-z", "."], cwd=ADDON, capture_output=True, text=True, check=True).stdout
-    files = {name: ADDON / name for name in listed.split("\0") if name}
+    sources = [path for path in ADDON.rglob("*") if path.is_file() and path.relative_to(ADDON).parts[0] != "lib"]
+    files = {str(path.relative_to(ADDON)): path for path in sources if path.suffix != ".pyc"}
     libraries = {f"lib/{path.name}": path for path in (ADDON / "lib").glob("*.so*")}
     if "lib/libgradus.so" not in libraries:
         raise SystemExit("package: addon/gradus/lib has no library: make build")

@@ -80,7 +80,7 @@ def wait_for_picture(blender: window.Window) -> tuple[float, float]:
 def test_f12_shows_the_picture() -> None:
     with window.blender(SCENE.replace("SAMPLES", "8")) as blender:
         blender.wait_for("WINDOW-READY")
-        assert shares(blender.screenshot()) == (0.0, 0.0)
+        assert max(shares(blender.screenshot())) < 1e-4
         blender.press("F12")
         blender.wait_for("RENDER-COMPLETE")
         red, green = wait_for_picture(blender)
