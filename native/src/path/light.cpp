@@ -17,12 +17,11 @@ bool sample_light(const PathContext& context, const Sampler& sampler, const Vert
   }
   const uint32_t block = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
   const Receiver receiver = receiver_of(vertex);
-  light->point =
-      sample_emitter(context.scene, receiver, sampler.get1(block + dimension::kLightChoice), sampler.get2(block + dimension::kLight));
+  light->point = sample_emitter(context.scene, receiver, sampler.get1(block + dimension::kLightChoice),
+                                sampler.get2(block + dimension::kLight), &light->view);
   if (light->point.kind == EmitterKind::None) {
     return false;
   }
-  light->view = view_emitter(context.scene, light->point, receiver);
   return light->view.pdf > 0.0f && !is_black(light->view.radiance) && static_cast<uint32_t>(depth) <= light->view.max_bounces;
 }
 
@@ -63,7 +62,7 @@ float light_pdf(const PathContext& context, const RaySource& source, const Emitt
   if (!source.sampled_light() || point.kind == EmitterKind::None) {
     return 0.0f;
   }
-  return view_emitter(context.scene, point, receiver_of(*source.vertex)).pdf;
+  return emitter_pdf(context.scene, point, receiver_of(*source.vertex));
 }
 
 Rgb lamp_radiance(const PathContext&, const EmitterView& view, const PathRay& ray, int depth) {

@@ -127,6 +127,7 @@ std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Devic
     attach_instance(device->embree(), built->scene, unsigned(i), masks[i], mesh_scene->scene, instance.to_world);
   }
   commit_scene(device->embree(), built->scene, progress, kMeshShare, 1.0f);
+  for (const InstanceData& instance : instances) built->flat_of_instance.push_back(instance.flat_positions);
   *cache = std::move(kept);
   return built;
 }

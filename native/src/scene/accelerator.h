@@ -43,7 +43,7 @@ struct Accelerator {
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;
   std::vector<std::shared_ptr<const MeshData>> meshes;  // whose index buffers the top level reads
   std::vector<std::unique_ptr<std::vector<Vec3>>> flat_positions;
-  uint64_t memory_bytes = 0;
+  std::vector<const Vec3*> flat_of_instance;  // InstanceData::flat_positions of each
   ~Accelerator();
 };
 

@@ -45,6 +45,18 @@ uint32_t embree_mask(const InstanceData& instance, bool transparent) {
   return mask;
 }
 
+// Key of all that the accelerator depends on.
+uint64_t geometry_key(const Snapshot& snapshot, const std::vector<uint32_t>& masks) {
+  ContentHash hash;
+  hash.array(masks);
+  hash.bytes(&snapshot.origin, sizeof(snapshot.origin));
+  for (const InstanceData& instance : snapshot.instances) {
+    hash.value(instance.mesh->content_hash);
+    hash.bytes(&instance.to_world, sizeof(instance.to_world));
+  }
+  return hash.result();
+}
+
 void build_geometry(const std::shared_ptr<Device>& device, const std::vector<size_t>& chosen, const BuildProgress& progress,
                     Scene::State* state, Snapshot* snapshot) {
   std::vector<uint32_t> masks(chosen.size());
@@ -53,8 +65,16 @@ void build_geometry(const std::shared_ptr<Device>& device, const std::vector<siz
     masks[k] = embree_mask(snapshot->instances[k], transparent);
     snapshot->features.has_transparent_shadows |= transparent && (masks[k] & kMaskTransparentShadow);
   }
+  const uint64_t key = geometry_key(*snapshot, masks);
+  if (state->accelerator && state->geometry_key == key) {
+    snapshot->accelerator = state->accelerator;
+    for (size_t k = 0; k < chosen.size(); ++k) snapshot->instances[k].flat_positions = state->accelerator->flat_of_instance[k];
+    return;
+  }
   const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
   snapshot->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, &state->mesh_scenes);
+  state->accelerator = snapshot->accelerator;
+  state->geometry_key = key;
 }
 
 void move_matrix(float* matrix, const Vec3& origin) {

@@ -5,6 +5,7 @@
 
 #include "scene/emitter_table.h"
 #include "scene/snapshot.h"
+#include "shading/material.h"
 #include "shading/shade.h"
 
 namespace gradus {
@@ -36,22 +37,43 @@ EmitterPoint sample_lamp_at(const Snapshot& snapshot, uint32_t lamp, const Recei
   return point;
 }
 
-EmitterPoint sample_tree(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
+EmitterPoint sample_tree(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, double* probability) {
   const EmitterTable& table = *snapshot.emitters;
-  const uint32_t light = table.tree.sample(receiver, choice);
+  const uint32_t light = table.tree.sample(receiver, choice, probability);
   if (light < table.tree_lamps.size()) return sample_lamp_at(snapshot, table.tree_lamps[light], receiver, u);
   return sample_triangle(snapshot, light - uint32_t(table.tree_lamps.size()), u);
 }
 
-EmitterPoint sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
+EmitterPoint sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, double* probability) {
   const EmitterTable& table = *snapshot.emitters;
   size_t sun = 0;
   double below = 0.0;
-  for (; sun + 1 < table.suns.size(); ++sun) {
-    below += table.sun_probability(sun, receiver);
-    if (choice < below) break;
+  for (;; ++sun) {
+    *probability = table.sun_probability(sun, receiver);
+    below += *probability;
+    if (choice < below || sun + 1 == table.suns.size()) break;
   }
   return sample_lamp_at(snapshot, table.suns[sun], receiver, u);
+}
+
+// The point, and the probability with which its emitter was chosen.
+EmitterPoint sample_any(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, double* probability) {
+  const GroupChoice group = snapshot.emitters->choose_group(receiver);
+  EmitterPoint point;
+  double within = 1.0, of_group = 0.0;
+  const double rest = choice - group.tree;
+  if (group.tree > 0.0 && (rest < 0.0 || group.suns + group.world <= 0.0)) {
+    of_group = group.tree;
+    point = sample_tree(snapshot, receiver, std::min(choice / group.tree, 1.0 - 1e-12), u, &within);
+  } else if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) {
+    of_group = group.suns;
+    point = sample_suns(snapshot, receiver, rest / group.suns, u, &within);
+  } else if (group.world > 0.0) {
+    of_group = group.world;
+    point = emitter_of_world(snapshot, snapshot.emitters->world.sample(u));
+  }
+  *probability = of_group * within;
+  return point;
 }
 
 // Probability that the emitter of the point is chosen.
@@ -71,6 +93,12 @@ SurfacePoint surface_of(const Snapshot& snapshot, const EmitterPoint& point) {
   hit.triangle = point.triangle;
   hit.barycentric = point.barycentric;
   return snapshot.surface_point(hit);
+}
+
+// Emission that is the same everywhere; nullptr: the program has to run.
+const Rgb* constant_emission(const Snapshot& snapshot, const EmitterPoint& point) {
+  const MaterialData& material = *snapshot.materials[snapshot.material_of(point.instance, point.triangle)];
+  return material.emission_is_constant ? &material.constant_emission : nullptr;
 }
 
 // The program of a lamp sees no mesh: Hit is not valid.
@@ -106,41 +134,55 @@ EmitterView view_world(const Snapshot& snapshot, const EmitterPoint& point) {
   return view;
 }
 
-// All but the radiance of triangles and world, and the lamp's program.
+// All but the radiance of triangles and world, and the lamp's program; the density without the choice.
 EmitterView view_geometry(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
-  EmitterView view;
-  if (point.kind == EmitterKind::Lamp) view = view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position);
-  if (point.kind == EmitterKind::Triangle) view = view_triangle(snapshot, point, receiver);
-  if (point.kind == EmitterKind::World) view = view_world(snapshot, point);
-  if (view.pdf > 0.0f) view.pdf = float(view.pdf * choice_probability(*snapshot.emitters, point, receiver));
-  if (!is_finite(view.pdf)) view.pdf = 0.0f;
-  return view;
+  if (point.kind == EmitterKind::Lamp) return view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position);
+  if (point.kind == EmitterKind::Triangle) return view_triangle(snapshot, point, receiver);
+  return point.kind == EmitterKind::World ? view_world(snapshot, point) : EmitterView();
+}
+
+void multiply_choice(double probability, EmitterView* view) {
+  view->pdf = float(view->pdf * probability);
+  if (!is_finite(view->pdf)) view->pdf = 0.0f;
+}
+
+void shade_view(const Snapshot& snapshot, const EmitterPoint& point, EmitterView* view) {
+  if (point.kind == EmitterKind::Lamp) view->radiance *= lamp_emission(snapshot, snapshot.emitters->lamps[point.index], point, *view);
+  if (point.kind == EmitterKind::Triangle && view->cosine > 0.0f) {
+    const Rgb* constant = constant_emission(snapshot, point);
+    const RayState ray = light_ray(view->distance);
+    view->radiance = constant ? *constant : shade_emission(snapshot, surface_of(snapshot, point), -view->direction, ray);
+  }
+  if (point.kind == EmitterKind::World) view->radiance = shade_world(snapshot, point.direction, light_ray(kInfinity));
 }
 
 }  // namespace
 
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u) {
-  const GroupChoice group = snapshot.emitters->choose_group(receiver);
-  const double c = choice;
-  if (c < group.tree) return sample_tree(snapshot, receiver, c / group.tree, u);
-  const double rest = c - group.tree;
-  if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) return sample_suns(snapshot, receiver, rest / group.suns, u);
-  if (group.world > 0.0) return emitter_of_world(snapshot, snapshot.emitters->world.sample(u));
-  // Only rounding leads here where there is a tree.
-  return group.tree > 0.0 ? sample_tree(snapshot, receiver, 1.0 - 1e-12, u) : EmitterPoint();
+  double probability;
+  return sample_any(snapshot, receiver, choice, u, &probability);
+}
+
+EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterView* view) {
+  double probability;
+  const EmitterPoint point = sample_any(snapshot, receiver, choice, u, &probability);
+  *view = view_geometry(snapshot, point, receiver);
+  multiply_choice(probability, view);
+  if (view->pdf > 0.0f) shade_view(snapshot, point, view);
+  return point;
 }
 
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
   EmitterView view = view_geometry(snapshot, point, receiver);
-  if (point.kind == EmitterKind::Lamp) view.radiance *= lamp_emission(snapshot, snapshot.emitters->lamps[point.index], point, view);
-  if (point.kind == EmitterKind::Triangle && view.cosine > 0.0f)
-    view.radiance = shade_emission(snapshot, surface_of(snapshot, point), -view.direction, light_ray(view.distance));
-  if (point.kind == EmitterKind::World) view.radiance = shade_world(snapshot, point.direction, light_ray(kInfinity));
+  if (view.pdf > 0.0f) multiply_choice(choice_probability(*snapshot.emitters, point, receiver), &view);
+  shade_view(snapshot, point, &view);
   return view;
 }
 
 float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
-  return view_geometry(snapshot, point, receiver).pdf;
+  EmitterView view = view_geometry(snapshot, point, receiver);
+  if (view.pdf > 0.0f) multiply_choice(choice_probability(*snapshot.emitters, point, receiver), &view);
+  return view.pdf;
 }
 
 EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& surface) {

@@ -50,6 +50,8 @@ struct Receiver {
 
 // Samples a point on some emitter. choice: which one; u: where. kind None if there is nothing to sample from here.
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u);
+// The same, with the view that view_emitter() would give: cheaper, because the choice is made and its probability found in one go.
+EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterView* view);
 // The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine there.
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
 // The density of view_emitter() alone: for weights, where the radiance is known or not needed.

@@ -26,10 +26,14 @@ Vec3 turn(const Vec3& from, const Vec3& to, float angle) {
 void unite_cones(const LightBounds& a, const LightBounds& b, LightBounds* out) {
   // The axis of a two-sided emitter has no sign: take the one nearer to the other cone.
   const Vec3 b_axis = b.two_sided && glm::dot(a.axis, b.axis) < 0.0f ? -b.axis : b.axis;
-  const float angle_a = clamped_acos(a.cos_normals), angle_b = clamped_acos(b.cos_normals);
-  const float between = clamped_acos(glm::dot(a.axis, b_axis));
-  out->axis = angle_a >= angle_b ? a.axis : b_axis;
+  // The frequent case when a group is gathered: a single normal that lies within the cone, or a cone that is full already.
+  const float cos_between = glm::dot(a.axis, b_axis);
+  out->axis = a.axis;
   out->cos_normals = std::min(a.cos_normals, b.cos_normals);
+  if (a.cos_normals <= -1.0f || b.cos_normals <= -1.0f || (b.cos_normals >= 1.0f && cos_between >= a.cos_normals)) return;
+  const float angle_a = clamped_acos(a.cos_normals), angle_b = clamped_acos(b.cos_normals);
+  const float between = clamped_acos(cos_between);
+  out->axis = angle_a >= angle_b ? a.axis : b_axis;
   if (std::min(between + std::min(angle_a, angle_b), kPi) <= std::max(angle_a, angle_b)) return;
   const float angle = (angle_a + between + angle_b) * 0.5f;
   if (angle >= kPi) {

@@ -24,33 +24,32 @@ float receiver_cosine(const Receiver& receiver, const Vec3& to_light, float sin_
 }  // namespace
 
 // Conty Estévez and Kulla 2018, section 4.2; cosines of clamped angle differences as in pbrt-v4 section 12.6.3.
-float importance(const LightBounds& b, const Receiver& receiver) {
-  const Vec3 centre = 0.5f * (b.lower + b.upper);
-  const Vec3 diagonal = b.upper - b.lower;
-  const float radius2 = 0.25f * glm::dot(diagonal, diagonal);
-  const Vec3 to_light = centre - receiver.position;
+float LightTree::importance(const Node& node, const Receiver& receiver) {
+  const Vec3 to_light = node.centre - receiver.position;
   const float distance2 = glm::dot(to_light, to_light);
   // Within the bounding sphere every direction is possible, and the distance is taken as the radius.
-  if (distance2 <= radius2 || distance2 == 0.0f) return b.power / std::max(radius2, 1e-20f);
+  if (distance2 <= node.radius2 || distance2 == 0.0f) return node.power / std::max(node.radius2, 1e-20f);
   const Vec3 direction = to_light / std::sqrt(distance2);
-  const float sin_b = std::sqrt(radius2 / distance2), cos_b = std::sqrt(std::max(0.0f, 1.0f - radius2 / distance2));
+  const float sin2_b = node.radius2 / distance2;
+  const float sin_b = std::sqrt(sin2_b), cos_b = std::sqrt(1.0f - sin2_b);
   const float at_receiver = receiver_cosine(receiver, direction, sin_b, cos_b);
   if (at_receiver <= 0.0f) return 0.0f;
+  if (node.cos_normals <= -1.0f) return node.power * at_receiver / distance2;
 
-  float cos_w = std::clamp(-glm::dot(b.axis, direction), -1.0f, 1.0f);
-  if (b.two_sided) cos_w = std::fabs(cos_w);
-  const float sin_w = sine(cos_w), sin_o = sine(b.cos_normals);
-  const float cos_x = cos_difference(sin_w, cos_w, sin_o, b.cos_normals);
-  const float sin_x = sin_difference(sin_w, cos_w, sin_o, b.cos_normals);
+  float cos_w = std::clamp(-glm::dot(node.axis, direction), -1.0f, 1.0f);
+  if (node.two_sided) cos_w = std::fabs(cos_w);
+  const float sin_w = sine(cos_w), sin_o = sine(node.cos_normals);
+  const float cos_x = cos_difference(sin_w, cos_w, sin_o, node.cos_normals);
+  const float sin_x = sin_difference(sin_w, cos_w, sin_o, node.cos_normals);
   const float cos_emitter = cos_difference(sin_x, cos_x, sin_b, cos_b);
-  if (cos_emitter <= b.cos_emission) return 0.0f;
-  return b.power * std::max(cos_emitter, 0.0f) * at_receiver / distance2;
+  if (cos_emitter <= node.cos_emission) return 0.0f;
+  return node.power * std::max(cos_emitter, 0.0f) * at_receiver / distance2;
 }
 
 // Where neither child seems to reach the receiver, by power: the sample will be black, but the probabilities still sum to one.
-double LightTree::first_probability(uint32_t node, const Receiver& receiver) const {
-  const LightBounds& a = nodes_[node + 1].bounds;
-  const LightBounds& b = nodes_[nodes_[node].second_child].bounds;
+double LightTree::first_probability(const Node& node, const Receiver& receiver) const {
+  const Node& a = nodes_[node.child];
+  const Node& b = nodes_[node.child + 1];
   double x = importance(a, receiver), y = importance(b, receiver);
   if (!(x + y > 0.0) || !std::isfinite(x + y)) {
     x = a.power;
@@ -59,43 +58,42 @@ double LightTree::first_probability(uint32_t node, const Receiver& receiver) con
   return x + y > 0.0 && std::isfinite(x + y) ? x / (x + y) : 0.5;
 }
 
-uint32_t LightTree::sample(const Receiver& receiver, double u) const {
-  uint32_t node = 0;
-  while (nodes_[node].second_child) {
-    const double p = first_probability(node, receiver);
-    if (u < p) {
-      u /= p;
-      node = node + 1;
-    } else {
-      u = (u - p) / (1.0 - p);
-      node = nodes_[node].second_child;
-    }
+uint32_t LightTree::sample(const Receiver& receiver, double u, double* probability) const {
+  *probability = 1.0;
+  const Node* node = &nodes_[0];
+  while (!(node->child & kLeaf)) {
+    const double p = first_probability(*node, receiver);
+    const bool first = u < p;
+    u = first ? u / p : (u - p) / (1.0 - p);
     u = std::min(u, 1.0 - 1e-12);
+    *probability *= first ? p : 1.0 - p;
+    node = &nodes_[node->child + (first ? 0 : 1)];
   }
-  return nodes_[node].light;
+  return node->child & ~kLeaf;
 }
 
 double LightTree::probability(uint32_t light, const Receiver& receiver) const {
   double product = 1.0;
-  uint32_t node = 0;
-  for (uint64_t trail = trails_[light]; nodes_[node].second_child; trail >>= 1) {
-    const double p = first_probability(node, receiver);
+  const Node* node = &nodes_[0];
+  for (uint64_t trail = trails_[light]; !(node->child & kLeaf); trail >>= 1) {
+    const double p = first_probability(*node, receiver);
     product *= trail & 1 ? 1.0 - p : p;
-    node = trail & 1 ? nodes_[node].second_child : node + 1;
+    node = &nodes_[node->child + (trail & 1)];
   }
   return product;
 }
 
 float LightTree::irradiance(const Receiver& receiver) const {
   if (nodes_.empty()) return 0.0f;
-  if (!nodes_[0].second_child) return importance(nodes_[0].bounds, receiver);
+  if (nodes_[0].child & kLeaf) return importance(nodes_[0], receiver);
   // Two levels down: the root alone says little where its emitters surround the receiver.
   float sum = 0.0f;
-  for (const uint32_t child : {1u, nodes_[0].second_child}) {
-    if (!nodes_[child].second_child)
-      sum += importance(nodes_[child].bounds, receiver);
+  for (uint32_t i = 0; i < 2; ++i) {
+    const Node& child = nodes_[nodes_[0].child + i];
+    if (child.child & kLeaf)
+      sum += importance(child, receiver);
     else
-      sum += importance(nodes_[child + 1].bounds, receiver) + importance(nodes_[nodes_[child].second_child].bounds, receiver);
+      sum += importance(nodes_[child.child], receiver) + importance(nodes_[child.child + 1], receiver);
   }
   return sum;
 }

@@ -31,27 +31,33 @@ class LightTree {
   bool empty() const { return nodes_.empty(); }
   size_t size() const { return trails_.size(); }
 
-  // Index of the chosen light, by u in [0, 1).
-  uint32_t sample(const Receiver& receiver, double u) const;
-  // Probability that sample() gives `light`. Over all lights it sums to one.
+  // Index of the chosen light, by u in [0, 1), and the probability of that choice.
+  uint32_t sample(const Receiver& receiver, double u, double* probability) const;
+  // Probability that sample() gives `light`: the same bits. Over all lights it sums to one.
   double probability(uint32_t light, const Receiver& receiver) const;
   // Estimate of the irradiance of all lights together, to weigh the tree against other emitters; 0: none can reach the receiver.
   float irradiance(const Receiver& receiver) const;
 
  private:
+  // Bounds as importance() needs them, 48 bytes; the two children of a node are neighbours.
   struct Node {
-    LightBounds bounds;
-    uint32_t second_child = 0;  // the first is the next node; 0: a leaf
-    uint32_t light = 0;
+    Vec3 centre{0.0f};
+    float radius2 = 0.0f;
+    Vec3 axis{0, 0, 1};
+    float cos_normals = 1.0f;
+    float cos_emission = 0.0f;
+    float power = 0.0f;
+    uint32_t two_sided = 0;
+    uint32_t child = 0;  // the first of two; leaf: kLeaf | light
   };
+  static constexpr uint32_t kLeaf = 0x80000000u;
   struct Builder;
-  double first_probability(uint32_t node, const Receiver& receiver) const;
+  // Upper bound, in the main, of the irradiance that the emitters of a node can give the receiver.
+  static float importance(const Node& node, const Receiver& receiver);
+  double first_probability(const Node& node, const Receiver& receiver) const;
 
   std::vector<Node> nodes_;
   std::vector<uint64_t> trails_;  // of each light: bit i = second child at depth i
 };
-
-// Upper bound, in the main, of the irradiance that emitters within bounds can give the receiver.
-float importance(const LightBounds& bounds, const Receiver& receiver);
 
 }  // namespace gradus

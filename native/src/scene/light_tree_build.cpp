@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <numeric>
+
+#include <tbb/parallel_invoke.h>
 
 #include "scene/light_bounds.h"
 
@@ -11,12 +14,14 @@ struct LightTree::Builder {
   static constexpr int kBuckets = 12;
   // Trails have 64 bits: from here on halves are taken, which ends within 32 more levels.
   static constexpr int kMaxUnbalanced = 30;
+  static constexpr uint32_t kParallel = 4096;
 
   LightTree* tree;
   const std::vector<LightBounds>& lights;
   const std::function<bool()>& go_on;
   std::vector<uint32_t> order;
-  bool stopped = false;
+  std::atomic<uint32_t> next{1};  // node not yet used
+  std::atomic<bool> stopped{false};
 
   struct Split {
     int axis = -1;
@@ -83,24 +88,41 @@ struct LightTree::Builder {
     return uint32_t(middle - order.begin());
   }
 
-  LightBounds build(uint32_t first, uint32_t last, int depth, uint64_t trail) {
-    const auto index = uint32_t(tree->nodes_.size());
-    tree->nodes_.emplace_back();
+  LightBounds build(uint32_t index, uint32_t first, uint32_t last, int depth, uint64_t trail) {
     if (last - first == 1) {
-      tree->nodes_[index].light = order[first];
       tree->trails_[order[first]] = trail;
-      return tree->nodes_[index].bounds = lights[order[first]];
+      return fill(index, lights[order[first]], kLeaf | order[first]);
     }
     if (stopped || (last - first > 512 && !go_on())) {
       stopped = true;
       return {};
     }
     const uint32_t middle = split(first, last, depth);
-    const LightBounds a = build(first, middle, depth + 1, trail);
-    const auto second = uint32_t(tree->nodes_.size());
-    const LightBounds b = build(middle, last, depth + 1, trail | (uint64_t(1) << depth));
-    tree->nodes_[index].second_child = second;
-    return tree->nodes_[index].bounds = unite(a, b);
+    const uint32_t child = next.fetch_add(2);
+    const uint64_t second_trail = trail | (uint64_t(1) << depth);
+    LightBounds a, b;
+    if (last - first > kParallel) {
+      tbb::parallel_invoke([&] { a = build(child, first, middle, depth + 1, trail); },
+                           [&] { b = build(child + 1, middle, last, depth + 1, second_trail); });
+    } else {
+      a = build(child, first, middle, depth + 1, trail);
+      b = build(child + 1, middle, last, depth + 1, second_trail);
+    }
+    return fill(index, unite(a, b), child);
+  }
+
+  LightBounds fill(uint32_t index, const LightBounds& b, uint32_t child) const {
+    const Vec3 diagonal = b.upper - b.lower;
+    Node& node = tree->nodes_[index];
+    node.centre = 0.5f * (b.lower + b.upper);
+    node.radius2 = 0.25f * glm::dot(diagonal, diagonal);
+    node.axis = b.axis;
+    node.cos_normals = b.cos_normals;
+    node.cos_emission = b.cos_emission;
+    node.power = b.power;
+    node.two_sided = b.two_sided ? 1 : 0;
+    node.child = child;
+    return b;
   }
 };
 
@@ -108,10 +130,10 @@ void LightTree::build(const std::vector<LightBounds>& lights, const std::functio
   nodes_.clear();
   trails_.assign(lights.size(), 0);
   if (lights.empty()) return;
-  nodes_.reserve(2 * lights.size());
+  nodes_.resize(2 * lights.size());
   Builder builder{this, lights, go_on, std::vector<uint32_t>(lights.size())};
   std::iota(builder.order.begin(), builder.order.end(), 0u);
-  builder.build(0, uint32_t(lights.size()), 0, 0);
+  builder.build(0, 0, uint32_t(lights.size()), 0, 0);
 }
 
 }  // namespace gradus

@@ -55,7 +55,8 @@ struct Scene::State {
   std::shared_ptr<const ImageStore> image_store;
   std::vector<uint64_t> stored_images;
   std::map<uint64_t, CompiledMaterial> compiled;
-  uint64_t geometry_key = 0;
+  std::shared_ptr<const Accelerator> accelerator;
+  uint64_t geometry_key = 0;  // of `accelerator`
   MeshSceneCache mesh_scenes;
 };
 

@@ -58,13 +58,16 @@ TEST(A4_LightDensity, SampledPointsHaveADensity) {
   int sampled = 0, without = 0;
   for (int i = 0; i < 100000; ++i) {
     const Receiver receiver = random_receiver(random);
-    const float choice = u(random), x = u(random);
-    const EmitterPoint point = sample_emitter(*snapshot, receiver, choice, Vec2(x, u(random)));
+    const float choice = u(random), x = u(random), y = u(random);
+    const EmitterPoint point = sample_emitter(*snapshot, receiver, choice, Vec2(x, y));
     if (point.kind == EmitterKind::None) continue;
     const EmitterView view = view_emitter(*snapshot, point, receiver);
     ++sampled;
     without += !(view.pdf > 0.0f);
-    EXPECT_FLOAT_EQ(view.pdf, emitter_pdf(*snapshot, point, receiver));
+    EmitterView at_once;
+    sample_emitter(*snapshot, receiver, choice, Vec2(x, y), &at_once);
+    EXPECT_EQ(view.pdf, at_once.pdf);
+    EXPECT_EQ(view.pdf, emitter_pdf(*snapshot, point, receiver));
     EXPECT_GE(view.pdf, 0.0f);
   }
   EXPECT_GT(sampled, 50000);
@@ -158,8 +161,9 @@ TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
   for (int k = 0; k < 5; ++k) {
     const Receiver receiver = random_receiver(random);
     constexpr int kCount = 200000;
+    double probability;
     std::vector<int> frequency(table.tree.size());
-    for (int i = 0; i < kCount; ++i) ++frequency[table.tree.sample(receiver, u(random))];
+    for (int i = 0; i < kCount; ++i) ++frequency[table.tree.sample(receiver, u(random), &probability)];
     double chi2 = 0.0;
     int cells = 0;
     for (uint32_t i = 0; i < frequency.size(); ++i) {

@@ -1,0 +1,207 @@
+// D3, D7, and what happens to broken instances and meshes (contract: broken data costs the broken object).
+#include <chrono>
+#include <cstring>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "scene/accelerator.h"
+#include "scene/mesh.h"
+#include "scene_fixture.h"
+
+namespace gradus::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+float random_bits(std::mt19937& random) {
+  const auto bits = uint32_t(random());
+  float f;
+  std::memcpy(&f, &bits, sizeof(f));
+  return f;
+}
+
+bool is_finite_hit(const Snapshot& snapshot, const Hit& hit) {
+  const SurfacePoint p = snapshot.surface_point(hit);
+  return is_finite(p.position) && is_finite(p.geometric_normal) && is_finite(p.shading_normal) && is_finite(p.error);
+}
+
+TEST(D3_Garbage, ThousandMeshesOfRandomBits) {
+  std::mt19937 random(21);
+  int accepted = 0, refused = 0;
+  for (int i = 0; i < 1000; ++i) {
+    Soup soup;
+    const int triangles = 1 + int(random() % 100);
+    for (int v = 0; v < triangles * 3; ++v) {
+      const float x = random_bits(random), y = random_bits(random);
+      soup.positions.push_back({x, y, random_bits(random)});
+      soup.vertices.push_back(v);
+    }
+    // Half of the meshes: one index in 32 is random.
+    for (int32_t& v : soup.vertices)
+      if (i % 2 && random() % 32 == 0) v = int32_t(random());
+    std::vector<float> normals(soup.positions.size() * 3);
+    for (float& n : normals) n = random_bits(random);
+    MeshDesc mesh(soup);
+    mesh.desc.normal_domain = random() % 3;
+    mesh.desc.normals = mesh.desc.normal_domain == GRADUS_DOMAIN_FACE ? nullptr : normals.data();
+    TestScene scene;
+    try {
+      scene.scene.set_mesh(1, mesh.desc);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), GRADUS_ERROR_INVALID_ARGUMENT);
+      EXPECT_NE(std::string(error.what()).find("'mesh'"), std::string::npos);
+      ++refused;
+      continue;
+    }
+    ++accepted;
+    Mat4 matrix(1.0f);
+    if (i % 3 == 0)
+      for (int k = 0; k < 16; ++k) matrix[k / 4][k % 4] = random_bits(random);
+    scene.instance(1, matrix);
+    const auto snapshot = scene.commit();
+    for (int k = 0; k < 50; ++k) {
+      Hit hit;
+      if (snapshot->intersect({Vec3(0.0f), 0.0f, random_direction(random), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) {
+        EXPECT_TRUE(is_finite_hit(*snapshot, hit));
+      }
+    }
+  }
+  EXPECT_GE(accepted, 500);
+  EXPECT_GE(refused, 300);
+}
+
+TEST(D7_Degenerate, OnlyWholeTrianglesAreHit) {
+  Soup soup;
+  soup.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});       // good
+  soup.triangle({0, 0, 1}, {0, 0, 1}, {0, 0, 1});          // a point
+  soup.triangle({-1, 0, 1}, {0, 0, 1}, {1, 0, 1});         // a line
+  soup.triangle({kNan, 0, 2}, {0, 1, 2}, {1, 0, 2});       // NaN
+  soup.triangle({kInfinity, 0, 2}, {0, 1, 2}, {1, 0, 2});  // infinite
+  soup.triangle({1e30f, 0, 2}, {-1e30f, 1e30f, 2}, {-1e30f, -1e30f, 2});
+  soup.triangle({-1e7f, 0.1f, 2}, {1e7f, 0.1f, 2}, {0, 0.1000001f, 2});  // a sliver
+  TestScene scene;
+  scene.mesh(1, soup);
+  scene.instance(1);
+  const auto snapshot = scene.commit();
+  EXPECT_EQ(snapshot->instances[0].mesh->dropped_triangles, 3u);
+  Hit hit;
+  ASSERT_TRUE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+  EXPECT_EQ(hit.triangle, 0u);
+  std::mt19937 random(22);
+  for (int i = 0; i < 100000; ++i) {
+    if (snapshot->intersect({Vec3(0.0f), 0.0f, random_direction(random), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) {
+      ASSERT_TRUE(is_finite_hit(*snapshot, hit));
+    }
+  }
+}
+
+TEST(D7_Degenerate, CoincidentTriangles) {
+  Soup soup;
+  for (int i = 0; i < 10000; ++i) soup.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});
+  TestScene scene;
+  scene.mesh(1, soup);
+  scene.instance(1);
+  Hit hit;
+  const auto snapshot = scene.commit();
+  ASSERT_TRUE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+  EXPECT_TRUE(is_finite_hit(*snapshot, hit));
+}
+
+TEST(D7_Degenerate, MeshWithoutTriangles) {
+  Soup loose;
+  loose.positions = {{0, 0, 0}, {1, 0, 0}};
+  TestScene scene;
+  scene.mesh(1, loose);
+  scene.mesh(2, Soup());
+  scene.instance(1);
+  scene.instance(2);
+  EXPECT_TRUE(scene.commit()->instances.empty());
+}
+
+TEST(BadMatrix, OneWarningNamesTheFirstAndCounts) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));
+  scene.instance(1);
+  Mat4 nan(1.0f);
+  nan[1][2] = kNan;
+  scene.instance(1, nan);
+  scene.instance(1, scaling(Vec3(0.0f)));
+  scene.instance(1, scaling(Vec3(1, 0, 1)));
+  scene.instance(1, scaling(Vec3(1, -2, 1)));
+  scene.instance(7);
+  const auto snapshot = scene.commit();
+  EXPECT_EQ(snapshot->instances.size(), 2u);
+  ASSERT_EQ(snapshot->warnings.size(), 2u);
+  EXPECT_EQ(snapshot->warnings[0], "3 objects were left out, the first is 'number 1': its matrix is singular or not finite");
+}
+
+TEST(BadMesh, ContradictingArraysAreRefusedByName) {
+  const auto refusal = [](auto&& change) -> std::string {
+    MeshDesc mesh(sphere(Vec3(0.0f), 1.0f, 4, 8));
+    change(mesh.desc);
+    try {
+      make_mesh(mesh.desc);
+    } catch (const Error& error) {
+      return error.code() == GRADUS_ERROR_INVALID_ARGUMENT ? error.what() : "";
+    }
+    return "";
+  };
+  const int32_t negative[3] = {-1, -1, -1};
+  const float descending[2] = {1.0f, 0.0f};
+  EXPECT_NE(refusal([](GradusMesh& m) { m.positions = nullptr; }), "");
+  EXPECT_NE(refusal([](GradusMesh& m) { m.vertex_count = 3; }), "");
+  EXPECT_NE(refusal([](GradusMesh& m) { m.corner_count = 3; }), "");
+  EXPECT_NE(refusal([](GradusMesh& m) { m.key_count = 0; }), "");
+  EXPECT_NE(refusal([](GradusMesh& m) { m.triangle_count = size_t(1) << 60; }), "");
+  EXPECT_NE(refusal([](GradusMesh& m) { m.normal_domain = 9; }), "");
+  EXPECT_NE(refusal([&](GradusMesh& m) { m.corner_vertices = negative, m.corner_count = 3, m.triangle_count = 1; }), "");
+  EXPECT_NE(refusal([&](GradusMesh& m) { m.key_count = 2, m.vertex_count /= 2, m.key_times = descending; }), "");
+  EXPECT_EQ(refusal([](GradusMesh&) {}), "");
+}
+
+TEST(Commit, UnchangedGeometryIsShared) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 100, 200));
+  scene.mesh(2, sphere(Vec3(0.0f), 1.0f, 4, 8));
+  for (int i = 0; i < 3; ++i) scene.instance(1, translation(Vec3(float(3 * i), 0, 0)));
+  scene.instance(2);
+  const auto first = scene.commit();
+  const auto second = scene.commit();
+  EXPECT_EQ(first->accelerator, second->accelerator);
+  EXPECT_EQ(first->content_key, second->content_key);
+  // The same content set again is no change; a moved instance keeps the mesh's own structure.
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 100, 200));
+  EXPECT_EQ(scene.commit()->accelerator, first->accelerator);
+  scene.instance(2, translation(Vec3(0, 5, 0)));
+  const auto third = scene.commit();
+  EXPECT_NE(third->accelerator, first->accelerator);
+  EXPECT_NE(third->content_key, first->content_key);
+  EXPECT_EQ(third->accelerator->mesh_scenes, first->accelerator->mesh_scenes);
+  Hit hit;
+  EXPECT_TRUE(second->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+}
+
+TEST(Cancel, StopsABuildAndKeepsTheSnapshotBefore) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));
+  scene.instance(1);
+  const auto before = scene.commit();
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 700, 700));
+  const volatile int32_t cancel = 1;
+  float progress = -1.0f;
+  try {
+    scene.scene.commit(&cancel, &progress);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), GRADUS_ERROR_CANCELLED);
+  }
+  EXPECT_EQ(scene.scene.snapshot(), before);
+  progress = -1.0f;
+  scene.scene.commit(nullptr, &progress);
+  EXPECT_EQ(progress, 1.0f);
+}
+
+}  // namespace
+}  // namespace gradus::test
