@@ -31,6 +31,8 @@
 extern "C" {
 #endif
 
+/* clang-format off */ /* aligned by hand, as tables */
+
 /* ------------------------------------------------------------------------------------------------ errors and versions */
 
 typedef enum GradusError {
