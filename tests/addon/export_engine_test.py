@@ -137,3 +137,25 @@ def test_percentage_and_border(exported: Callable[[], SimpleNamespace]) -> None:
     scene.render.border_max_x = 0.5
     found = exported()
     assert (found.report.width, found.report.height) == (256, 256)
+
+
+def test_stereo_views_have_their_own_cameras(exported: Callable[..., SimpleNamespace]) -> None:
+    """The eyes lie apart along the camera's x axis, by the camera's own distance."""
+    from gradus.export import Exporter
+
+    scene = _open("cornell")
+    scene.render.use_multiview = True
+    scene.camera.data.stereo.interocular_distance = 0.2
+    recorded = recording.Recording()
+    places = {}
+
+    class EachView(Exporter):
+        def sync(self, depsgraph: Any, engine: Any, **arguments: Any) -> Any:
+            for view in ("left", "right"):
+                engine.active_view_set(view)
+                report = super().sync(depsgraph, engine, **arguments)
+                places[view] = recorded.camera.matrix[12]
+            return report
+
+    exported(EachView(recorded, 1), recorded)
+    assert places["right"] - places["left"] == pytest.approx(0.2, abs=1e-4)

@@ -184,6 +184,6 @@ def test_e2_broken_matrices_pass_through(scene: bpy.types.Scene, scale: tuple[fl
 @pytest.mark.parametrize("name, expected", [("Cube", 0.31314194202), ("Suzanne.001", 0.45797663927), ("é", 0.64412963390)])
 def test_random_id_of_an_object_is_cycles_hash(name: str, expected: float) -> None:
     """What Object Info > Random shows of these names, read from renders with Cycles in 3.4 and 5.0."""
-    from gradus.export.instances import name_hash
+    from gradus.export.object_random import name_hash
 
     assert name_hash(name) / 2**32 == pytest.approx(expected, rel=1e-6)

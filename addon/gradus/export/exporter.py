@@ -11,7 +11,7 @@ import bpy
 
 from .. import native
 from . import camera, instances, light, mesh, motion, world
-from .instances import Collected, Entry, InstanceKey
+from .collect import Collected, Entry, InstanceKey, collect
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
 from .mesh import MeshArrays
@@ -92,7 +92,7 @@ class _Sync:
 
     def run(self) -> None:
         now = self._camera()
-        collected = instances.collect(self._depsgraph, self._poll)
+        collected = collect(self._depsgraph, self._poll)
         for name, kind in collected.skipped:
             self.warnings.add(f"Object '{name}' is left out: {_SKIPPED[kind]} are not rendered yet")
         for entry in collected.surfaces:
@@ -199,6 +199,6 @@ class _Sync:
         return record
 
     def _set_world(self) -> None:
-        found = self._scene.world
+        found = getattr(self._depsgraph.view_layer_eval, "world_override", None) or self._scene.world
         key = self._materials.key(found, "WORLD")
         self._target.set_world(world.fill_world(found, key))

@@ -101,7 +101,8 @@ def _normals_by_flags(mesh: Any) -> tuple[int, array | None]:
         if smooth == 0:
             return FACE, None
         if smooth == len(mesh.polygons):
-            return POINT, read(mesh.vertex_normals, "vector", "f", 3)
+            # The native side makes them: Blender before 4.0 sums them in any order, so that their last bits differ between evaluations.
+            return POINT, None
     mesh.calc_normals_split()
     return CORNER, read(mesh.loops, "normal", "f", 3)
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .camera import CameraState, camera_state
-from .instances import Entry, InstanceKey, collect
+from .collect import Entry, InstanceKey, collect
 from .mesh import MeshArrays, corner_vertices, read_positions
 
 OFFSETS = (-1, 1)

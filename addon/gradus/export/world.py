@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .. import native
-from .instances import ALL_RAYS, CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME
+from .visibility import ALL_RAYS, CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME
 
 _MIST = {"QUADRATIC": 0, "LINEAR": 1, "INVERSE_QUADRATIC": 2}
 _IMPORTANCE = {"NONE": 0, "AUTOMATIC": 1, "MANUAL": 2}

@@ -117,7 +117,7 @@ typedef struct GradusMesh {
   const int32_t* triangle_faces;    /* face of each triangle; NULL = one face per triangle */
   size_t face_count;
   const int32_t* face_materials;    /* material slot of each face; NULL = slot 0 */
-  uint32_t normal_domain;           /* GradusDomain of `normals`; FACE = flat, normals may be NULL */
+  uint32_t normal_domain;           /* GradusDomain of `normals`; NULL normals: FACE = flat, POINT = smooth */
   uint32_t attribute_count;
   const float* normals;             /* 3 per element of normal_domain */
   const GradusAttribute* attributes;

@@ -60,8 +60,8 @@ MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
   check_array(mesh.triangle_faces, mesh.triangle_count, "mesh.triangle_faces", 1, Presence::Optional);
   check_array(mesh.face_materials, mesh.face_count, "mesh.face_materials", 1, Presence::Optional);
   check_enum(mesh.normal_domain, 3, "mesh.normal_domain");
-  const bool flat = mesh.normal_domain == GRADUS_DOMAIN_FACE;
-  check_array(mesh.normals, elements_of(mesh, mesh.normal_domain), "mesh.normals", 3, flat ? Presence::Optional : Presence::Required);
+  const bool optional = mesh.normal_domain != GRADUS_DOMAIN_CORNER;  // FACE: flat; POINT: made here
+  check_array(mesh.normals, elements_of(mesh, mesh.normal_domain), "mesh.normals", 3, optional ? Presence::Optional : Presence::Required);
   check_array(mesh.generated_points, mesh.vertex_count, "mesh.generated_points", 3, Presence::Optional);
   attributes = read_struct_array(mesh.attributes, mesh.attribute_count, "mesh.attributes");
   for (GradusAttribute& attribute : attributes) {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "scene/mesh.h"
+#include "scene/smooth_normals.h"
 
 namespace gradus {
 
@@ -123,6 +124,7 @@ std::vector<float> copy_finite(const float* data, size_t count) {
 
 void copy_normals(const GradusMesh& m, MeshData* out) {
   out->normal_domain = GradusDomain(m.normal_domain);
+  if (!m.normals && m.normal_domain == GRADUS_DOMAIN_POINT) out->normals = smooth_normals(*out);
   if (!m.normals || m.normal_domain == GRADUS_DOMAIN_FACE) return;
   const size_t count = domain_size(m, m.normal_domain);
   const std::vector<float> values = copy_finite(m.normals, count * 3);

@@ -1,0 +1,183 @@
+"""Everything that the depsgraph shows, collected in one pass: one loop for objects, matrices in one bulk read.
+
+Blender's wrappers die after the loop step, so each entry copies what it needs. Evaluated objects and data stay valid until the next
+evaluation; what is needed after that (addresses, names, keys of materials) is copied, too.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from .arrays import read
+from .object_random import name_hash
+from .visibility import ALL_RAYS, visibility
+
+InstanceKey = tuple[int, ...]
+
+
+@dataclass
+class Entry:
+    """One instance of a geometry, or a lamp."""
+
+    index: int  # in depsgraph.object_instances
+    key: InstanceKey  # stable over frames
+    object: Any  # evaluated object that owns what is shown
+    data: Any  # evaluated mesh or light
+    place: int  # what is shown, by address: equal for instances that share it, within one evaluation
+    name: str
+    visibility: int
+    random_id: int
+    pass_index: int
+    color: tuple[float, ...]
+    generated: tuple[float, ...] = (0.0, 0.0, 0.0)
+    uv: tuple[float, ...] = (0.0, 0.0)
+    materials: tuple[Any, ...] = ()
+    material_keys: tuple[int, ...] = ()
+
+
+@dataclass
+class Collected:
+    """What object_instances held, in its order."""
+
+    matrices: array  # 16 per item of object_instances, column-major
+    surfaces: list[Entry] = field(default_factory=list)
+    lights: list[Entry] = field(default_factory=list)
+    skipped: list[tuple[str, str]] = field(default_factory=list)  # names and types of objects that cannot be shown yet
+
+
+def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
+    """Materials by slot. Slots linked to the object win; geometry nodes set theirs on the evaluated mesh only."""
+    slots = obj.material_slots
+    stored = getattr(data, "materials", ())
+    count = max(len(slots), len(stored))
+    if override is not None:
+        return (override,) * max(count, 1)
+    materials = []
+    for index in range(count):
+        if index < len(slots) and (slots[index].link == "OBJECT" or index >= len(stored)):
+            materials.append(slots[index].material)
+        else:
+            materials.append(stored[index])
+    return tuple(materials)
+
+
+class _Parts:
+    """Facts of an object that hold for all of its instances."""
+
+    def __init__(self, view_layer: Any) -> None:
+        self._view_layer = view_layer
+        self._override = view_layer.material_override
+        self._visibility: dict[tuple[int, int], int] = {}
+        self._materials: dict[tuple[int, int], tuple[Any, ...]] = {}
+        self._random: dict[int, int] = {}
+        self._parents: set[int] = set()
+        self.has_node_instances = False
+
+    def note_instancer(self, parent: Any, pointer: int) -> None:
+        """Remembers whether some instances come from geometry nodes."""
+        if pointer not in self._parents:
+            self._parents.add(pointer)
+            self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
+
+    def visibility(self, obj: Any, parent: Any, key: InstanceKey) -> int:
+        bits = self._visibility.get(key[:2])
+        if bits is None:
+            bits = self._visibility[key[:2]] = visibility(obj, parent, self._view_layer)
+        return bits
+
+    def materials(self, obj: Any, data: Any, key: InstanceKey) -> tuple[Any, ...]:
+        place = (key[0], data.as_pointer())
+        found = self._materials.get(place)
+        if found is None:
+            found = self._materials[place] = slot_materials(obj, data, self._override)
+        return found
+
+    def random_id(self, obj: Any, key: InstanceKey) -> int:
+        value = self._random.get(key[0])
+        if value is None:
+            value = self._random[key[0]] = name_hash(obj.name)
+        return value
+
+
+def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
+    """All visible surfaces and lamps of the depsgraph at its frame.
+
+    Curves, text, surfaces and metaballs come twice: as themselves, and as an instance that shows the mesh which Blender made of
+    them (3.4 to 5.0). Only the latter has a surface.
+    """
+    instances = depsgraph.object_instances
+    collected = Collected(array("f"))
+    parts = _Parts(depsgraph.view_layer_eval)
+    surfaces = depsgraph.view_layer_eval.use_solid
+    for index, instance in enumerate(instances):
+        if index & 255 == 0:
+            poll()
+        obj = instance.object
+        if not instance.show_self:
+            continue
+        kind = obj.type
+        if kind == "LIGHT" or (kind == "MESH" and surfaces):
+            entry = _entry(index, instance, obj, parts)
+            if entry is not None:
+                (collected.lights if kind == "LIGHT" else collected.surfaces).append(entry)
+        elif kind in {"CURVES", "POINTCLOUD", "VOLUME"}:
+            collected.skipped.append((obj.name, kind))
+    collected.matrices = _matrices(instances, parts.has_node_instances)
+    return collected
+
+
+def _matrices(instances: Any, one_by_one: bool) -> array:
+    """The matrices of all instances, column-major.
+
+    foreach_get never frees 244 bytes for each instance that geometry nodes made (Blender 3.4 and 4.5). That is too much over an
+    animation, so such scenes are read one by one, five times slower.
+    """
+    if not one_by_one:
+        return read(instances, "matrix_world", "f", 16)
+    values = array("f")
+    for instance in instances:
+        for column in instance.matrix_world.transposed():
+            values.extend(column)
+    return values
+
+
+def _entry(index: int, instance: Any, obj: Any, parts: _Parts) -> Entry | None:
+    copies = instance.is_instance
+    parent = instance.parent if copies else None
+    owner = instance.instance_object if copies else obj
+    # Originals: a new depsgraph, as each frame of an animation may have, has other evaluated addresses.
+    key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
+    if copies:
+        key += tuple(instance.persistent_id)
+        if parent is not None:
+            parts.note_instancer(parent, key[1])
+    bits = parts.visibility(obj, parent, key)
+    data = obj.data
+    if bits & ALL_RAYS == 0 or data is None or _is_portal(data):
+        return None
+    entry = Entry(
+        index,
+        key,
+        owner,
+        data,
+        data.as_pointer(),
+        owner.name,
+        bits,
+        instance.random_id & 0xFFFFFFFF if copies else parts.random_id(obj, key),
+        obj.pass_index,
+        tuple(obj.color),
+    )
+    if copies:
+        entry.generated = tuple(instance.orco)
+        entry.uv = tuple(instance.uv)
+    if obj.type != "LIGHT":
+        entry.materials = parts.materials(obj, data, key)
+    return entry
+
+
+def _is_portal(data: Any) -> bool:
+    """Portals of Cycles guide its sampling and shine on nothing."""
+    return bool(getattr(getattr(data, "cycles", None), "is_portal", False))

@@ -1,0 +1,57 @@
+#include "scene/smooth_normals.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "gradus/gradus.h"
+
+namespace gradus {
+namespace {
+
+// An octahedron with shared vertices, stretched along z: by symmetry every normal is the direction of its vertex.
+TEST(SmoothNormals, SymmetricVertices) {
+  const std::array<float, 18> positions{1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 2, 0, 0, -2};
+  const std::array<int32_t, 24> corners{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  std::array<uint32_t, 24> triangles{};
+  for (uint32_t i = 0; i < triangles.size(); ++i) triangles[i] = i;
+  GradusMesh desc{};
+  desc.struct_size = sizeof(desc);
+  desc.key_count = 1;
+  desc.vertex_count = 6;
+  desc.positions = positions.data();
+  desc.corner_count = corners.size();
+  desc.corner_vertices = corners.data();
+  desc.triangle_count = 8;
+  desc.triangle_corners = triangles.data();
+  desc.normal_domain = GRADUS_DOMAIN_POINT;
+  const auto mesh = make_mesh(desc);
+  ASSERT_EQ(mesh->normals.size(), 6u);
+  for (uint32_t i = 0; i < 6; ++i) {
+    const Vec3 p(positions[i * 3], positions[i * 3 + 1], positions[i * 3 + 2]);
+    EXPECT_NEAR(glm::dot(mesh->normals[i], glm::normalize(p)), 1.0f, 1e-6f) << i;
+  }
+}
+
+// Two faces meet at a vertex with angles 90 and 45 degrees: the normal is their mean with those weights, whatever their areas.
+TEST(SmoothNormals, WeightedByAngle) {
+  const std::array<float, 12> positions{0, 0, 0, 5, 0, 0, 0, 1, 0, 0, 1, 1};
+  const std::array<int32_t, 6> corners{0, 1, 2, 0, 2, 3};
+  const std::array<uint32_t, 6> triangles{0, 1, 2, 3, 4, 5};
+  GradusMesh desc{};
+  desc.struct_size = sizeof(desc);
+  desc.key_count = 1;
+  desc.vertex_count = 4;
+  desc.positions = positions.data();
+  desc.corner_count = 6;
+  desc.corner_vertices = corners.data();
+  desc.triangle_count = 2;
+  desc.triangle_corners = triangles.data();
+  desc.normal_domain = GRADUS_DOMAIN_POINT;
+  const auto mesh = make_mesh(desc);
+  const Vec3 expected = glm::normalize(2.0f * Vec3(0, 0, 1) + Vec3(1, 0, 0));
+  EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
+}
+
+}  // namespace
+}  // namespace gradus
