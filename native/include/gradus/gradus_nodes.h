@@ -66,8 +66,7 @@
  *   MAGIC         vector, scale, distortion -> color, factor     mode: depth
  *   BRICK         vector, color1, color2, mortar, scale, mortar size, mortar smooth, bias, brick width, row height -> color, factor
  *                                                       floats: offset, offset frequency, squash, squash frequency
- *   VORONOI       vector, w, scale, smoothness, exponent, randomness -> distance, color, position, w
- *                                                       mode: GRADUS_VORONOI_MODE()
+
  *
  * Vectors, colours, numbers
  *   MAPPING       vector, location, rotation, scale     mode: GradusMappingMode
@@ -128,7 +127,6 @@
   X(WAVE, 70, 7, 1, 0)             \
   X(MAGIC, 71, 3, 2, 0)            \
   X(BRICK, 72, 10, 2, 0)           \
-  X(VORONOI, 73, 6, 4, 0)          \
   X(MAPPING, 96, 4, 1, 0)          \
   X(VECTOR_TRANSFORM, 97, 1, 1, 0) \
   X(VECTOR_ROTATE, 98, 5, 1, 0)    \
@@ -246,8 +244,6 @@ typedef enum GradusGradientMode {
 
 /* type: 0 bands, 1 rings; direction: 0–2 x y z, 3 diagonal or spherical; profile: 0 sine, 1 saw, 2 triangle */
 #define GRADUS_WAVE_MODE(type, direction, profile) ((type) | (direction) << 1 | (profile) << 3)
-/* feature: 0 F1, 1 F2, 2 smooth F1, 3 distance to edge, 4 n-sphere radius; metric: 0 Euclidean, 1 Manhattan, 2 Chebychev, 3 Minkowski */
-#define GRADUS_VORONOI_MODE(dimensions, feature, metric) ((dimensions) | (feature) << 3 | (metric) << 6)
 
 typedef enum GradusMappingMode {
   GRADUS_MAPPING_POINT = 0,

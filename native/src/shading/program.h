@@ -31,21 +31,21 @@ struct Instruction {
   uint32_t first_float = 0;    // in Program::floats; kOpJumpIfZero: target
   uint32_t float_count = 0;
   uint32_t resource = 0;  // image: index in ImageStore; names: index + 1 in Program::names; BUMP: block of the height
-  Operand weight = 0;     // closures: what the lobe is multiplied by
+  Operand weight = -1;    // closures: what the lobe is multiplied by
   int16_t outputs[kMaxOutputs] = {kNoRegister, kNoRegister, kNoRegister, kNoRegister, kNoRegister};
 };
 
 struct Block {
   uint32_t begin = 0;
   uint32_t end = 0;
-  Operand result = 0;  // blocks of BUMP: the height
+  Operand result = -1;  // blocks of BUMP: the height
 };
 
 struct Program {
   std::vector<Block> blocks;  // the first is the entry; empty: no program, no closures
   std::vector<Instruction> code;
   std::vector<Operand> operands;
-  std::vector<Vec4> constants;
+  std::vector<Vec4> constants;  // the first is 1
   std::vector<float> floats;
   std::vector<std::string> names;
   int register_count = 0;

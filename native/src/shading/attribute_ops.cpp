@@ -1,0 +1,41 @@
+// Attribute, Color Attribute and Object Info nodes.
+#include "scene/mesh.h"
+#include "shading/context_ops.h"
+
+namespace gradus {
+
+// name nullptr: the UV map that the mesh renders with. *channels (may be null): 0 where there is no such attribute.
+Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, uint32_t* channels) {
+  if (channels) *channels = 0;
+  if (!c.instance) return Vec4(0.0f);
+  const MeshData& mesh = *c.instance->mesh;
+  const MeshAttribute* found = name ? find_attribute(mesh, *name) : nullptr;
+  if (!found && !name && uv) found = default_uv_map(mesh);
+  if (!found) return Vec4(0.0f);
+  if (channels) *channels = found->channels;
+  return interpolate(corner_values(mesh, *found, c.hit.triangle), c.hit.barycentric);
+}
+
+void attribute(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  uint32_t channels = 0;
+  Vec4 v = attribute_value(c, args.name, false, &channels);
+  if (channels == 1) v = Vec4(v.x, v.x, v.x, 1.0f);
+  out[0] = out[1] = Vec4(Vec3(v), 1.0f);
+  out[2] = splat(channels == 1 ? v.x : mean_component(Vec3(v)));
+  out[3] = splat(v.w);
+}
+
+void object_info(const ShadeContext& c, Vec4* out) {
+  if (!c.instance) {
+    for (int i = 0; i < 5; i++) out[i] = Vec4(0.0f);
+    return;
+  }
+  const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
+  out[0] = value(Vec3(c.instance->to_world[3]) + origin);
+  out[1] = Vec4(Vec3(c.instance->color), 1.0f);
+  out[2] = splat(static_cast<float>(c.instance->pass_index));
+  out[3] = splat(static_cast<float>(c.instance->random_id) * (1.0f / 4294967296.0f));
+  out[4] = splat(c.instance->color.w);
+}
+
+}  // namespace gradus

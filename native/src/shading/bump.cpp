@@ -1,0 +1,52 @@
+#include "shading/bump.h"
+
+#include "shading/interpreter.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+// About one pixel of a 1080p picture, as an angle. A step that depends on the point alone: a path that is shifted onto a point must
+// find the normal that any other path finds there.
+constexpr float kPixelAngle = 7e-4f;
+// Steps shorter than this share of the coordinates drown in rounding.
+constexpr float kSmallestStep = 2e-5f;
+
+float step_length(const ShadeContext& c, float filter_width) {
+  const Vec3 p = glm::abs(c.position);
+  float distance = c.snapshot->radius;
+  if (c.snapshot->has_camera) {
+    const float* m = c.snapshot->camera.matrix;
+    distance = glm::distance(c.position, Vec3(m[12], m[13], m[14]));
+    if (c.snapshot->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC) distance = c.snapshot->camera.window[1] - c.snapshot->camera.window[0];
+  }
+  return std::max(std::max(distance * kPixelAngle * filter_width, kSmallestStep * max_component(p)), 1e-7f);
+}
+
+}  // namespace
+
+// Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU" (2010).
+Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const ShadeContext& c) {
+  const Vec3 own = safe_normalize(args.v(3));
+  const Vec3 normal = own == Vec3(0.0f) ? c.normal : own;
+  const float strength = std::max(args.f(0), 0.0f);
+  if (!c.instance || !c.snapshot || strength == 0.0f || block == 0) return normal;
+  const float step = step_length(c, std::clamp(args.f(4), 0.1f, 10.0f));
+  const Vec3 ng = c.geometric_normal;
+  const Vec3 helper = std::fabs(ng.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
+  const Vec3 dx = glm::normalize(glm::cross(helper, ng)), dy = glm::cross(ng, dx);
+  const std::array<Vec3, 3> corners = world_corners(c);
+  const float h = run_block(program, block, c).x;
+  const float hx = run_block(program, block, moved_context(c, corners, dx * step)).x;
+  const float hy = run_block(program, block, moved_context(c, corners, dy * step)).x;
+  const Vec3 rx = glm::cross(dy, normal), ry = glm::cross(normal, dx);
+  const float det = glm::dot(dx, rx);
+  const Vec3 gradient = (rx * (hx - h) + ry * (hy - h)) / step;
+  const float distance = args.mode == 1 ? -args.f(1) : args.f(1);
+  const Vec3 bent = safe_normalize(normal * std::fabs(det) - gradient * (distance * sign(det)));
+  if (bent == Vec3(0.0f)) return normal;
+  const Vec3 mixed = safe_normalize(bent * strength + normal * (1.0f - strength));
+  return mixed == Vec3(0.0f) ? normal : mixed;
+}
+
+}  // namespace gradus

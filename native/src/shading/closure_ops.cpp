@@ -1,0 +1,148 @@
+#include "shading/closure_ops.h"
+
+#include "shading/context_ops.h"
+#include "shading/rotation.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+Rgb non_negative(const Vec3& c) { return glm::max(c, Vec3(0.0f)); }
+
+void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  const Rgb color = non_negative(args.v(0));
+  Lobe* lobe = add_lobe(result, LobeType::Diffuse, LightPass::Diffuse, args.weight * color, outward_normal(c, args.v(2)));
+  if (!lobe) return;
+  lobe->alpha_x = saturate(args.f(1));
+  lobe->multiscatter = args.mode == 1;
+  lobe->f0 = color;
+}
+
+void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  const Vec3 normal = facing_normal(c, args.v(4));
+  Lobe* lobe = add_lobe(result, LobeType::GgxReflection, LightPass::Glossy, args.weight * non_negative(args.v(0)), normal);
+  if (!lobe) return;
+  const float roughness = saturate(args.f(1)), alpha = roughness * roughness;
+  const float anisotropy = std::clamp(args.f(2), -0.99f, 0.99f);
+  lobe->alpha_x = anisotropy < 0.0f ? alpha / (1.0f + anisotropy) : alpha * (1.0f - anisotropy);
+  lobe->alpha_y = anisotropy < 0.0f ? alpha * (1.0f + anisotropy) : alpha / (1.0f - anisotropy);
+  if (anisotropy != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
+  lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+  lobe->f0 = non_negative(args.v(0));
+}
+
+void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  const Vec3 normal = facing_normal(c, args.v(5));
+  Lobe* lobe = add_lobe(result, LobeType::GgxReflection, LightPass::Glossy, args.weight, normal);
+  if (!lobe) return;
+  set_principled_roughness(lobe, args.f(2), args.f(3));
+  if (args.f(3) > 0.0f) lobe->tangent = turned_tangent(c, args.v(6), normal, args.f(4));
+  lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+  lobe->fresnel = FresnelType::PrincipledMetal;
+  lobe->f0 = glm::clamp(args.v(0), 0.0f, 1.0f);
+  lobe->f90 = glm::clamp(args.v(1), 0.0f, 1.0f);
+}
+
+void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  Lobe* lobe = add_lobe(result, LobeType::GgxRefraction, LightPass::Transmission, args.weight * non_negative(args.v(0)),
+                        outward_normal(c, args.v(3)));
+  if (!lobe) return;
+  const float roughness = saturate(args.f(1));
+  lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+  lobe->ior = std::max(args.f(2), 1e-5f);
+}
+
+void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  Lobe* lobe =
+      add_lobe(result, LobeType::GgxGlass, LightPass::Transmission, args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
+  if (!lobe) return;
+  const float roughness = saturate(args.f(1));
+  lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+  lobe->ior = std::max(args.f(2), 1e-5f);
+  lobe->fresnel = FresnelType::Dielectric;
+  lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+}
+
+void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  Lobe* lobe = add_lobe(result, LobeType::Sheen, LightPass::Diffuse, args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
+  if (lobe) lobe->alpha_x = saturate(args.f(1));
+}
+
+}  // namespace
+
+Vec3 facing_normal(const ShadeContext& c, const Vec3& normal) {
+  const Vec3 n = safe_normalize(normal);
+  return n == Vec3(0.0f) ? c.normal : n;
+}
+
+Vec3 outward_normal(const ShadeContext& c, const Vec3& normal) {
+  const Vec3 n = facing_normal(c, normal);
+  return c.backfacing ? -n : n;
+}
+
+Vec3 turned_tangent(const ShadeContext& c, const Vec3& tangent, const Vec3& normal, float turns) {
+  Vec3 t = safe_normalize(tangent);
+  if (t == Vec3(0.0f)) t = default_tangent(c);
+  return turns != 0.0f ? rotate_around(t, normal, turns * 2.0f * kPi) : t;
+}
+
+void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic) {
+  const float alpha = saturate(roughness) * saturate(roughness);
+  const float aspect = std::sqrt(1.0f - 0.9f * saturate(anisotropic));
+  lobe->alpha_x = alpha / aspect;
+  lobe->alpha_y = alpha * aspect;
+}
+
+Lobe* add_lobe(ShadeResult* result, LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal) {
+  if (!(max_component(weight) > kWeightCutoff)) return nullptr;
+  Lobe* lobe = result->closures.add();
+  if (!lobe) return nullptr;
+  lobe->type = type;
+  lobe->pass = pass;
+  lobe->weight = weight;
+  lobe->normal = normal;
+  return lobe;
+}
+
+Rgb layered(const Rgb& weight, const Rgb& albedo) {
+  float largest = 0.0f;
+  for (int i = 0; i < 3; i++) largest = std::max(largest, safe_divide(albedo[i], weight[i]));
+  return weight * saturate(1.0f - largest);
+}
+
+void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  switch (args.op) {
+    case GRADUS_OP_DIFFUSE:
+      return add_diffuse(args, c, result);
+    case GRADUS_OP_TRANSLUCENT:
+      add_lobe(result, LobeType::Translucent, LightPass::Diffuse, args.weight * non_negative(args.v(0)), outward_normal(c, args.v(1)));
+      return;
+    case GRADUS_OP_GLOSSY:
+      return add_glossy(args, c, result);
+    case GRADUS_OP_REFRACTION:
+      return add_refraction(args, c, result);
+    case GRADUS_OP_GLASS:
+      return add_glass(args, c, result);
+    case GRADUS_OP_SHEEN:
+      return add_sheen(args, c, result);
+    case GRADUS_OP_METALLIC:
+      return add_metallic(args, c, result);
+    case GRADUS_OP_PRINCIPLED:
+      return add_principled(args, c, result);
+    case GRADUS_OP_PRINCIPLED_3:
+      return add_principled_3(args, c, result);
+    case GRADUS_OP_TRANSPARENT:
+      result->transparency += args.weight * non_negative(args.v(0));
+      return;
+    case GRADUS_OP_HOLDOUT:
+      result->holdout += args.weight;
+      return;
+    case GRADUS_OP_EMISSION:
+      result->emission += args.weight * args.v(0) * args.f(1);
+      return;
+    default:
+      return;
+  }
+}
+
+}  // namespace gradus

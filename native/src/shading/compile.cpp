@@ -1,0 +1,174 @@
+// From a GradusMaterial to programs, and what can be said of them in advance.
+#include "scene/image_store.h"
+#include "shading/emit.h"
+#include "shading/interpreter.h"
+#include "shading/material.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+bool is_lobe_op(uint32_t op) {
+  return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION;
+}
+
+Vec4 operand_or(const Program& p, Operand o, const Vec4& unknown) { return o < 0 ? p.constants[static_cast<size_t>(~o)] : unknown; }
+
+// Input of the roughness of a closure; -1: always rough.
+int roughness_input(uint32_t op) {
+  switch (op) {
+    case GRADUS_OP_GLOSSY:
+    case GRADUS_OP_REFRACTION:
+    case GRADUS_OP_GLASS:
+      return 1;
+    case GRADUS_OP_METALLIC:
+    case GRADUS_OP_PRINCIPLED:
+      return 2;
+    case GRADUS_OP_PRINCIPLED_3:
+      return 5;
+    default:
+      return -1;
+  }
+}
+
+class Analysis {
+ public:
+  Analysis(const Program& program, MaterialData* m) : p_(program), m_(*m) {}
+
+  void run() {
+    for (const Instruction& i : p_.code)
+      if (i.op < GRADUS_OP_LIMIT && is_closure_op(i.op)) closure(i);
+    m_.may_be_specular = m_.min_alpha < 0.1f;
+  }
+
+ private:
+  Vec4 input(const Instruction& i, int k, float unknown) const {
+    return operand_or(p_, p_.operands[i.first_operand + static_cast<uint32_t>(k)], Vec4(unknown));
+  }
+  void sharpen(float roughness) { m_.min_alpha = std::min(m_.min_alpha, roughness * roughness); }
+
+  void closure(const Instruction& i) {
+    m_.has_holdout = m_.has_holdout || i.op == GRADUS_OP_HOLDOUT;
+    if (!is_lobe_op(i.op)) return;
+    m_.has_bsdf = true;
+    const int rough = roughness_input(i.op);
+    // Anisotropy narrows one axis to a third at most.
+    if (rough >= 0) sharpen(input(i, rough, 0.0f).x * (i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_GLASS ? 1.0f : 0.5f));
+    const bool glass = i.op == GRADUS_OP_GLASS || i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_TRANSLUCENT;
+    bool transmits = glass;
+    if (i.op == GRADUS_OP_PRINCIPLED) {
+      transmits = input(i, 9, 1.0f).x > 0.0f;
+      if (input(i, 10, 1.0f).x > 0.0f) sharpen(input(i, 11, 0.0f).x);
+    }
+    if (i.op == GRADUS_OP_PRINCIPLED_3) {
+      transmits = input(i, 13, 1.0f).x > 0.0f;
+      if (input(i, 10, 1.0f).x > 0.0f) sharpen(input(i, 11, 0.0f).x);
+    }
+    m_.may_transmit = m_.may_transmit || transmits;
+  }
+
+  const Program& p_;
+  MaterialData& m_;
+};
+
+// Nothing but closures of `op`, of constants.
+bool is_constant(const Program& p, uint32_t op) {
+  for (const Instruction& i : p.code) {
+    if (i.op != op || i.weight >= 0) return false;
+    for (uint32_t k = 0; k < i.input_count; k++)
+      if (p.operands[i.first_operand + k] >= 0) return false;
+  }
+  return true;
+}
+
+bool looks_at_ray(const Program& p) {
+  for (const Instruction& i : p.code) {
+    const bool geometry = i.op == GRADUS_OP_GEOMETRY && (i.mode == GRADUS_GEOMETRY_INCOMING || i.mode == GRADUS_GEOMETRY_BACKFACING);
+    const bool reflection = i.op == GRADUS_OP_TEX_COORD && i.mode == GRADUS_TEX_COORD_REFLECTION;
+    if (geometry || reflection || i.op == GRADUS_OP_LIGHT_PATH || i.op == GRADUS_OP_LAYER_WEIGHT || i.op == GRADUS_OP_FRESNEL ||
+        i.op == GRADUS_OP_LIGHT_FALLOFF || i.op == GRADUS_OP_PRINCIPLED)
+      return true;
+  }
+  return false;
+}
+
+// Mean luminance over a few places, textures at their mean colour.
+float estimate(const Program& p, const ImageStore& images) {
+  constexpr int kPlaces = 8;
+  float sum = 0.0f;
+  for (int k = 0; k < kPlaces; k++) {
+    ShadeContext c;
+    c.images = &images;
+    c.mean_textures = true;
+    // Halton points.
+    const auto f = static_cast<float>(k);
+    c.position = Vec3((f + 0.5f) / kPlaces, fraction(f * 0.618034f), fraction(f * 0.754878f));
+    c.uv = Vec2(c.position);
+    ShadeResult r;
+    run_program(p, c, &r);
+    const float l = luminance(glm::max(r.emission, Vec3(0.0f)));
+    if (is_finite(l)) sum += l;
+  }
+  // Where only the place decides (attributes), something is better than never.
+  return sum > 0.0f ? sum / kPlaces : 1.0f;
+}
+
+void describe_emission(MaterialData* m, const ImageStore& images) {
+  m->emits = !m->emission.empty();
+  if (!m->emits) return;
+  m->depends_on_ray = looks_at_ray(m->emission);
+  m->emission_estimate = estimate(m->emission, images);
+  if (!is_constant(m->emission, GRADUS_OP_EMISSION)) return;
+  ShadeResult r;
+  run_program(m->emission, ShadeContext(), &r);
+  m->emission_is_constant = true;
+  m->constant_emission = r.emission;
+  m->emission_estimate = luminance(r.emission);
+}
+
+void describe_transparency(MaterialData* m) {
+  m->may_be_transparent = !m->transparency.empty();
+  if (!m->may_be_transparent || !is_constant(m->transparency, GRADUS_OP_TRANSPARENT)) return;
+  ShadeResult r;
+  run_program(m->transparency, ShadeContext(), &r);
+  m->transparency_is_constant = true;
+  m->constant_transparency = r.transparency;
+}
+
+}  // namespace
+
+std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const ImageStore& images) {
+  auto m = std::make_shared<MaterialData>();
+  m->name = desc.name ? desc.name : "";
+  const Graph graph = build_graph(desc, images);
+  m->surface = emit_program(graph, ProgramPart::All, m->name);
+  m->emission = emit_program(graph, ProgramPart::Emission, m->name);
+  m->transparency = emit_program(graph, ProgramPart::Transparency, m->name);
+  m->sample_as_light = desc.sample_as_light != 0;
+  m->transparent_shadow = desc.transparent_shadow != 0;
+  m->uses_fallback = desc.uses_fallback != 0;
+  m->pass_index = desc.pass_index;
+  Analysis(m->surface, m.get()).run();
+  describe_emission(m.get(), images);
+  describe_transparency(m.get());
+  return m;
+}
+
+std::shared_ptr<const MaterialData> default_material() {
+  GradusInput color{-1, 0, {0.8f, 0.8f, 0.8f, 1.0f}};
+  GradusNode diffuse{};
+  diffuse.op = GRADUS_OP_DIFFUSE;
+  diffuse.input_count = 1;
+  GradusMaterial desc{};
+  desc.struct_size = sizeof(desc);
+  desc.nodes = &diffuse;
+  desc.node_count = 1;
+  desc.inputs = &color;
+  desc.input_count = 1;
+  desc.surface = 0;
+  desc.transparent_shadow = 1;
+  desc.name = "default";
+  return compile_material(desc, ImageStore());
+}
+
+}  // namespace gradus

@@ -1,0 +1,76 @@
+#include "shading/context.h"
+
+#include <cfloat>
+
+#include "scene/mesh.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+
+ShadeContext surface_context(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+  ShadeContext c;
+  c.snapshot = &snapshot;
+  c.images = snapshot.images.get();
+  c.instance = &snapshot.instances[point.hit.instance];
+  c.hit = point.hit;
+  c.position = point.position;
+  c.backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
+  c.normal = c.backfacing ? -point.shading_normal : point.shading_normal;
+  c.geometric_normal = c.backfacing ? -point.geometric_normal : point.geometric_normal;
+  c.wo = wo;
+  c.ray = ray;
+  return c;
+}
+
+ShadeContext background_context(const Snapshot& snapshot, const Vec3& direction, const RayState& ray) {
+  ShadeContext c;
+  c.snapshot = &snapshot;
+  c.images = snapshot.images.get();
+  c.position = direction;
+  c.normal = c.geometric_normal = c.wo = -direction;
+  c.ray = ray;
+  c.is_background = true;
+  return c;
+}
+
+ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, const RayState& ray) {
+  ShadeContext c;
+  c.snapshot = &snapshot;
+  c.images = snapshot.images.get();
+  c.position = point.position;
+  c.normal = c.geometric_normal = point.normal;
+  c.wo = point.wo;
+  c.uv = point.uv;
+  c.ray = ray;
+  return c;
+}
+
+Vec3 world_position(const ShadeContext& c) { return c.is_background || !c.snapshot ? c.position : c.position + c.snapshot->origin; }
+
+std::array<Vec3, 3> world_corners(const ShadeContext& c) {
+  std::array<Vec3, 3> p = triangle_positions(*c.instance->mesh, c.hit.triangle);
+  for (Vec3& v : p) v = Vec3(c.instance->to_world * Vec4(v, 1.0f));
+  return p;
+}
+
+ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& p, const Vec3& step) {
+  ShadeContext c = context;
+  const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0], n = glm::cross(e1, e2);
+  const float square = glm::dot(n, n);
+  c.position += step;
+  if (square > 0.0f) {
+    c.hit.barycentric += Vec2(glm::dot(glm::cross(step, e2), n), glm::dot(glm::cross(e1, step), n)) / square;
+  }
+  return c;
+}
+
+Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
+  // The inverse of the inverse transpose.
+  return c.instance ? safe_normalize(glm::transpose(Mat3(c.instance->to_world)) * normal) : normal;
+}
+
+Vec3 normal_to_world(const ShadeContext& c, const Vec3& normal) {
+  return c.instance ? safe_normalize(c.instance->normal_to_world * normal) : normal;
+}
+
+}  // namespace gradus

@@ -1,0 +1,44 @@
+// What a node program knows of the point it runs at.
+#pragma once
+
+#include <array>
+
+#include "base/types.h"
+#include "scene/snapshot.h"
+#include "scene/surface.h"
+#include "shading/shade.h"
+
+namespace gradus {
+
+class ImageStore;
+
+struct ShadeContext {
+  const Snapshot* snapshot = nullptr;  // nullptr: estimates without a scene
+  const ImageStore* images = nullptr;
+  const InstanceData* instance = nullptr;  // nullptr: world and lamps
+  Hit hit;
+  Vec3 position = Vec3(0.0f);             // internal space; world: the direction
+  Vec3 normal = Vec3(0, 0, 1);            // shading normal, turned as the geometric normal is
+  Vec3 geometric_normal = Vec3(0, 0, 1);  // on the side of wo
+  Vec3 wo = Vec3(0, 0, 1);
+  Vec2 uv = Vec2(0.0f);  // of lamps
+  RayState ray;
+  bool backfacing = false;
+  bool is_background = false;
+  bool mean_textures = false;  // estimates: images give their mean colour
+};
+
+ShadeContext surface_context(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+ShadeContext background_context(const Snapshot& snapshot, const Vec3& direction, const RayState& ray);
+ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, const RayState& ray);
+
+// Position in world space; the direction for backgrounds.
+Vec3 world_position(const ShadeContext& context);
+// Corners of the triangle in internal space, and the context moved along the surface by `step`: interpolated values follow it.
+std::array<Vec3, 3> world_corners(const ShadeContext& context);
+ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& corners, const Vec3& step);
+// Directions and normals between spaces of the object; without an object they stay.
+Vec3 normal_to_local(const ShadeContext& context, const Vec3& normal);
+Vec3 normal_to_world(const ShadeContext& context, const Vec3& normal);
+
+}  // namespace gradus

@@ -1,0 +1,40 @@
+// Geometry node.
+#include "scene/mesh.h"
+#include "shading/context_ops.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+
+Vec3 generated(const ShadeContext& c) {
+  if (!c.instance) return world_position(c);
+  return interpolate(corner_generated(*c.instance->mesh, c.hit.triangle), c.hit.barycentric);
+}
+
+// Around the z axis of the texture space.
+Vec3 default_tangent(const ShadeContext& c) {
+  if (!c.instance) return Vec3(1, 0, 0);
+  const Vec3 g = generated(c) - 0.5f;
+  const Vec3 around = normal_to_world(c, Vec3(-g.y, g.x, 0.0f));
+  return safe_normalize(glm::cross(c.normal, safe_normalize(glm::cross(around, c.normal))));
+}
+
+Vec3 geometry(uint32_t mode, const ShadeContext& c) {
+  switch (mode) {
+    case GRADUS_GEOMETRY_NORMAL:
+      return c.normal;
+    case GRADUS_GEOMETRY_TANGENT:
+      return default_tangent(c);
+    case GRADUS_GEOMETRY_TRUE_NORMAL:
+      return c.geometric_normal;
+    case GRADUS_GEOMETRY_INCOMING:
+      return c.wo;
+    case GRADUS_GEOMETRY_PARAMETRIC:
+      return Vec3(1.0f - c.hit.barycentric.x - c.hit.barycentric.y, c.hit.barycentric.x, 0.0f);
+    case GRADUS_GEOMETRY_BACKFACING:
+      return Vec3(c.backfacing ? 1.0f : 0.0f);
+    default:
+      return world_position(c);
+  }
+}
+
+}  // namespace gradus

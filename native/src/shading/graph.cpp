@@ -1,0 +1,109 @@
+#include "shading/graph.h"
+
+#include "scene/image_store.h"
+#include "shading/graph_check.h"
+#include "shading/op_info.h"
+#include "shading/ops.h"
+
+namespace gradus {
+namespace {
+
+GraphValue constant(const Vec4& v) {
+  GraphValue g;
+  g.constant = v;
+  return g;
+}
+
+class Builder {
+ public:
+  Builder(const GradusMaterial& desc, const ImageStore& images) : desc_(desc), images_(images) {}
+
+  Graph build() {
+    graph_.floats.assign(desc_.floats, desc_.floats + desc_.float_count);
+    for (uint32_t i = 0; i < desc_.name_count; i++) graph_.names.emplace_back(desc_.names[i]);
+    graph_.nodes.resize(desc_.node_count);
+    for (uint32_t i = 0; i < desc_.node_count; i++) node(i);
+    graph_.surface = desc_.surface;
+    return std::move(graph_);
+  }
+
+ private:
+  void node(uint32_t i) {
+    const GradusNode& source = desc_.nodes[i];
+    GraphNode& n = graph_.nodes[i];
+    n.op = source.op;
+    n.mode = source.mode;
+    n.first_float = source.first_float;
+    n.float_count = source.float_count;
+    n.resource = resource(source);
+    const OpInfo& info = *op_info(n.op);
+    n.inputs.resize(info.inputs);
+    for (uint32_t k = 0; k < source.input_count; k++) input(&n, k, desc_.inputs[source.first_input + k]);
+    for (uint32_t k = 0; k < info.outputs; k++) n.outputs.push_back({static_cast<int32_t>(i), k, Vec4(0.0f)});
+    simplify(&n);
+  }
+
+  uint32_t resource(const GradusNode& source) const {
+    const bool is_image = source.op == GRADUS_OP_IMAGE || source.op == GRADUS_OP_ENVIRONMENT;
+    return is_image ? images_.index_of(source.resource) : static_cast<uint32_t>(source.resource);
+  }
+
+  void input(GraphNode* n, uint32_t k, const GradusInput& in) const {
+    if (is_shader_combination(n->op) && (n->op == GRADUS_OP_ADD_SHADER || k > 0)) {
+      n->closures[n->op == GRADUS_OP_ADD_SHADER ? k : k - 1] = in.node;
+      return;
+    }
+    n->inputs[k] =
+        in.node < 0 ? constant(Vec4(in.value[0], in.value[1], in.value[2], in.value[3])) : graph_.nodes[in.node].outputs[in.output];
+  }
+
+  void simplify(GraphNode* n) const {
+    if (n->op == GRADUS_OP_IMAGE) return simplify_image(n);
+    if (n->op == GRADUS_OP_BUMP && n->inputs[2].is_constant()) {
+      // A flat height bends nothing.
+      n->outputs[0] = n->inputs[3];
+      return;
+    }
+    if (n->op == GRADUS_OP_MIX && n->inputs[0].is_constant()) {
+      const Vec4& f = n->inputs[0].constant;
+      if (f == Vec4(0.0f)) n->outputs[0] = n->inputs[1];
+      if (f == Vec4(1.0f)) n->outputs[0] = n->inputs[2];
+    }
+    if (is_pure(n->op)) fold(n);
+  }
+
+  // Alpha of a picture without any is 1, which makes many a material opaque. CLIP adds transparent surroundings.
+  void simplify_image(GraphNode* n) const {
+    const bool clips = (n->mode >> 4 & 3) == static_cast<uint32_t>(Extension::Clip);
+    if (!clips && n->resource < images_.size() && !images_.has_alpha(n->resource)) n->outputs[1] = constant(Vec4(1.0f));
+  }
+
+  void fold(GraphNode* n) const {
+    Vec4 in[16];
+    for (size_t k = 0; k < n->inputs.size(); k++) {
+      if (!n->inputs[k].is_constant()) return;
+      in[k] = n->inputs[k].constant;
+    }
+    OpArgs args;
+    args.mode = n->mode;
+    args.in = in;
+    args.floats = graph_.floats.data() + n->first_float;
+    args.float_count = n->float_count;
+    Vec4 out[8];
+    if (!evaluate_pure(n->op, args, out)) return;
+    for (size_t k = 0; k < n->outputs.size(); k++) n->outputs[k] = constant(out[k]);
+  }
+
+  const GradusMaterial& desc_;
+  const ImageStore& images_;
+  Graph graph_;
+};
+
+}  // namespace
+
+Graph build_graph(const GradusMaterial& desc, const ImageStore& images) {
+  check_program(desc);
+  return Builder(desc, images).build();
+}
+
+}  // namespace gradus

@@ -1,0 +1,50 @@
+// A node program as given, checked and simplified: constants folded, branches of constant mixes followed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+#include "gradus/gradus.h"
+#include "gradus/gradus_nodes.h"
+
+namespace gradus {
+
+class ImageStore;
+
+// A constant, or an output of a node.
+struct GraphValue {
+  int32_t node = -1;  // -1: constant
+  uint32_t output = 0;
+  Vec4 constant = Vec4(0.0f);
+  bool is_constant() const { return node < 0; }
+  bool is_zero() const { return node < 0 && constant.x == 0.0f && constant.y == 0.0f && constant.z == 0.0f; }
+};
+
+struct GraphNode {
+  uint32_t op = 0;
+  uint32_t mode = 0;
+  uint32_t first_float = 0;
+  uint32_t float_count = 0;
+  uint32_t resource = 0;            // image: index in the store; else index of the name + 1
+  std::vector<GraphValue> inputs;   // as many as the operation has; closures at their places are unused
+  int32_t closures[2] = {-1, -1};   // MIX_SHADER, ADD_SHADER: -1 = black
+  std::vector<GraphValue> outputs;  // what users of this node take: itself, a constant or another node
+};
+
+struct Graph {
+  std::vector<GraphNode> nodes;
+  std::vector<float> floats;
+  std::vector<std::string> names;
+  int32_t surface = -1;
+};
+
+inline constexpr uint32_t kMaxNodes = 1u << 16;
+
+inline bool is_closure_op(uint32_t op) { return op <= GRADUS_OP_METALLIC; }
+inline bool is_shader_combination(uint32_t op) { return op == GRADUS_OP_MIX_SHADER || op == GRADUS_OP_ADD_SHADER; }
+
+// Throws Error INVALID_ARGUMENT that names the material.
+Graph build_graph(const GradusMaterial& desc, const ImageStore& images);
+
+}  // namespace gradus

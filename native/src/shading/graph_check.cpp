@@ -1,0 +1,132 @@
+#include "shading/graph_check.h"
+
+#include "base/error.h"
+#include "shading/graph.h"
+#include "shading/op_info.h"
+
+namespace gradus {
+namespace {
+
+struct ModeRange {
+  uint32_t op;
+  uint32_t last;
+};
+
+// Last mode of each operation that has modes; 0 for the rest.
+constexpr ModeRange kModes[] = {
+    {GRADUS_OP_DIFFUSE, 1},
+    {GRADUS_OP_GLOSSY, GRADUS_DISTRIBUTION_MULTIPLE},
+    {GRADUS_OP_GLASS, GRADUS_DISTRIBUTION_MULTIPLE},
+    {GRADUS_OP_PRINCIPLED, GRADUS_DISTRIBUTION_MULTIPLE},
+    {GRADUS_OP_PRINCIPLED_3, GRADUS_DISTRIBUTION_MULTIPLE},
+    {GRADUS_OP_METALLIC, GRADUS_DISTRIBUTION_MULTIPLE},
+    {GRADUS_OP_GEOMETRY, GRADUS_GEOMETRY_BACKFACING},
+    {GRADUS_OP_TEX_COORD, GRADUS_TEX_COORD_INSTANCER_UV},
+    {GRADUS_OP_TANGENT, GRADUS_TANGENT_UV},
+    {GRADUS_OP_LIGHT_PATH, GRADUS_LIGHT_PATH_TRANSMISSION_DEPTH},
+    {GRADUS_OP_NORMAL_MAP, GRADUS_NORMAL_BLENDER_WORLD},
+    {GRADUS_OP_BUMP, 1},
+    {GRADUS_OP_IMAGE, 127},
+    {GRADUS_OP_ENVIRONMENT, 127},
+    {GRADUS_OP_NOISE, 255},
+    {GRADUS_OP_GRADIENT, GRADUS_GRADIENT_SPHERICAL},
+    {GRADUS_OP_WHITE_NOISE, 4},
+    {GRADUS_OP_WAVE, 31},
+    {GRADUS_OP_MAGIC, 10},
+    {GRADUS_OP_MAPPING, GRADUS_MAPPING_NORMAL},
+    {GRADUS_OP_VECTOR_TRANSFORM, 42},
+    {GRADUS_OP_VECTOR_ROTATE, 12},
+    {GRADUS_OP_MIX_COLOR, GRADUS_BLEND_VALUE + 32},
+    {GRADUS_OP_MATH, GRADUS_MATH_COUNT - 1 + 64},
+    {GRADUS_OP_VECTOR_MATH, GRADUS_VECTOR_COUNT - 1},
+    {GRADUS_OP_CLAMP, 1},
+    {GRADUS_OP_MAP_RANGE, GRADUS_MAP_RANGE_SMOOTHERSTEP + 8},
+    {GRADUS_OP_RAMP, 1},
+    {GRADUS_OP_CURVES, GRADUS_CURVES_FLOAT},
+    {GRADUS_OP_SEPARATE, GRADUS_COLOR_HSL},
+    {GRADUS_OP_COMBINE, GRADUS_COLOR_HSL},
+    {GRADUS_OP_LIGHT_FALLOFF, 2},
+};
+
+uint32_t last_mode(uint32_t op) {
+  for (const ModeRange& range : kModes)
+    if (range.op == op) return range.last;
+  return 0;
+}
+
+bool table_fits(const GradusNode& node) {
+  switch (node.op) {
+    case GRADUS_OP_RAMP:
+      return node.float_count >= 4 && node.float_count % 4 == 0;
+    case GRADUS_OP_CURVES: {
+      const uint32_t channels = node.mode == GRADUS_CURVES_FLOAT ? 1 : 3;
+      return node.float_count >= 3 + 2 * channels && (node.float_count - 3) % channels == 0;
+    }
+    case GRADUS_OP_BRICK:
+      return node.float_count >= 4;
+    case GRADUS_OP_NORMAL_DOT:
+      return node.float_count >= 3;
+    case GRADUS_OP_TEX_COORD:
+      return node.float_count == 0 || node.float_count >= 16;
+    default:
+      return true;
+  }
+}
+
+bool takes_closure(uint32_t op, uint32_t input) { return (op == GRADUS_OP_MIX_SHADER && input > 0) || op == GRADUS_OP_ADD_SHADER; }
+
+class Checker {
+ public:
+  explicit Checker(const GradusMaterial& desc) : desc_(desc) {}
+
+  void run() const {
+    that(desc_.node_count <= kMaxNodes, "too many nodes");
+    that(desc_.node_count == 0 || desc_.nodes, "nodes missing");
+    that(desc_.input_count == 0 || desc_.inputs, "inputs missing");
+    that(desc_.float_count == 0 || desc_.floats, "floats missing");
+    that(desc_.float_count <= UINT32_MAX && desc_.input_count <= UINT32_MAX, "too many inputs or floats");
+    that(desc_.name_count == 0 || desc_.names, "names missing");
+    for (uint32_t i = 0; i < desc_.name_count; i++) that(desc_.names[i] != nullptr, "a name is missing");
+    for (uint32_t i = 0; i < desc_.node_count; i++) node(i);
+    that(desc_.surface >= -1 && (desc_.surface < 0 || static_cast<uint32_t>(desc_.surface) < desc_.node_count), "the surface is no node");
+    if (desc_.surface >= 0) that(is_closure_op(desc_.nodes[desc_.surface].op), "the surface is no closure");
+  }
+
+ private:
+  void that(bool good, const char* text, int64_t node = -1) const {
+    if (good) return;
+    const std::string place = node >= 0 ? ", node " + std::to_string(node) : "";
+    throw invalid_argument("material '" + std::string(desc_.name ? desc_.name : "") + "'" + place + ": " + text);
+  }
+
+  void node(uint32_t i) const {
+    const GradusNode& n = desc_.nodes[i];
+    const OpInfo* info = op_info(n.op);
+    that(info != nullptr, "unknown operation", i);
+    that(n.mode <= last_mode(n.op), "unknown mode", i);
+    that(n.input_count <= info->inputs, "too many inputs", i);
+    that(uint64_t(n.first_input) + n.input_count <= desc_.input_count, "inputs out of range", i);
+    that(uint64_t(n.first_float) + n.float_count <= desc_.float_count, "floats out of range", i);
+    that(table_fits(n), "table of a wrong size", i);
+    const bool is_image = n.op == GRADUS_OP_IMAGE || n.op == GRADUS_OP_ENVIRONMENT;
+    that(is_image || n.resource <= desc_.name_count, "name out of range", i);
+    for (uint32_t k = 0; k < n.input_count; k++) input(i, k, desc_.inputs[n.first_input + k]);
+  }
+
+  void input(uint32_t i, uint32_t k, const GradusInput& in) const {
+    const bool closure = takes_closure(desc_.nodes[i].op, k);
+    if (in.node == -1) return;
+    that(in.node >= 0 && static_cast<uint32_t>(in.node) < i, "an input refers to a node that is not an earlier one", i);
+    const uint32_t source = desc_.nodes[in.node].op;
+    that(in.output < op_info(source)->outputs, "an input refers to an output that does not exist", i);
+    that(is_closure_op(source) == closure, closure ? "a value in place of a closure" : "a closure in place of a value", i);
+  }
+
+  const GradusMaterial& desc_;
+};
+
+}  // namespace
+
+void check_program(const GradusMaterial& desc) { Checker(desc).run(); }
+
+}  // namespace gradus

@@ -1,0 +1,121 @@
+// Image Texture and Environment Texture nodes.
+#include "scene/image_store.h"
+#include "shading/context_ops.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+const Vec4 kMissing(1.0f, 0.0f, 1.0f, 1.0f);
+
+struct Sampler {
+  const ImageStore* images;
+  uint32_t index;
+  Interpolation interpolation;
+  Extension extension;
+  bool unassociate;
+  Vec4 at(const Vec2& uv) const { return images->lookup(index, uv, interpolation, extension, unassociate); }
+};
+
+Sampler sampler_of(const ResourceArgs& args, const ShadeContext& c) {
+  const uint32_t interpolation = std::min(args.mode >> 2 & 3, 2u);
+  return {c.images, args.resource, static_cast<Interpolation>(interpolation), static_cast<Extension>(args.mode >> 4 & 3),
+          (args.mode >> 6 & 1) != 0};
+}
+
+Vec2 sphere(const Vec3& p) {
+  const float length = glm::length(p);
+  if (!(length > 0.0f)) return Vec2(0.0f);
+  const float u = p.x == 0.0f && p.y == 0.0f ? 0.0f : (1.0f - std::atan2(p.x, p.y) * kInvPi) * 0.5f;
+  return Vec2(u, 1.0f - std::acos(std::clamp(p.z / length, -1.0f, 1.0f)) * kInvPi);
+}
+
+Vec2 tube(const Vec3& p) {
+  const float length = std::sqrt(p.x * p.x + p.y * p.y);
+  if (!(length > 0.0f)) return Vec2(0.0f);
+  return Vec2((1.0f - std::atan2(p.x, p.y) * kInvPi) * 0.5f, (p.z + 1.0f) * 0.5f);
+}
+
+// Mix of two of three sides near an edge.
+float edge_weight(float a, float b, float blend) { return saturate((a / (a + b) - 0.5f * (1.0f - blend)) / blend); }
+
+// Weights of the projections along x, y, z: the nearest side alone, but for a band of width `blend` at edges and corners.
+Vec3 box_weights(Vec3 n, float blend) {
+  n = glm::abs(n);
+  n /= n.x + n.y + n.z;
+  const float limit = 0.5f * (1.0f + blend);
+  if (n.x > limit * (n.x + n.y) && n.x > limit * (n.x + n.z)) return Vec3(1, 0, 0);
+  if (n.y > limit * (n.x + n.y) && n.y > limit * (n.y + n.z)) return Vec3(0, 1, 0);
+  if (n.z > limit * (n.x + n.z) && n.z > limit * (n.y + n.z)) return Vec3(0, 0, 1);
+  if (!(blend > 0.0f)) return Vec3(1, 0, 0);
+  if (n.z < (1.0f - limit) * (n.y + n.x)) {
+    const float w = edge_weight(n.x, n.y, blend);
+    return Vec3(w, 1.0f - w, 0.0f);
+  }
+  if (n.x < (1.0f - limit) * (n.y + n.z)) {
+    const float w = edge_weight(n.y, n.z, blend);
+    return Vec3(0.0f, w, 1.0f - w);
+  }
+  if (n.y < (1.0f - limit) * (n.x + n.z)) {
+    const float w = edge_weight(n.x, n.z, blend);
+    return Vec3(w, 0.0f, 1.0f - w);
+  }
+  return ((2.0f - limit) * n + (limit - 1.0f)) / (2.0f * limit - 1.0f);
+}
+
+Vec4 box(const Sampler& sampler, const Vec3& p, const Vec3& n, float blend) {
+  const Vec3 weights = box_weights(n, blend);
+  Vec4 sum(0.0f);
+  // Mirrored on the far sides, so that texts can be read from everywhere.
+  if (weights.x > 0.0f) sum += weights.x * sampler.at(Vec2(n.x < 0.0f ? 1.0f - p.y : p.y, p.z));
+  if (weights.y > 0.0f) sum += weights.y * sampler.at(Vec2(n.y > 0.0f ? 1.0f - p.x : p.x, p.z));
+  if (weights.z > 0.0f) sum += weights.z * sampler.at(Vec2(n.z > 0.0f ? 1.0f - p.y : p.y, p.x));
+  return sum;
+}
+
+// Equirectangular: +X in the middle of the picture.
+Vec2 latitude_longitude(const Vec3& d) {
+  const float u = d.x == 0.0f && d.y == 0.0f ? 0.5f : 0.5f - std::atan2(d.y, d.x) * (0.5f * kInvPi);
+  return Vec2(u, std::atan2(d.z, std::sqrt(d.x * d.x + d.y * d.y)) * kInvPi + 0.5f);
+}
+
+// Mirror ball, seen along +Y.
+Vec2 mirror_ball(Vec3 d) {
+  d.y -= 1.0f;
+  const float scale = 2.0f * std::sqrt(std::max(-0.5f * d.y, 0.0f));
+  if (scale > 0.0f) d /= scale;
+  return Vec2(0.5f * (d.x + 1.0f), 0.5f * (d.z + 1.0f));
+}
+
+bool unusable(const ResourceArgs& args, const ShadeContext& c) { return !c.images || args.resource >= c.images->size(); }
+
+}  // namespace
+
+void image(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  Vec4 color = kMissing;
+  if (!unusable(args, c)) {
+    const Sampler sampler = sampler_of(args, c);
+    const Vec3 p = args.v(0), remapped = (p - 0.5f) * 2.0f;
+    const uint32_t projection = args.mode & 3;
+    if (c.mean_textures)
+      color = Vec4(c.images->mean(args.resource), 1.0f);
+    else if (projection == GRADUS_PROJECTION_BOX)
+      color = box(sampler, p, normal_to_local(c, c.normal), args.float_count > 0 ? args.floats[0] : 0.0f);
+    else
+      color = sampler.at(projection == GRADUS_PROJECTION_SPHERE ? sphere(remapped)
+                         : projection == GRADUS_PROJECTION_TUBE ? tube(remapped)
+                                                                : Vec2(p));
+  }
+  out[0] = Vec4(Vec3(color), 1.0f);
+  out[1] = splat(color.w);
+}
+
+Vec4 environment(const ResourceArgs& args, const ShadeContext& c) {
+  if (unusable(args, c)) return kMissing;
+  if (c.mean_textures) return Vec4(c.images->mean(args.resource), 1.0f);
+  const Vec3 direction = safe_normalize(args.v(0));
+  const Vec2 uv = args.mode & 3 ? mirror_ball(direction) : latitude_longitude(direction);
+  return Vec4(Vec3(sampler_of(args, c).at(uv)), 1.0f);
+}
+
+}  // namespace gradus

@@ -1,0 +1,13 @@
+// Gradient noise on 1 to 4 dimensions (Perlin, "Improving Noise", 2002), hashed and scaled as in Blender. About -1…1.
+#pragma once
+
+#include "base/types.h"
+
+namespace gradus {
+
+float signed_noise(float p);
+float signed_noise(const Vec2& p);
+float signed_noise(const Vec3& p);
+float signed_noise(const Vec4& p);
+
+}  // namespace gradus

@@ -1,0 +1,187 @@
+// Principled BSDF of Blender 4.0 and later: layers, each scaled by what those above let through (Blender manual, "Principled BSDF").
+#include "shading/closure_ops.h"
+#include "shading/context_ops.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+enum Input {
+  kBaseColor,
+  kMetallic,
+  kRoughness,
+  kIor,
+  kDiffuseRoughness,
+  kSpecularLevel,
+  kSpecularTint,
+  kAnisotropic,
+  kAnisotropicRotation,
+  kTransmission,
+  kCoatWeight,
+  kCoatRoughness,
+  kCoatIor,
+  kCoatTint,
+  kSheenWeight,
+  kSheenRoughness,
+  kSheenTint,
+  kEmission,
+  kNormal,
+  kCoatNormal,
+  kTangent,
+};
+
+float f0_of_ior(float ior) {
+  const float root = (ior - 1.0f) / (ior + 1.0f);
+  return root * root;
+}
+
+float ior_of_f0(float f0) {
+  const float root = std::sqrt(std::clamp(f0, 0.0f, 0.99f));
+  return (1.0f + root) / (1.0f - root);
+}
+
+class Layers {
+ public:
+  Layers(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
+      : args_(args), c_(context), result_(result), weight_(args.weight), normal_(facing_normal(context, args.v(kNormal))) {}
+
+  void add() {
+    sheen();
+    coat();
+    result_->emission += weight_ * args_.v(kEmission);
+    if (args_.mode & kEmissionOnly) return;
+    metal();
+    glass();
+    specular();
+    diffuse();
+  }
+
+ private:
+  bool multiscatter() const { return (args_.mode & GRADUS_DISTRIBUTION_MULTIPLE) != 0; }
+
+  // Fills a reflection lobe; the layers below get the rest of its albedo.
+  void put_layer(const Lobe& lobe) {
+    const Rgb albedo = lobe_albedo(lobe, c_.wo);
+    if (!(args_.mode & kEmissionOnly)) {
+      if (Lobe* slot = result_->closures.add()) *slot = lobe;
+    }
+    weight_ = layered(weight_, albedo);
+  }
+
+  void sheen() {
+    const float amount = std::max(args_.f(kSheenWeight), 0.0f);
+    const Rgb tinted = weight_ * amount * glm::max(args_.v(kSheenTint), Vec3(0.0f));
+    if (!(max_component(tinted) > kWeightCutoff)) return;
+    Lobe lobe;
+    lobe.type = LobeType::Sheen;
+    lobe.pass = LightPass::Diffuse;
+    lobe.weight = tinted;
+    const Vec3 coat_normal = facing_normal(c_, args_.v(kCoatNormal));
+    const float coated = saturate(args_.f(kCoatWeight));
+    lobe.normal = facing_normal(c_, glm::mix(normal_, coat_normal, coated));
+    lobe.alpha_x = saturate(args_.f(kSheenRoughness));
+    put_layer(lobe);
+  }
+
+  void coat() {
+    const float amount = std::max(args_.f(kCoatWeight), 0.0f);
+    if (!(amount * max_component(weight_) > kWeightCutoff)) return;
+    Lobe lobe;
+    lobe.type = LobeType::GgxReflection;
+    lobe.pass = LightPass::Glossy;
+    lobe.fresnel = FresnelType::Dielectric;
+    lobe.weight = weight_ * amount;
+    lobe.normal = facing_normal(c_, args_.v(kCoatNormal));
+    lobe.ior = std::max(args_.f(kCoatIor), 1.0f);
+    const float roughness = saturate(args_.f(kCoatRoughness));
+    lobe.alpha_x = lobe.alpha_y = roughness * roughness;
+    put_layer(lobe);
+    tint_below_coat(lobe, saturate(amount));
+  }
+
+  // Beer's law: the tint is what a perpendicular crossing keeps, the path inside is longer by 1/cos.
+  void tint_below_coat(const Lobe& coat, float amount) {
+    const Vec3 tint = glm::max(args_.v(kCoatTint), Vec3(0.0f));
+    if (tint == Vec3(1.0f)) return;
+    const float cosine = glm::dot(c_.wo, coat.normal);
+    const float inside = std::sqrt(std::max(1.0f - (1.0f - cosine * cosine) / (coat.ior * coat.ior), 1e-6f));
+    const Vec3 kept = glm::pow(tint, Vec3(1.0f / inside));
+    weight_ *= glm::mix(Vec3(1.0f), kept, amount);
+  }
+
+  void metal() {
+    const float metallic = saturate(args_.f(kMetallic));
+    if (Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, weight_ * metallic, normal_)) {
+      lobe->fresnel = FresnelType::PrincipledMetal;
+      lobe->f0 = clamped_base();
+      lobe->f90 = glm::clamp(args_.v(kSpecularTint), 0.0f, 1.0f);
+      set_shape(lobe);
+    }
+    weight_ *= 1.0f - metallic;
+  }
+
+  void glass() {
+    const float transmission = saturate(args_.f(kTransmission));
+    const Vec3 outward = c_.backfacing ? -normal_ : normal_;
+    if (Lobe* lobe = add_lobe(result_, LobeType::GgxGlass, LightPass::Transmission, weight_ * transmission, outward)) {
+      lobe->fresnel = FresnelType::Schlick;
+      lobe->ior = std::max(args_.f(kIor), 1e-5f);
+      lobe->f0 = f0_of_ior(lobe->ior) * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
+      lobe->transmission_tint = glm::sqrt(clamped_base());
+      const float roughness = saturate(args_.f(kRoughness));
+      lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+      lobe->multiscatter = multiscatter();
+    }
+    weight_ *= 1.0f - transmission;
+  }
+
+  void specular() {
+    float ior = std::max(args_.f(kIor), 1e-5f), f0 = f0_of_ior(ior);
+    const float level = std::max(args_.f(kSpecularLevel), 0.0f);
+    if (level != 0.5f) {
+      f0 *= 2.0f * level;
+      const float adjusted = ior_of_f0(f0);
+      ior = ior < 1.0f ? 1.0f / adjusted : adjusted;
+    }
+    if (ior == 1.0f || !(max_component(weight_) > kWeightCutoff)) return;
+    Lobe lobe;
+    lobe.type = LobeType::GgxReflection;
+    lobe.pass = LightPass::Glossy;
+    lobe.fresnel = FresnelType::Schlick;
+    lobe.weight = weight_;
+    lobe.normal = normal_;
+    lobe.ior = ior;
+    lobe.f0 = f0 * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
+    set_shape(&lobe);
+    put_layer(lobe);
+  }
+
+  void diffuse() {
+    const Rgb color = glm::max(args_.v(kBaseColor), Vec3(0.0f));
+    if (Lobe* lobe = add_lobe(result_, LobeType::Diffuse, LightPass::Diffuse, weight_ * color, normal_)) {
+      lobe->alpha_x = saturate(args_.f(kDiffuseRoughness));
+      lobe->multiscatter = true;
+      lobe->f0 = color;
+    }
+  }
+
+  void set_shape(Lobe* lobe) {
+    set_principled_roughness(lobe, args_.f(kRoughness), args_.f(kAnisotropic));
+    if (args_.f(kAnisotropic) > 0.0f) lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
+    lobe->multiscatter = multiscatter();
+  }
+
+  Rgb clamped_base() const { return glm::clamp(args_.v(kBaseColor), 0.0f, 1.0f); }
+
+  const ClosureArgs& args_;
+  const ShadeContext& c_;
+  ShadeResult* result_;
+  Rgb weight_;
+  Vec3 normal_;
+};
+
+}  // namespace
+
+void add_principled(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result) { Layers(args, context, result).add(); }
+
+}  // namespace gradus

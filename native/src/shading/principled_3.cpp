@@ -1,0 +1,151 @@
+// Principled BSDF of Blender before 4.0 (after Burley 2012 and 2015). Subsurface comes mixed into the diffuse colour.
+#include "shading/closure_ops.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+enum Input {
+  kBaseColor,
+  kDiffuseColor,
+  kMetallic,
+  kSpecular,
+  kSpecularTint,
+  kRoughness,
+  kAnisotropic,
+  kAnisotropicRotation,
+  kSheen,
+  kSheenTint,
+  kClearcoat,
+  kClearcoatRoughness,
+  kIor,
+  kTransmission,
+  kTransmissionRoughness,
+  kNormal,
+  kClearcoatNormal,
+  kTangent,
+};
+
+class Parts {
+ public:
+  Parts(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
+      : args_(args), c_(context), result_(result), normal_(facing_normal(context, args.v(kNormal))) {
+    base_ = glm::max(args.v(kBaseColor), Vec3(0.0f));
+    const float grey = luminance(base_);
+    hue_ = grey > 0.0f ? base_ / grey : Rgb(1.0f);
+    metallic_ = saturate(args.f(kMetallic));
+    transmission_ = saturate(args.f(kTransmission)) * (1.0f - metallic_);
+    diffuse_ = (1.0f - metallic_) * (1.0f - saturate(args.f(kTransmission)));
+  }
+
+  void add() {
+    diffuse();
+    sheen();
+    specular();
+    glass();
+    clearcoat();
+  }
+
+ private:
+  static Rgb tinted(const Rgb& color, float amount) { return Rgb(1.0f - amount) + color * amount; }
+
+  void diffuse() {
+    const Rgb color = glm::max(args_.v(kDiffuseColor), Vec3(0.0f));
+    add_lobe(result_, LobeType::Diffuse, LightPass::Diffuse, args_.weight * color * diffuse_, normal_);
+  }
+
+  void sheen() {
+    const Rgb color = tinted(hue_, saturate(args_.f(kSheenTint)));
+    Lobe* lobe = add_lobe(result_, LobeType::Sheen, LightPass::Diffuse, args_.weight * color * (diffuse_ * std::max(args_.f(kSheen), 0.0f)),
+                          normal_);
+    if (lobe) lobe->fresnel = FresnelType::Schlick;
+  }
+
+  void specular() {
+    const float amount = std::max(args_.f(kSpecular), 0.0f);
+    if (amount <= kWeightCutoff && metallic_ <= kWeightCutoff) return;
+    const Rgb f0 = tinted(hue_, saturate(args_.f(kSpecularTint))) * (0.08f * amount * (1.0f - metallic_)) + base_ * metallic_;
+    Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, args_.weight * (1.0f - transmission_), normal_);
+    if (!lobe) return;
+    set_principled_roughness(lobe, args_.f(kRoughness), args_.f(kAnisotropic));
+    if (args_.f(kAnisotropic) > 0.0f) lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
+    lobe->multiscatter = args_.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+    lobe->ior = 2.0f / (1.0f - std::sqrt(std::min(0.08f * amount, 0.99f))) - 1.0f;
+    lobe->fresnel = FresnelType::Schlick;
+    lobe->f0 = f0;
+    if (lobe->ior == 1.0f) {
+      // No step at the interface: the curve that Fresnel follows is flat.
+      lobe->fresnel = FresnelType::None;
+      lobe->weight *= f0;
+    }
+  }
+
+  void glass() {
+    if (!(transmission_ > kWeightCutoff)) return;
+    const float roughness = saturate(args_.f(kRoughness));
+    if (roughness <= 0.05f || !(args_.mode & GRADUS_DISTRIBUTION_MULTIPLE))
+      single_scattering_glass(roughness);
+    else
+      multiple_scattering_glass(roughness);
+  }
+
+  // Reflection and refraction are chosen by Fresnel at the shading normal, and may differ in roughness.
+  void single_scattering_glass(float roughness) {
+    const float ior = std::max(args_.f(kIor), 1e-5f);
+    const float reflected = dielectric_reflectance(glm::dot(c_.wo, normal_), c_.backfacing ? 1.0f / ior : ior);
+    const Rgb weight = args_.weight * transmission_;
+    if (Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, weight * reflected, normal_)) {
+      lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+      lobe->fresnel = FresnelType::Schlick;
+      lobe->ior = ior;
+      lobe->f0 = tinted(base_, saturate(args_.f(kSpecularTint)));
+    }
+    const Vec3 outward = c_.backfacing ? -normal_ : normal_;
+    if (Lobe* lobe = add_lobe(result_, LobeType::GgxRefraction, LightPass::Transmission, weight * base_ * (1.0f - reflected), outward)) {
+      float refracted = roughness;
+      if (!(args_.mode & GRADUS_DISTRIBUTION_MULTIPLE))
+        refracted = 1.0f - (1.0f - roughness) * (1.0f - saturate(args_.f(kTransmissionRoughness)));
+      lobe->alpha_x = lobe->alpha_y = refracted * refracted;
+      lobe->ior = ior;
+    }
+  }
+
+  void multiple_scattering_glass(float roughness) {
+    const Vec3 outward = c_.backfacing ? -normal_ : normal_;
+    Lobe* lobe = add_lobe(result_, LobeType::GgxGlass, LightPass::Transmission, args_.weight * transmission_, outward);
+    if (!lobe) return;
+    lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+    lobe->ior = std::max(args_.f(kIor), 1e-5f);
+    lobe->fresnel = FresnelType::Dielectric;
+    lobe->transmission_tint = base_;
+    lobe->multiscatter = true;
+  }
+
+  void clearcoat() {
+    const float amount = saturate(args_.f(kClearcoat));
+    Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, args_.weight * (0.25f * amount),
+                          facing_normal(c_, args_.v(kClearcoatNormal)));
+    if (!lobe) return;
+    const float roughness = saturate(args_.f(kClearcoatRoughness));
+    lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+    lobe->fresnel = FresnelType::Schlick;
+    lobe->ior = 1.5f;
+    lobe->f0 = Rgb(0.04f);
+  }
+
+  const ClosureArgs& args_;
+  const ShadeContext& c_;
+  ShadeResult* result_;
+  Vec3 normal_;
+  Rgb base_;
+  Rgb hue_;
+  float metallic_;
+  float transmission_;
+  float diffuse_;
+};
+
+}  // namespace
+
+void add_principled_3(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result) { Parts(args, context, result).add(); }
+
+}  // namespace gradus

@@ -1,0 +1,76 @@
+// Light Path, Layer Weight, Fresnel and Light Falloff nodes.
+#include <cfloat>
+
+#include "shading/context_ops.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+Vec3 normal_or_own(const Vec3& n, const ShadeContext& c) { return n == Vec3(0.0f) ? c.normal : safe_normalize(n); }
+
+float flag(const ShadeContext& c, uint32_t bit) { return c.ray.flags & bit ? 1.0f : 0.0f; }
+
+}  // namespace
+
+float light_path(uint32_t mode, const ShadeContext& c) {
+  switch (mode) {
+    case GRADUS_LIGHT_PATH_CAMERA:
+      return flag(c, kRayCamera);
+    case GRADUS_LIGHT_PATH_SHADOW:
+      return flag(c, kRayShadow);
+    case GRADUS_LIGHT_PATH_DIFFUSE:
+      return flag(c, kRayDiffuse);
+    case GRADUS_LIGHT_PATH_GLOSSY:
+      return flag(c, kRayGlossy);
+    case GRADUS_LIGHT_PATH_SINGULAR:
+      return flag(c, kRaySingular);
+    case GRADUS_LIGHT_PATH_REFLECTION:
+      return flag(c, kRayReflection);
+    case GRADUS_LIGHT_PATH_TRANSMISSION:
+      return flag(c, kRayTransmission);
+    case GRADUS_LIGHT_PATH_LENGTH:
+      return std::min(c.ray.length, FLT_MAX);
+    case GRADUS_LIGHT_PATH_DEPTH:
+      return c.ray.depth;
+    case GRADUS_LIGHT_PATH_DIFFUSE_DEPTH:
+      return c.ray.diffuse_depth;
+    case GRADUS_LIGHT_PATH_GLOSSY_DEPTH:
+      return c.ray.glossy_depth;
+    case GRADUS_LIGHT_PATH_TRANSPARENT_DEPTH:
+      return c.ray.transparent_depth;
+    default:
+      return c.ray.transmission_depth;
+  }
+}
+
+void layer_weight(const OpArgs& args, const ShadeContext& c, Vec4* out) {
+  const float cosine = glm::dot(c.wo, normal_or_own(args.v(1), c));
+  float blend = args.f(0);
+  const float eta = std::max(1.0f - blend, 1e-5f);
+  out[0] = splat(dielectric_reflectance(cosine, c.backfacing ? eta : 1.0f / eta));
+  float facing = std::fabs(cosine);
+  if (blend != 0.5f) {
+    blend = std::clamp(blend, 0.0f, 1.0f - 1e-5f);
+    facing = std::pow(facing, blend < 0.5f ? 2.0f * blend : 0.5f / (1.0f - blend));
+  }
+  out[1] = splat(1.0f - facing);
+}
+
+float fresnel(const OpArgs& args, const ShadeContext& c) {
+  const float eta = std::max(args.f(0), 1e-5f);
+  return dielectric_reflectance(glm::dot(c.wo, normal_or_own(args.v(1), c)), c.backfacing ? 1.0f / eta : eta);
+}
+
+// Undoes the inverse square law in part: strength times the ray's length (linear) or its square (constant).
+float light_falloff(const OpArgs& args, const ShadeContext& c) {
+  const float length = std::min(c.ray.length, 1e18f);
+  float strength = args.f(0);
+  if (args.mode == 1) strength *= length;
+  if (args.mode == 2) strength *= length * length;
+  const float smooth = args.f(1), square = length * length;
+  if (smooth > 0.0f) strength *= square / (smooth + square);
+  return strength;
+}
+
+}  // namespace gradus

@@ -1,0 +1,67 @@
+#include "shading/shade.h"
+
+#include "shading/context.h"
+#include "shading/interpreter.h"
+#include "shading/material.h"
+
+namespace gradus {
+namespace {
+
+const MaterialData& material_of(const Snapshot& snapshot, uint32_t index) {
+  return *snapshot.materials[index < snapshot.materials.size() ? index : 0];
+}
+
+void clear(ShadeResult* result) {
+  result->closures.clear();
+  result->emission = result->transparency = result->holdout = Rgb(0.0f);
+  result->fallback = false;
+}
+
+Rgb emission_of(const MaterialData& material, const ShadeContext& context) {
+  if (!material.emits) return Rgb(0.0f);
+  if (material.emission_is_constant) return material.constant_emission;
+  ShadeResult result;
+  run_program(material.emission, context, &result);
+  return result.emission;
+}
+
+}  // namespace
+
+void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+                   ShadeResult* result) {
+  const MaterialData& material = material_of(snapshot, point.material);
+  clear(result);
+  result->fallback = material.uses_fallback;
+  const ShadeContext context = surface_context(snapshot, point, wo, ray);
+  run_program(material.surface, context, result);
+  result->closures.finish(wo, context.geometric_normal, roughness_threshold);
+}
+
+Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+  const MaterialData& material = material_of(snapshot, point.material);
+  if (!material.emits) return Rgb(0.0f);
+  if (material.emission_is_constant) return material.constant_emission;
+  return emission_of(material, surface_context(snapshot, point, wo, ray));
+}
+
+Rgb shade_transparency(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+  const MaterialData& material = material_of(snapshot, point.material);
+  if (!material.may_be_transparent || ((ray.flags & kRayShadow) && !material.transparent_shadow)) return Rgb(0.0f);
+  if (material.transparency_is_constant) return material.constant_transparency;
+  ShadeResult result;
+  run_program(material.transparency, surface_context(snapshot, point, wo, ray), &result);
+  return result.transparency;
+}
+
+Rgb shade_world(const Snapshot& snapshot, const Vec3& direction, const RayState& ray) {
+  if (snapshot.world_material >= snapshot.materials.size()) return Rgb(0.0f);
+  const MaterialData& material = *snapshot.materials[snapshot.world_material];
+  return emission_of(material, background_context(snapshot, direction, ray));
+}
+
+Rgb shade_lamp(const Snapshot& snapshot, uint32_t material, const LampPoint& point, const RayState& ray) {
+  if (material >= snapshot.materials.size()) return Rgb(1.0f);
+  return emission_of(*snapshot.materials[material], lamp_context(snapshot, point, ray));
+}
+
+}  // namespace gradus

@@ -1,0 +1,121 @@
+// Texture Coordinate, Camera Data and Vector Transform nodes.
+#include <cstring>
+
+#include "shading/context_ops.h"
+#include "shading/scalar.h"
+
+namespace gradus {
+namespace {
+
+Mat4 matrix(const float* values) {
+  Mat4 m;
+  std::memcpy(&m[0][0], values, sizeof(float) * 16);
+  return m;
+}
+
+// The camera's matrix has no scale. Camera space looks along +z.
+Vec3 direction_to_camera(const Mat4& camera, const Vec3& v) {
+  return Vec3(glm::dot(Vec3(camera[0]), v), glm::dot(Vec3(camera[1]), v), -glm::dot(Vec3(camera[2]), v));
+}
+Vec3 direction_from_camera(const Mat4& camera, const Vec3& v) {
+  return Vec3(camera[0]) * v.x + Vec3(camera[1]) * v.y - Vec3(camera[2]) * v.z;
+}
+
+Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
+  const Vec3 p = world_position(c);
+  if (args.float_count >= 16) return Vec3(matrix(args.floats) * Vec4(p, 1.0f));
+  return c.instance ? Vec3(c.instance->to_local * Vec4(c.position, 1.0f)) : p;
+}
+
+// 0…1 over the picture.
+Vec3 window(const ShadeContext& c) {
+  if (!c.snapshot || !c.snapshot->has_camera) return Vec3(0.0f);
+  const GradusCamera& camera = c.snapshot->camera;
+  const Vec3 p = to_camera(c, c.position);
+  Vec2 plane(p);
+  if (camera.type == GRADUS_CAMERA_PERSPECTIVE) plane = p.z != 0.0f ? plane / p.z : Vec2(0.0f);
+  const float* w = camera.window;
+  return Vec3(safe_divide(plane.x - w[0], w[1] - w[0]), safe_divide(plane.y - w[2], w[3] - w[2]), 0.0f);
+}
+
+Vec3 uv_map(const ResourceArgs& args, const ShadeContext& c) {
+  if (!c.instance) return Vec3(c.uv, 0.0f);
+  return Vec3(Vec2(attribute_value(c, args.name, true, nullptr)), 0.0f);
+}
+
+enum Space : uint32_t { kWorld = 0, kObject = 1, kCamera = 2 };
+
+Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
+  const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
+  const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
+  if (space == kObject && c.instance) {
+    if (kind == GRADUS_TRANSFORM_NORMAL) return c.instance->normal_to_world * v;
+    return Vec3(c.instance->to_world * Vec4(v, w)) + origin * w;
+  }
+  if (space == kCamera && c.snapshot && c.snapshot->has_camera) {
+    const Mat4 camera = matrix(c.snapshot->camera.matrix);
+    return direction_from_camera(camera, v) + (Vec3(camera[3]) + origin) * w;
+  }
+  return v;
+}
+
+Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
+  const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
+  const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
+  if (space == kObject && c.instance) {
+    if (kind == GRADUS_TRANSFORM_NORMAL) return glm::transpose(Mat3(c.instance->to_world)) * v;
+    return Vec3(c.instance->to_local * Vec4(v - origin * w, w));
+  }
+  if (space == kCamera && c.snapshot && c.snapshot->has_camera) {
+    const Mat4 camera = matrix(c.snapshot->camera.matrix);
+    return direction_to_camera(camera, v - (Vec3(camera[3]) + origin) * w);
+  }
+  return v;
+}
+
+}  // namespace
+
+// p: internal space; backgrounds: a direction.
+Vec3 to_camera(const ShadeContext& c, const Vec3& p) {
+  if (!c.snapshot || !c.snapshot->has_camera) return p;
+  const Mat4 camera = matrix(c.snapshot->camera.matrix);
+  return direction_to_camera(camera, c.is_background ? p : p - Vec3(camera[3]));
+}
+
+Vec3 texture_coordinate(const ResourceArgs& args, const ShadeContext& c) {
+  switch (args.mode) {
+    case GRADUS_TEX_COORD_NORMAL:
+      return normal_to_local(c, c.normal);
+    case GRADUS_TEX_COORD_UV:
+      return uv_map(args, c);
+    case GRADUS_TEX_COORD_OBJECT:
+      return to_object(args, c);
+    case GRADUS_TEX_COORD_CAMERA:
+      return to_camera(c, c.position);
+    case GRADUS_TEX_COORD_WINDOW:
+      return window(c);
+    case GRADUS_TEX_COORD_REFLECTION:
+      return c.instance ? c.normal * (2.0f * glm::dot(c.wo, c.normal)) - c.wo : c.wo;
+    case GRADUS_TEX_COORD_INSTANCER_GENERATED:
+      return c.instance ? c.instance->generated : Vec3(0.0f);
+    case GRADUS_TEX_COORD_INSTANCER_UV:
+      return c.instance ? Vec3(c.instance->uv, 0.0f) : Vec3(0.0f);
+    default:
+      return generated(c);
+  }
+}
+
+void camera_data(const ShadeContext& c, Vec4* out) {
+  const Vec3 p = to_camera(c, c.position);
+  out[0] = value(safe_normalize(p));
+  out[1] = splat(p.z);
+  out[2] = splat(glm::length(p));
+}
+
+Vec3 vector_transform(const OpArgs& args, const ShadeContext& c) {
+  const uint32_t kind = args.mode & 3;
+  const Vec3 moved = from_world(args.mode >> 4 & 3, kind, to_world(args.mode >> 2 & 3, kind, args.v(0), c), c);
+  return kind == GRADUS_TRANSFORM_NORMAL ? safe_normalize(moved) : moved;
+}
+
+}  // namespace gradus
