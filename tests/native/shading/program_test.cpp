@@ -1,0 +1,223 @@
+// Compilation: folding, skipping, registers, and refusal of what is no program.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/error.h"
+#include "shading/op_info.h"
+#include "shading/program_builder.h"
+#include "shading/scalar.h"
+
+namespace gradus::test {
+namespace {
+
+void expect_near(const Rgb& a, const Rgb& b, float tolerance = 1e-5f) {
+  for (int i = 0; i < 3; i++) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
+}
+
+int emission(ProgramBuilder* b, const In& color) { return b->add(GRADUS_OP_EMISSION, {color, In(1.0f)}); }
+
+TEST(NodeProgram, ConstantsAreFolded) {
+  ProgramBuilder b;
+  const int sum = b.add(GRADUS_OP_MATH, {In(2.0f), In(3.0f)}, GRADUS_MATH_ADD);
+  const int scaled = b.add(GRADUS_OP_VECTOR_MATH, {In(Vec3(1, 2, 3)), In(0.0f), In(0.0f), In::from(sum)}, GRADUS_VECTOR_SCALE);
+  const auto m = b.compile(emission(&b, In::from(scaled)));
+  EXPECT_EQ(m->surface.code.size(), 1u);
+  EXPECT_TRUE(m->emission_is_constant);
+  expect_near(m->constant_emission, Rgb(5, 10, 15));
+  expect_near(run(m->surface).emission, Rgb(5, 10, 15));
+}
+
+// A value that only the point decides gives the same through registers as through folding.
+TEST(NodeProgram, EvaluationEqualsFolding) {
+  ShadeContext c;
+  c.position = Vec3(0.3f, -1.2f, 2.5f);
+  const auto graph = [&](bool folded) {
+    ProgramBuilder b;
+    const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+    const In in = folded ? In(c.position) : In::from(p);
+    const int n = b.add(GRADUS_OP_NOISE, {in, In(0.0f), In(3.0f), In(2.5f), In(0.6f), In(2.1f), In(0.0f), In(0.0f), In(0.4f)},
+                        GRADUS_NOISE_MODE(3, 0, 1, 0));
+    const int h = b.add(GRADUS_OP_HUE_SATURATION, {In(0.6f), In(1.3f), In(0.8f), In(0.9f), In::from(n, 1)});
+    const int m = b.add(GRADUS_OP_MIX_COLOR, {In::from(n), In::from(h), in}, GRADUS_BLEND_OVERLAY);
+    const auto compiled = b.compile(emission(&b, In::from(m)));
+    EXPECT_EQ(compiled->surface.code.size() == 1u, folded);
+    return run(compiled->surface, c).emission;
+  };
+  expect_near(graph(true), graph(false));
+}
+
+TEST(NodeProgram, ConstantMixFollowsOneBranch) {
+  ProgramBuilder b;
+  const int red = emission(&b, In(Vec3(1, 0, 0)));
+  const int diffuse = b.add(GRADUS_OP_DIFFUSE, {In(0.5f)});
+  const int mix = b.add(GRADUS_OP_MIX_SHADER, {In(1.0f), In::from(red), In::from(diffuse)});
+  const auto m = b.compile(mix);
+  EXPECT_FALSE(m->emits);
+  EXPECT_EQ(m->surface.code.size(), 1u);
+  EXPECT_EQ(run(m->surface).closures.count(), 1);
+}
+
+TEST(NodeProgram, MixWeightsAndClampsTheFactor) {
+  for (const float f : {-0.5f, 0.0f, 0.25f, 1.0f, 2.0f}) {
+    ProgramBuilder b;
+    const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+    const int red = emission(&b, In(Vec3(1, 0, 0))), green = emission(&b, In(Vec3(0, 1, 0)));
+    const auto m = b.compile(b.add(GRADUS_OP_MIX_SHADER, {In::from(p), In::from(red), In::from(green)}));
+    ShadeContext c;
+    c.position = Vec3(f, 9.0f, 9.0f);
+    const float t = saturate(f);
+    expect_near(run(m->surface, c).emission, Rgb(1.0f - t, t, 0.0f));
+  }
+}
+
+// A value used by a branch that is skipped, and after it.
+TEST(NodeProgram, SharedValuesSurviveSkippedBranches) {
+  ProgramBuilder b;
+  const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+  const int doubled = b.add(GRADUS_OP_VECTOR_MATH, {In::from(p), In::from(p)}, GRADUS_VECTOR_ADD);
+  const int first = emission(&b, In::from(doubled)), second = emission(&b, In::from(doubled)), third = emission(&b, In::from(doubled));
+  const int inner = b.add(GRADUS_OP_MIX_SHADER, {In::from(p), In::from(first), In::from(second)});
+  const auto m = b.compile(b.add(GRADUS_OP_ADD_SHADER, {In::from(inner), In::from(third)}));
+  for (const float x : {0.0f, 0.5f, 1.0f}) {
+    ShadeContext c;
+    c.position = Vec3(x, 2.0f, 3.0f);
+    expect_near(run(m->surface, c).emission, c.position * 4.0f);
+  }
+}
+
+TEST(NodeProgram, RegistersAreReused) {
+  ProgramBuilder b;
+  int last = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+  for (int i = 0; i < 5000; i++) last = b.add(GRADUS_OP_VECTOR_MATH, {In::from(last), In(Vec3(1.0f, 0.0f, 0.0f))}, GRADUS_VECTOR_ADD);
+  const auto m = b.compile(emission(&b, In::from(last)));
+  EXPECT_LE(m->surface.register_count, 2);
+  expect_near(run(m->surface).emission, Rgb(5000, 0, 0));
+}
+
+TEST(NodeProgram, UnusedNodesAreDropped) {
+  ProgramBuilder b;
+  const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+  b.add(GRADUS_OP_NOISE, {In::from(p)}, GRADUS_NOISE_MODE(3, 0, 1, 0));
+  EXPECT_EQ(b.compile(emission(&b, In::from(p)))->surface.code.size(), 2u);
+}
+
+TEST(NodeProgram, PartsHoldWhatTheyNeed) {
+  ProgramBuilder b;
+  const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+  const int noise = b.add(GRADUS_OP_NOISE, {In::from(p), In(0.0f), In(5.0f)}, GRADUS_NOISE_MODE(3, 0, 1, 0));
+  const int diffuse = b.add(GRADUS_OP_DIFFUSE, {In::from(noise, 1)});
+  const int clear = b.add(GRADUS_OP_TRANSPARENT, {In(Vec3(0.5f))});
+  const int light = emission(&b, In(Vec3(2.0f)));
+  const int both = b.add(GRADUS_OP_ADD_SHADER, {In::from(diffuse), In::from(light)});
+  const auto m = b.compile(b.add(GRADUS_OP_MIX_SHADER, {In(0.25f), In::from(clear), In::from(both)}));
+  EXPECT_TRUE(m->emits && m->may_be_transparent && m->has_bsdf);
+  EXPECT_TRUE(m->emission_is_constant && m->transparency_is_constant);
+  expect_near(m->constant_emission, Rgb(0.5f));
+  expect_near(m->constant_transparency, Rgb(0.375f));
+  EXPECT_EQ(m->transparency.code.size(), 1u);
+}
+
+TEST(NodeProgram, RoughnessIsKnownWhereConstant) {
+  ProgramBuilder rough, smooth;
+  EXPECT_FALSE(rough.compile(rough.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.9f)}))->may_be_specular);
+  EXPECT_TRUE(smooth.compile(smooth.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.1f)}))->may_be_specular);
+}
+
+TEST(NodeProgram, NoSurfaceIsBlack) {
+  const auto m = ProgramBuilder().compile(-1);
+  EXPECT_TRUE(m->surface.empty() && !m->emits && !m->has_bsdf);
+}
+
+TEST(NodeProgram, DefaultMaterialIsGrey) {
+  const ShadeResult r = run(default_material()->surface);
+  ASSERT_EQ(r.closures.count(), 1);
+  expect_near(r.closures.lobe(0).weight, Rgb(0.8f));
+}
+
+template <class F>
+void expect_refused(F change) {
+  ProgramBuilder b;
+  const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+  const int ramp = b.add(GRADUS_OP_RAMP, {In::from(p)}, 0, {0, 0, 0, 1, 1, 1, 1, 1});
+  const int surface = emission(&b, In::from(ramp));
+  GradusMaterial d = b.desc(surface);
+  compile_material(d, ImageStore());
+  change(&b, &d);
+  try {
+    compile_material(d, ImageStore());
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), GRADUS_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(e.what()).find("'test'"), std::string::npos) << e.what();
+  }
+}
+
+TEST(NodeProgram, GarbageIsRefused) {
+  using B = ProgramBuilder*;
+  using D = GradusMaterial*;
+  expect_refused([](B b, D) { b->nodes_[0].op = 31; });
+  expect_refused([](B b, D) { b->nodes_[0].op = 4000000000u; });
+  expect_refused([](B b, D) { b->nodes_[0].mode = 99; });
+  expect_refused([](B b, D) { b->nodes_[1].input_count = 7; });
+  expect_refused([](B b, D) { b->nodes_[1].first_input = 0xfffffff0u; });
+  expect_refused([](B b, D) { b->nodes_[1].first_float = 1; });
+  expect_refused([](B b, D) { b->nodes_[1].float_count = 7; });
+  expect_refused([](B b, D) { b->nodes_[0].resource = 1; });
+  expect_refused([](B b, D) { b->inputs_[0].node = 1; });
+  expect_refused([](B b, D) { b->inputs_[0].node = -2; });
+  expect_refused([](B b, D) { b->inputs_[0].output = 1; });
+  expect_refused([](B b, D) { b->inputs_[1].node = 2; });
+  expect_refused([](B, D d) { d->surface = 1; });
+  expect_refused([](B, D d) { d->surface = 3; });
+  expect_refused([](B, D d) { d->surface = -2; });
+  expect_refused([](B, D d) { d->nodes = nullptr; });
+  expect_refused([](B, D d) { d->inputs = nullptr; });
+}
+
+TEST(NodeProgram, ExponentialClosureTreesAreRefused) {
+  ProgramBuilder b;
+  int last = emission(&b, In(1.0f));
+  for (int i = 0; i < 60; i++) last = b.add(GRADUS_OP_ADD_SHADER, {In::from(last), In::from(last)});
+  EXPECT_THROW(b.compile(last), Error);
+}
+
+// Any program that passes the checks runs, with any constants.
+TEST(NodeProgram, RandomProgramsDoNotCrash) {
+  std::mt19937 random(7);
+  const auto below = [&](uint32_t n) { return static_cast<uint32_t>(random() % n); };
+  const float odd[] = {0.0f, -1.0f, 0.5f, 1e30f, -1e30f, kInfinity, -kInfinity, std::nanf(""), 3.0f, 1e-30f, 17.3f};
+  int accepted = 0;
+  for (int round = 0; round < 3000; round++) {
+    ProgramBuilder b;
+    for (int n = 0; n < 12; n++) {
+      uint32_t op = below(128);
+      if (n == 11) op = GRADUS_OP_EMISSION;
+      const OpInfo* info = op_info(op);
+      if (!info || (info->closure && n < 11)) continue;
+      std::vector<In> inputs;
+      for (uint32_t k = 0; k < info->inputs; k++) {
+        In in(odd[below(11)]);
+        if (!b.nodes_.empty() && below(2)) {
+          const uint32_t source = below(static_cast<uint32_t>(b.nodes_.size()));
+          in = In::from(static_cast<int>(source), below(op_info(b.nodes_[source].op)->outputs));
+        }
+        inputs.push_back(in);
+      }
+      std::vector<float> floats;
+      for (int k = 0; k < 16; k++) floats.push_back(odd[below(11)]);
+      if (op == GRADUS_OP_CURVES) floats.resize(15);
+      b.add(op, inputs, below(4) ? 0 : below(8), floats);
+    }
+    try {
+      const auto m = b.compile(static_cast<int>(b.nodes_.size()) - 1);
+      run(m->surface);
+      accepted++;
+    } catch (const Error&) {
+    }
+  }
+  EXPECT_GT(accepted, 300);
+}
+
+}  // namespace
+}  // namespace gradus::test
