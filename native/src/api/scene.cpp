@@ -3,7 +3,10 @@
 
 #include "api/guard.h"
 #include "api/objects.h"
+#include "api/recorder.h"
 #include "api/scene_args.h"
+#include "api/structs.h"
+#include "render/options.h"
 
 using namespace gradus;
 
@@ -48,6 +51,7 @@ GradusError gradus_scene_set_mesh(GradusScene scene, uint64_t key, const GradusM
     api::check_key(key);
     const api::MeshArgs args(mesh);
     s.scene.set_mesh(key, args.mesh);
+    if (s.recorder) s.recorder->set_mesh(key, args.mesh);
   });
 }
 
@@ -56,33 +60,49 @@ GradusError gradus_scene_set_image(GradusScene scene, uint64_t key, const Gradus
     api::check_key(key);
     const api::ImageArgs args(image);
     s.scene.set_image(key, args.image);
+    if (s.recorder) s.recorder->set_image(key, args.image);
   });
 }
 
 GradusError gradus_scene_set_material(GradusScene scene, uint64_t key, const GradusMaterial* material) {
   return with_scene(scene, [&](api::SceneObject& s) {
     api::check_key(key);
-    s.scene.set_material(key, api::read_material(material));
+    const GradusMaterial args = api::read_material(material);
+    s.scene.set_material(key, args);
+    if (s.recorder) s.recorder->set_material(key, args);
   });
 }
 
 GradusError gradus_scene_set_instances(GradusScene scene, const GradusInstances* instances) {
-  return with_scene(scene, [&](api::SceneObject& s) { s.scene.set_instances(api::read_instances(instances)); });
+  return with_scene(scene, [&](api::SceneObject& s) {
+    const GradusInstances args = api::read_instances(instances);
+    s.scene.set_instances(args);
+    if (s.recorder) s.recorder->set_instances(args);
+  });
 }
 
 GradusError gradus_scene_set_lights(GradusScene scene, const GradusLight* lights, size_t count) {
   return with_scene(scene, [&](api::SceneObject& s) {
     const std::vector<GradusLight> copies = api::read_lights(lights, count);
     s.scene.set_lights(copies.data(), copies.size());
+    if (s.recorder) s.recorder->set_lights(copies);
   });
 }
 
 GradusError gradus_scene_set_camera(GradusScene scene, const GradusCamera* camera) {
-  return with_scene(scene, [&](api::SceneObject& s) { s.scene.set_camera(api::read_camera(camera)); });
+  return with_scene(scene, [&](api::SceneObject& s) {
+    const GradusCamera args = api::read_camera(camera);
+    s.scene.set_camera(args);
+    if (s.recorder) s.recorder->set_camera(args);
+  });
 }
 
 GradusError gradus_scene_set_world(GradusScene scene, const GradusWorld* world) {
-  return with_scene(scene, [&](api::SceneObject& s) { s.scene.set_world(api::read_world(world)); });
+  return with_scene(scene, [&](api::SceneObject& s) {
+    const GradusWorld args = api::read_world(world);
+    s.scene.set_world(args);
+    if (s.recorder) s.recorder->set_world(args);
+  });
 }
 
 GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uint64_t key) {
@@ -90,9 +110,39 @@ GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uint64_t key) 
     api::check_key(key);
     if (kind > GRADUS_KIND_MATERIAL) throw invalid_argument("kind is " + std::to_string(kind));
     s.scene.remove(static_cast<GradusObjectKind>(kind), key);
+    if (s.recorder) s.recorder->remove(static_cast<GradusObjectKind>(kind), key);
   });
 }
 
 GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cancel, float* progress) {
   return with_scene(scene, [&](api::SceneObject& s) { s.scene.commit(cancel, progress); });
+}
+
+GradusError gradus_scene_record(GradusScene scene, uint32_t enabled) {
+  return with_scene(scene, [&](api::SceneObject& s) {
+    if (enabled == 0) {
+      s.recorder.reset();
+    } else if (!s.recorder) {
+      s.recorder = std::make_shared<api::SceneRecorder>();
+    }
+  });
+}
+
+GradusError gradus_scene_save(GradusScene scene, const GradusSettings* settings, const char* path) {
+  return with_scene(scene, [&](api::SceneObject& s) {
+    const std::string target = &api::require(path, "path");
+    if (!s.recorder) throw invalid_operation("the scene was not recorded: call gradus_scene_record before it is set");
+    s.recorder->save(target, settings ? api::read_struct(settings, "settings", default_settings()) : default_settings());
+  });
+}
+
+GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene* scene, GradusSettings* settings) {
+  return api::guard([&] {
+    api::require(scene, "scene") = 0;
+    auto object = std::make_shared<api::SceneObject>(api::find_handle<Device>(device));
+    const GradusSettings loaded = api::load_scene(&api::require(path, "path"), &object->scene);
+    object->scene.commit(nullptr, nullptr);
+    if (settings) api::write_struct(settings, loaded, "settings");
+    *scene = api::add_handle(std::move(object));
+  });
 }

@@ -1,0 +1,82 @@
+#include "api/recorder.h"
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "api/archive.h"
+#include "api/archive_structs.h"
+#include "api/scene_file.h"
+#include "frame/file_writer.h"
+#include "render/options.h"
+
+namespace gradus::api {
+namespace {
+
+// Empty where the file cannot be read: then the record names the path, and its reader warns as the renderer would.
+std::vector<char> read_bytes(const char* path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void write_record(FileWriter* file, RecordKind kind, uint64_t key, const std::vector<char>& bytes) {
+  const RecordHeader header{static_cast<uint32_t>(kind), 0, key, bytes.size(), checksum(bytes.data(), bytes.size())};
+  static const char padding[kArchiveAlignment] = {};
+  file->write(&header, sizeof(header));
+  file->write(bytes.data(), bytes.size());
+  file->write(padding, padded(bytes.size()) - bytes.size());
+}
+
+}  // namespace
+
+template <class T>
+void SceneRecorder::keep(RecordKind kind, uint64_t key, T value) {
+  ArchiveWriter writer;
+  visit(writer, value);
+  records_[{kind, key}] = writer.take();
+}
+
+void SceneRecorder::set_mesh(uint64_t key, const GradusMesh& mesh) { keep(RecordKind::Mesh, key, mesh); }
+void SceneRecorder::set_material(uint64_t key, const GradusMaterial& material) { keep(RecordKind::Material, key, material); }
+void SceneRecorder::set_instances(const GradusInstances& instances) { keep(RecordKind::Instances, 0, instances); }
+void SceneRecorder::set_lights(const std::vector<GradusLight>& lights) {
+  keep(RecordKind::Lights, 0, LightList{lights.data(), lights.size()});
+}
+void SceneRecorder::set_camera(const GradusCamera& camera) { keep(RecordKind::Camera, 0, camera); }
+void SceneRecorder::set_world(const GradusWorld& world) { keep(RecordKind::World, 0, world); }
+
+void SceneRecorder::set_image(uint64_t key, const GradusImage& image) {
+  std::vector<GradusImageTile> tiles(image.tiles, image.tiles + image.tile_count);
+  std::vector<std::vector<char>> packed(tiles.size());
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    if (tiles[i].source != GRADUS_IMAGE_FILE) continue;
+    packed[i] = read_bytes(tiles[i].path);
+    if (packed[i].empty()) continue;
+    tiles[i].source = GRADUS_IMAGE_ENCODED;
+    tiles[i].data = packed[i].data();
+    tiles[i].data_size = packed[i].size();
+  }
+  GradusImage copy = image;
+  copy.tiles = tiles.data();
+  keep(RecordKind::Image, key, copy);
+}
+
+void SceneRecorder::remove(GradusObjectKind kind, uint64_t key) {
+  const RecordKind record = kind == GRADUS_KIND_MESH    ? RecordKind::Mesh
+                            : kind == GRADUS_KIND_IMAGE ? RecordKind::Image
+                                                        : RecordKind::Material;
+  records_.erase({record, key});
+}
+
+void SceneRecorder::save(const std::string& path, const GradusSettings& settings) const {
+  FileWriter file(path);
+  const FileHeader header;
+  file.write(&header, sizeof(header));
+  const std::string text = settings_to_json(settings).dump();
+  write_record(&file, RecordKind::Settings, 0, {text.begin(), text.end()});
+  for (const auto& [name, bytes] : records_) write_record(&file, name.first, name.second, bytes);
+  write_record(&file, RecordKind::End, 0, {});
+  file.commit();
+}
+
+}  // namespace gradus::api

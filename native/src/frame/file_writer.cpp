@@ -1,0 +1,77 @@
+#include "frame/file_writer.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace gradus {
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return "host";
+  return name.data();
+}
+
+// So that the new name itself survives a power cut. Not every file system can do it; the data is safe already.
+void sync_folder_of(const std::string& path) {
+  const size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  fsync(fd);
+  close(fd);
+}
+
+}  // namespace
+
+FileWriter::FileWriter(const std::string& path)
+    : path_(path),
+      temporary_(path + "." + std::to_string(getpid()) + "." + host_name() + ".part"),
+      file_(std::fopen(temporary_.c_str(), "wbe")) {
+  if (!file_) fail("create");
+}
+
+FileWriter::~FileWriter() {
+  if (!file_) return;
+  std::fclose(file_);
+  unlink(temporary_.c_str());
+}
+
+void FileWriter::fail(const char* action) const {
+  throw Error(GRADUS_ERROR_INVALID_OPERATION, std::string("cannot ") + action + " " + path_ + ": " + std::strerror(errno));
+}
+
+void FileWriter::write(const void* data, size_t size) {
+  if (size > 0 && std::fwrite(data, 1, size, file_) != size) fail("write");
+}
+
+uint64_t FileWriter::position() const {
+  const off_t position = ftello(file_);
+  if (position < 0) fail("write");
+  return uint64_t(position);
+}
+
+void FileWriter::seek(uint64_t position) {
+  if (fseeko(file_, off_t(position), SEEK_SET) != 0) fail("write");
+}
+
+void FileWriter::commit() {
+  if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail("write");
+  const int closed = std::fclose(file_);
+  file_ = nullptr;
+  if (closed != 0 || rename(temporary_.c_str(), path_.c_str()) != 0) {
+    const int reason = errno;
+    unlink(temporary_.c_str());
+    errno = reason;
+    fail("write");
+  }
+  sync_folder_of(path_);
+}
+
+}  // namespace gradus

@@ -1,0 +1,264 @@
+#include "frame/store.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "frame/file_writer.h"
+#include "frame/store_planes.h"
+#include "render/clock.h"
+#include "render/options.h"
+#include "render/pass_table.h"
+
+namespace gradus {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormat = 1;
+constexpr int kMaxSide = 1 << 16;
+constexpr int kBlockRows = 16;  // of the ZIP compression: blocks are written whole
+constexpr const char* kAttribute = "gradus";
+
+// Adapts the atomic writer to OpenEXR. Errors that OpenEXR swallows (its destructor writes, too) are kept for afterwards.
+class WriterStream final : public Imf::OStream {
+ public:
+  WriterStream(FileWriter* writer, const std::string& path) : Imf::OStream(path.c_str()), writer_(writer) {}
+  void write(const char data[], int size) override {
+    run([&] { writer_->write(data, size_t(size)); });
+  }
+  uint64_t tellp() override { return writer_->position(); }
+  void seekp(uint64_t position) override {
+    run([&] { writer_->seek(position); });
+  }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  template <class Function>
+  void run(Function&& function) {
+    try {
+      function();
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+  FileWriter* writer_;
+  std::exception_ptr failure_;
+};
+
+std::string hex(uint64_t value) {
+  char text[20];
+  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+json counters_to_json(const Counters& counters) {
+  std::vector<uint64_t> values(sizeof(Counters) / sizeof(uint64_t));
+  std::memcpy(values.data(), &counters, sizeof(Counters));
+  return values;
+}
+
+Counters counters_from_json(const json& j) {
+  const auto values = j.get<std::vector<uint64_t>>();
+  Counters counters;
+  std::memcpy(static_cast<void*>(&counters), values.data(), std::min(values.size() * sizeof(uint64_t), sizeof(Counters)));
+  return counters;
+}
+
+json describe(const Frame& frame) {
+  return {{"format", kFormat},
+          {"version", gradus_version_text()},
+          {"frame", frame.frame_number},
+          {"channels", frame.channels},
+          {"components", frame.components.size()},
+          {"gradients", frame.gradients},
+          {"sampling_key", hex(sampling_key(frame.settings))},
+          {"scene_key", hex(frame.scene_key)},
+          {"settings", settings_to_json(frame.settings)},
+          {"counters", counters_to_json(frame.counters)}};
+}
+
+Imf::PixelType type_of(const StoredPlane& plane) { return plane.integer ? Imf::UINT : Imf::FLOAT; }
+
+Imf::Header make_header(const Frame& frame, const std::vector<StoredPlane>& planes) {
+  const int width = int(frame.full_width), height = int(frame.full_height);
+  const Region& r = frame.region;
+  // OpenEXR's rows run downwards.
+  const Imath::Box2i display({0, 0}, {width - 1, height - 1});
+  const Imath::Box2i data({r.x0, height - r.y1}, {r.x1 - 1, height - 1 - r.y0});
+  Imf::Header header(display, data);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const StoredPlane& plane : planes) header.channels().insert(plane.name, Imf::Channel(type_of(plane)));
+  header.insert(kAttribute, Imf::StringAttribute(describe(frame).dump()));
+  return header;
+}
+
+// Some rows of all channels, in the order of the file.
+class RowBlock {
+ public:
+  RowBlock(const std::vector<StoredPlane>& planes, int width, int rows)
+      : planes_(planes), width_(width), rows_(rows), values_(planes.size() * size_t(width) * size_t(rows)) {}
+
+  Imf::FrameBuffer frame_buffer(int x0, int first_row, int rows) {
+    Imf::FrameBuffer buffer;
+    const Imath::Box2i window({x0, first_row}, {x0 + width_ - 1, first_row + rows - 1});
+    for (size_t i = 0; i < planes_.size(); ++i) {
+      buffer.insert(planes_[i].name,
+                    Imf::Slice::Make(type_of(planes_[i]), at(i, 0), window, sizeof(uint32_t), size_t(width_) * sizeof(uint32_t)));
+    }
+    return buffer;
+  }
+  // Row `row` of the block from, or to, row y of the frame's region.
+  void gather(int row, int y) {
+    for (size_t i = 0; i < planes_.size(); ++i) {
+      const unsigned char* from = planes_[i].data + size_t(y) * size_t(width_) * planes_[i].stride;
+      uint32_t* to = at(i, row);
+      for (int x = 0; x < width_; ++x) std::memcpy(to + x, from + size_t(x) * planes_[i].stride, sizeof(uint32_t));
+    }
+  }
+  void scatter(int row, int y) {
+    for (size_t i = 0; i < planes_.size(); ++i) {
+      unsigned char* to = planes_[i].data + size_t(y) * size_t(width_) * planes_[i].stride;
+      const uint32_t* from = at(i, row);
+      for (int x = 0; x < width_; ++x) std::memcpy(to + size_t(x) * planes_[i].stride, from + x, sizeof(uint32_t));
+    }
+  }
+
+ private:
+  uint32_t* at(size_t plane, int row) { return values_.data() + (plane * size_t(rows_) + size_t(row)) * size_t(width_); }
+  const std::vector<StoredPlane>& planes_;
+  int width_, rows_;
+  std::vector<uint32_t> values_;
+};
+
+void write_rows(const Frame& frame, const std::vector<StoredPlane>& planes, const Imf::Header& header, WriterStream* stream) {
+  Imf::OutputFile file(*stream, header);
+  const Imath::Box2i data = header.dataWindow();
+  const int width = frame.region.width(), height = frame.region.height();
+  RowBlock block(planes, width, kBlockRows);
+  for (int row = 0; row < height; row += kBlockRows) {
+    const int rows = std::min(kBlockRows, height - row);
+    for (int i = 0; i < rows; ++i) block.gather(i, height - 1 - (row + i));
+    file.setFrameBuffer(block.frame_buffer(data.min.x, data.min.y + row, rows));
+    file.writePixels(rows);
+  }
+}
+
+// What is wrong with a file, as the exception that load_frame() throws.
+Error damaged(const std::string& why) { return invalid_argument(why); }
+
+Frame make_frame(const Imf::Header& header, const json& description) {
+  const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();
+  const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
+  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxSide || display.max.y < 0 ||
+      display.max.y >= kMaxSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
+      !inside(data.min.y, data.max.y, display.max.y + 1)) {
+    throw damaged("its size is wrong");
+  }
+  const int height = display.max.y + 1, channels = description.at("channels"), components = description.at("components");
+  if ((channels != 3 && channels != 4) || components < 1 || components > 64) throw damaged("its planes are wrong");
+  const bool gradients = description.at("gradients");
+  GradusSettings settings = settings_from_json(description.at("settings"));
+  const Region region{data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
+  const uint64_t per_pixel =
+      uint64_t(components) * kHalves * sizeof(Radiance) * (gradients ? 1 + kOffsets : 1) + pass_bytes_per_pixel(settings.passes);
+  if (per_pixel * uint64_t(region.area()) > machine_memory_bytes()) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
+
+  Frame frame(uint32_t(display.max.x + 1), uint32_t(height), region, channels, components, gradients);
+  frame.settings = settings;
+  frame.frame_number = description.at("frame");
+  frame.scene_key = std::stoull(description.at("scene_key").get<std::string>(), nullptr, 16);
+  frame.counters = counters_from_json(description.at("counters"));
+  frame.passes = make_pass_planes(settings.passes, size_t(region.area()));
+  if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame.fallback.assign(size_t(region.area()), 0.0f);
+  return frame;
+}
+
+void check_channels(const Imf::Header& header, const std::vector<StoredPlane>& planes) {
+  for (const StoredPlane& plane : planes) {
+    const Imf::Channel* channel = header.channels().findChannel(plane.name);
+    if (!channel || channel->type != type_of(plane) || channel->xSampling != 1 || channel->ySampling != 1) {
+      throw damaged("channel " + plane.name + " is missing or of another type");
+    }
+  }
+}
+
+void check_regions(const Frame& frame) {
+  const uint32_t* r = frame.settings.region;
+  const bool whole = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
+  const Region delivered{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
+  if (!whole && (r[2] > frame.full_width || r[3] > frame.full_height || delivered.x0 < frame.region.x0 || delivered.y0 < frame.region.y0 ||
+                 delivered.x1 > frame.region.x1 || delivered.y1 > frame.region.y1 || delivered.width() <= 0 || delivered.height() <= 0)) {
+    throw damaged("its region lies outside of it");
+  }
+  if (frame.settings.width != frame.full_width || frame.settings.height != frame.full_height)
+    throw damaged("its settings name another size");
+}
+
+Frame read_frame(const std::string& path) {
+  Imf::InputFile file(path.c_str());
+  const Imf::Header& header = file.header();
+  const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
+  if (!attribute) throw damaged("it is no frame of Gradus");
+  const json description = json::parse(attribute->value());
+  if (description.at("format") != kFormat) throw damaged("it was written by another version of Gradus");
+  Frame frame = make_frame(header, description);
+  check_regions(frame);
+  const std::vector<StoredPlane> planes = stored_planes(&frame);
+  check_channels(header, planes);
+  const Imath::Box2i data = header.dataWindow();
+  const int height = frame.region.height();
+  RowBlock block(planes, frame.region.width(), kBlockRows);
+  for (int row = 0; row < height; row += kBlockRows) {
+    const int rows = std::min(kBlockRows, height - row);
+    file.setFrameBuffer(block.frame_buffer(data.min.x, data.min.y + row, rows));
+    file.readPixels(data.min.y + row, data.min.y + row + rows - 1);
+    for (int i = 0; i < rows; ++i) block.scatter(i, height - 1 - (row + i));
+  }
+  return frame;
+}
+
+}  // namespace
+
+void save_frame(const Frame& frame, const std::string& path) {
+  // The planes are only read here; the list is shared with reading, which writes them.
+  const std::vector<StoredPlane> planes = stored_planes(const_cast<Frame*>(&frame));
+  FileWriter writer(path);
+  WriterStream stream(&writer, path);
+  try {
+    write_rows(frame, planes, make_header(frame, planes), &stream);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    stream.rethrow();
+    throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot write " + path + ": " + e.what());
+  }
+  stream.rethrow();
+  writer.commit();
+}
+
+std::shared_ptr<const Frame> load_frame(const std::string& path) {
+  try {
+    return std::make_shared<const Frame>(read_frame(path));
+  } catch (const Error& e) {
+    throw Error(e.code(), "cannot load frame " + path + ": " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw invalid_argument("cannot load frame " + path + ": " + e.what());
+  }
+}
+
+}  // namespace gradus
