@@ -1,0 +1,111 @@
+"""I1, I2: whatever fails, in whatever phase, ends with code 1, without a file for that frame, and with the frames before it whole.
+
+Faults are put into the add-on by a script: each replaces one function by one that raises in frame FAULT.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import images
+from support.application import Outcome
+
+SETUP = """
+import bpy
+scene = bpy.context.scene
+scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 32, 18, 100
+scene.gradus.integrator, scene.gradus.samples, scene.gradus.noise_threshold = 'PATH', 1, 0.0
+scene.render.image_settings.color_depth = '16'
+import ctypes
+from gradus import export, native, output, pixels, renderer, stats, store
+from gradus.export import exporter
+
+def fault(owner, name, error=RuntimeError('injected'), before=True):
+    original = getattr(owner, name)
+    def replacement(*arguments, **named):
+        if not before:
+            original(*arguments, **named)
+        if bpy.context.scene.frame_current >= FAULT:
+            raise error
+        return original(*arguments, **named) if before else None
+    setattr(owner, name, replacement)
+"""
+
+FAULTS = {
+    "update": "fault(renderer, 'update')",
+    "settings": "fault(renderer, 'native_settings', native.GradusError(2, 'refused'))",
+    "export": "fault(exporter.Exporter, 'sync', export.ExportError('cannot export'))",
+    "out of memory": "fault(exporter.Exporter, 'sync', MemoryError())",
+    "render": "fault(renderer, 'render')",
+    "build": "fault(store.Session, 'commit', native.GradusError(4, 'out of memory'))",
+    "sampling": "fault(renderer, '_wait', native.GradusError(1, 'sampling failed'))",
+    "upload": "fault(pixels.PassBuffer, 'upload')",
+    "half uploaded": "fault(pixels.PassBuffer, 'upload', before=False)",
+    "statistics": "fault(stats, 'complete', OSError(28, 'No space left on device'))",
+    "no space": "fault(output, 'require_space', output.Failure('not enough space'))",
+    "library": "fault(native, 'load', native.GradusError(5, 'library not found'))",
+}
+
+
+def animate(
+    blender: Callable[..., Outcome], folder: Path, fault: str, frames: range, *arguments: str, kind: str = "PNG", at: int = 2
+) -> Outcome:
+    script = SETUP.replace("FAULT", str(at)) + fault
+    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", script, "-o", f"{folder}/f_####", "-F", kind, *arguments]
+    return blender(*head, "-s", str(frames.start), "-e", str(frames.stop - 1), "-a")
+
+
+def files(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.glob("f_*"))
+
+
+@pytest.mark.parametrize("name", list(FAULTS))
+def test_i1_injected_failures(blender: Callable[..., Outcome], tmp_path: Path, name: str) -> None:
+    outcome = animate(blender, tmp_path, FAULTS[name], range(1, 4))
+    assert outcome.code == 1, outcome.output
+    assert "Error: Gradus: " in outcome.output
+    assert files(tmp_path) == ["f_0001.png"]
+
+
+@pytest.mark.parametrize("name", ["update", "render", "upload"])
+def test_i1_with_multilayer_files_blender_does_not_crash(blender: Callable[..., Outcome], tmp_path: Path, name: str) -> None:
+    outcome = animate(blender, tmp_path, FAULTS[name], range(1, 4), kind="OPEN_EXR_MULTILAYER")
+    assert outcome.code == 1, outcome.output
+    assert files(tmp_path) == ["f_0001.exr"]
+
+
+def test_i1_no_camera(blender: Callable[..., Outcome], tmp_path: Path) -> None:
+    outcome = animate(blender, tmp_path, "scene.camera = None", range(1, 3))
+    assert outcome.code == 1, outcome.output
+    assert files(tmp_path) == []
+
+
+def test_i1_unwritable_folder(blender: Callable[..., Outcome], tmp_path: Path) -> None:
+    outcome = animate(blender, Path("/proc/nowhere"), "", range(1, 2))
+    assert outcome.code == 1, outcome.output
+
+
+def test_i1_unwritable_statistics(blender: Callable[..., Outcome], tmp_path: Path) -> None:
+    script = SETUP.replace("FAULT", "9")
+    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", script, "-o", f"{tmp_path}/f_####", "-F", "PNG", "-f", "1"]
+    outcome = blender(*head, "--", "--gradus-stats", "/proc/nowhere/stats.jsonl")
+    assert outcome.code == 1, outcome.output
+    assert files(tmp_path) == []
+
+
+def test_i2_a_rerun_completes_the_job(blender: Callable[..., Outcome], tmp_path: Path) -> None:
+    broken, whole = tmp_path / "broken", tmp_path / "whole"
+    outcome = animate(blender, broken, FAULTS["render"], range(1, 9), kind="OPEN_EXR", at=5)
+    assert outcome.code == 1
+    assert files(broken) == [f"f_000{frame}.exr" for frame in (1, 2, 3, 4)]
+    again = animate(blender, broken, "scene.render.use_overwrite = False", range(1, 9), kind="OPEN_EXR")
+    assert again.code == 0, again.output
+    assert animate(blender, whole, "", range(1, 9), kind="OPEN_EXR").code == 0
+    assert files(broken) == files(whole)
+    for name in files(whole):
+        one, other = (images.read(folder / name) for folder in (broken, whole))
+        assert one.keys() == other.keys()
+        assert all(np.array_equal(one[key], other[key]) for key in one)

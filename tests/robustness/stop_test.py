@@ -1,0 +1,97 @@
+"""K1, I3: SIGINT and SIGKILL at any moment: the end comes at once, and no file is left that is not whole."""
+
+from __future__ import annotations
+
+import os
+import signal
+import statistics
+import time
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from support import application
+
+pytestmark = pytest.mark.application
+
+SETUP = """
+import bpy
+scene = bpy.context.scene
+scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = {size}, 100
+scene.gradus.samples, scene.gradus.noise_threshold = {samples}, 0.0
+bpy.ops.mesh.primitive_uv_sphere_add(segments={segments}, ring_count={segments}, radius=1.5)
+print('SETUP DONE', flush=True)
+"""
+
+FULL = os.environ.get("GRADUS_TEST_FULL") == "1"
+
+
+def start(folder: Path, size: str, samples: int, segments: int, frames: int) -> tuple:
+    script = SETUP.format(size=size, samples=samples, segments=segments)
+    (folder / "home").mkdir(exist_ok=True)
+    output = ["-o", f"{folder}/f_####", "-F", "PNG", "-s", "1", "-e", str(frames), "-a"]
+    home = folder / "home" / str(time.monotonic_ns())
+    process = application.start("--addons", "gradus", "-E", "GRADUS", "--python-expr", script, *output, folder=home)
+    lines = []
+    for line in process.stdout:
+        lines.append(line)
+        if b"SETUP DONE" in line:
+            break
+    return process, lines
+
+
+def end(process: object, sent: int) -> tuple[int, float, bytes]:
+    begin = time.monotonic()
+    process.send_signal(sent)
+    try:
+        output, _ = process.communicate(timeout=30)
+    except Exception:
+        process.kill()
+        raise
+    return process.returncode, time.monotonic() - begin, output
+
+
+def check_whole(folder: Path) -> int:
+    paths = sorted(folder.glob("f_*"))
+    for path in paths:
+        file = oiio.ImageInput.open(str(path))
+        assert file is not None, path
+        pixels = np.asarray(file.read_image("float"))
+        assert pixels.size, path
+        assert pixels.max() > 0.0, path
+    return len(paths)
+
+
+def test_k1_sigint_ends_the_render_within_a_second(tmp_path: Path) -> None:
+    """Moments spread over export, build, sampling and reconstruction of a frame that would take minutes."""
+    seconds = []
+    for index in range(20 if FULL else 6):
+        process, _ = start(tmp_path, "1280, 720", 100000, 700 if index % 2 else 32, 1)
+        time.sleep(0.02 + index * (0.15 if FULL else 0.4))
+        code, elapsed, output = end(process, signal.SIGINT)
+        assert code == 1, output
+        assert elapsed <= 1.0, (index, elapsed, output)
+        seconds.append(elapsed)
+    assert list(tmp_path.glob("f_*")) == []
+    assert statistics.median(seconds) <= 0.5
+
+
+def test_i3_killed_at_any_moment_a_rerun_completes(tmp_path: Path) -> None:
+    for index in range(20 if FULL else 3):
+        process, _ = start(tmp_path, "48, 27", 4, 16, 6)
+        time.sleep(0.05 + 0.1 * index)
+        end(process, signal.SIGKILL)
+        # Blender writes its files itself and not atomically: what was being written when it was killed may be short.
+        for path in tmp_path.glob("f_*"):
+            if not is_whole_png(path):
+                path.unlink()
+        check_whole(tmp_path)
+    process, _ = start(tmp_path, "48, 27", 4, 16, 6)
+    output, _ = process.communicate(timeout=120)
+    assert process.returncode == 0, output
+    assert check_whole(tmp_path) == 6
+
+
+def is_whole_png(path: Path) -> bool:
+    return path.read_bytes()[-8:-4] == b"IEND"
