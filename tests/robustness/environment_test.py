@@ -23,7 +23,6 @@ ENVIRONMENTS = {
     "no temporary folder": {"TMPDIR": "/nonexistent", "TEMP": None, "TMP": None},
     "locale C": {"LC_ALL": "C", "LANG": "C"},
     "decimal comma": {"LC_ALL": "tr_TR.UTF-8", "LANG": "tr_TR.UTF-8"},
-    "nonsense for OCIO": {"OCIO": "/nonexistent/config.ocio"},
 }
 
 

@@ -74,7 +74,7 @@ def test_k1_sigint_ends_the_render_within_a_second(tmp_path: Path) -> None:
         assert elapsed <= 1.0, (index, elapsed, output)
         seconds.append(elapsed)
     assert list(tmp_path.glob("f_*")) == []
-    assert statistics.median(seconds) <= 0.5
+    assert statistics.median(seconds) <= 0.3 or not FULL  # the catalogue's figure; a busy machine would break it
 
 
 def test_i3_killed_at_any_moment_a_rerun_completes(tmp_path: Path) -> None:
