@@ -14,4 +14,7 @@ case ${1:-} in
 esac
 ninja -C build --quiet "${targets[@]}" >&2
 /usr/bin/python3 tools/bundle.py build/native/libgradus.so addon/gradus/lib
-if [ "${1:-}" = package ]; then /usr/bin/python3 tools/package.py; fi
+case ${1:-} in
+  package) /usr/bin/python3 tools/package.py ;;
+  "") echo "build: addon/gradus/lib/libgradus.so and build/native/gradus" ;;
+esac
