@@ -122,4 +122,11 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, const Vec3& wo) {
   }
 }
 
+Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo) {
+  Lobe prepared = lobe;
+  prepare_lobe(&prepared, glm::dot(lobe.normal, wo) < 0.0f ? -lobe.normal : lobe.normal, wo);
+  const LobeAlbedo albedo = two_sided_albedo(prepared, make_frame(prepared.normal, prepared.tangent).to_local(wo));
+  return albedo.reflected + albedo.transmitted;
+}
+
 }  // namespace gradus

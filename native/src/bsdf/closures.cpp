@@ -88,26 +88,31 @@ void Closures::drop_black_lobes() {
   count_ = prepared_ = kept;
 }
 
-void Closures::prepare(int index, const Vec3& wo) {
-  Lobe& lobe = lobes_[static_cast<size_t>(index)];
-  const Original& original = original_[static_cast<size_t>(index)];
-  const float length2 = glm::dot(original.normal, original.normal);
+void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
+  const float length2 = glm::dot(lobe->normal, lobe->normal);
   const bool usable = is_finite(length2) && length2 > 1e-12f;
-  Vec3 normal = usable ? original.normal / std::sqrt(length2) : geometric_normal_;
-  lobe.type = original.type;
-  lobe.ior = original.ior;
-  const bool inside = glm::dot(normal, geometric_normal_) < 0.0f;
+  Vec3 normal = usable ? lobe->normal / std::sqrt(length2) : geometric_normal;
+  const bool inside = glm::dot(normal, geometric_normal) < 0.0f;
   if (inside) {
     normal = -normal;
   }
-  if (is_microfacet(lobe.type)) {
-    limit_microfacets(&lobe);
-    lobe.ior = inside ? 1.0f / lobe.ior : lobe.ior;
-    normal = keep_reflection_above(normal, geometric_normal_, wo);
+  if (is_microfacet(lobe->type)) {
+    limit_microfacets(lobe);
+    lobe->ior = inside ? 1.0f / lobe->ior : lobe->ior;
+    normal = keep_reflection_above(normal, geometric_normal, wo);
   }
-  lobe.normal = normal;
-  lobe.tangent = lobe.alpha_x == lobe.alpha_y ? perpendicular(normal) : orthonormal_tangent(normal, lobe.tangent);
-  lobe.energy = multiscatter_energy(lobe, glm::dot(normal, wo));
+  lobe->normal = normal;
+  lobe->tangent = lobe->alpha_x == lobe->alpha_y ? perpendicular(normal) : orthonormal_tangent(normal, lobe->tangent);
+  lobe->energy = multiscatter_energy(*lobe, glm::dot(normal, wo));
+}
+
+void Closures::prepare(int index, const Vec3& wo) {
+  Lobe& lobe = lobes_[static_cast<size_t>(index)];
+  const Original& original = original_[static_cast<size_t>(index)];
+  lobe.type = original.type;
+  lobe.normal = original.normal;
+  lobe.ior = original.ior;
+  prepare_lobe(&lobe, geometric_normal_, wo);
 }
 
 void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) {

@@ -39,6 +39,9 @@ bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* w
 inline bool is_dirac(LobeType type) { return type >= LobeType::DiracReflection; }
 inline bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflection; }
 
+// Turns the normal to the side of wo, limits what users can type, makes it Dirac where float demands it, fills `energy`.
+void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo);
+
 // Directional albedo of both sides of a lobe, weight and energy compensation included. wo in the lobe's frame; lobe as after finish().
 struct LobeAlbedo {
   Rgb reflected = Rgb(0.0f);

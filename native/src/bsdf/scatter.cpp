@@ -156,12 +156,4 @@ Rgb Closures::albedo(const Vec3& wo) const {
   return albedo(LightPass::Diffuse, wo) + albedo(LightPass::Glossy, wo) + albedo(LightPass::Transmission, wo);
 }
 
-Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo) {
-  const Vec3 geometric_normal = glm::dot(lobe.normal, wo) < 0.0f ? -lobe.normal : lobe.normal;
-  Closures closures;
-  *closures.add() = lobe;
-  closures.finish(wo, geometric_normal, 0.0f);
-  return closures.albedo(wo);
-}
-
 }  // namespace gradus
