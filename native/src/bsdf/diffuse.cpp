@@ -27,11 +27,13 @@ float fujii_albedo(float cosine, float roughness) {
 // Mean albedo over the cosine hemisphere (eq. 14).
 float fujii_mean_albedo(float roughness) { return fujii_a(roughness) * (1.0f + roughness * (2.0f / 3.0f - 28.0f / (15.0f * kPi))); }
 
+// What bounces between the grooves (eq. 20), over the surface's colour. One factor of colour more than published, as in Cycles: its
+// result is multiplied by the colour once again.
 Rgb multiple_scattering(const Lobe& lobe, float cos_o, float cos_i) {
   const float mean = fujii_mean_albedo(lobe.alpha_x);
   const float shape = (1.0f - fujii_albedo(cos_o, lobe.alpha_x)) * (1.0f - fujii_albedo(cos_i, lobe.alpha_x)) / (1.0f - mean);
   const Rgb color = glm::clamp(lobe.f0, 0.0f, 1.0f);
-  return color * (mean * std::max(0.0f, shape)) / (Rgb(1.0f) - color * (1.0f - mean));
+  return color * color * (mean * std::max(0.0f, shape)) / (Rgb(1.0f) - color * (1.0f - mean));
 }
 
 }  // namespace
