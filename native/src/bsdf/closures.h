@@ -38,11 +38,13 @@ enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
 // Which fields count:
 //   Diffuse                alpha_x = Oren-Nayar roughness, 0 = Lambert; multiscatter: energy conserving, f0 = the surface's colour (which
 //                          weight holds, too)
-//   Sheen                  alpha_x = sheen roughness; fresnel Schlick: the grazing term of Blender before 4.0
+//   Sheen                  alpha_x = sheen roughness, not squared; fresnel Schlick: the grazing term of Blender before 4.0
 //   Ggx…, Dirac…           alpha_x, alpha_y, ior, fresnel; finish() makes a Ggx lobe Dirac where alpha is too small for float
 //   fresnel Dielectric     of ior
 //   fresnel Schlick        mix(f0, f90, s): s follows the dielectric curve of ior, scaled to 0…1, as in Blender 4; ior 1: fifth power
 //   fresnel PrincipledMetal  f0, and f90 = tint at 82 degrees (1 = plain Schlick)
+// multiscatter takes the colour of repeated bounces from the Fresnel term: a glossy lobe's own colour then goes into f0 = f90 (Schlick),
+// with a white weight, to be Cycles' MULTI_GGX.
 // Glass reflects with weight·F and transmits with weight·transmission_tint·(1 − F).
 struct Lobe {
   LobeType type = LobeType::Diffuse;

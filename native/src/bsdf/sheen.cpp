@@ -1,107 +1,130 @@
-// Sheen: the inverted-Gaussian "Charlie" distribution of Estevez and Kulla 2017 ("Production Friendly Microfacet Sheen BRDF") with
-// Neubelt and Pettineo's visibility term (2013), or, for Blender before 4.0, Disney's grazing term (Burley 2012).
+// Sheen. From Blender 4.0 on a layer of fibres: a linearly transformed cosine (Zeltner, Burley, Chiang 2022, "Practical
+// Multiple-Scattering Sheen Using Linearly Transformed Cosines"), with parameters of our own fit. Before: Disney's grazing term (Burley
+// 2012), which a lobe with fresnel Schlick asks for.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
+#include "bsdf/sheen_table.h"
 #include "bsdf/warp.h"
 
 namespace gradus {
 namespace {
+
+// ---- Disney's term: (1 − ω_i·h)^5 cos θ_i.
 
 float grazing_term(const Vec3& wo, const Vec3& wi) {
   const Vec3 h = glm::normalize(wo + wi);
   return pow5(std::clamp(1.0f - glm::dot(wi, h), 0.0f, 1.0f)) * wi.z;
 }
 
-float charlie_term(float roughness, const Vec3& wo, const Vec3& wi) {
-  const float inverse = 1.0f / std::clamp(roughness, 0.1f, 1.0f);
-  const Vec3 h = glm::normalize(wo + wi);
-  const float sine = std::sqrt(std::max(0.0f, 1.0f - h.z * h.z));
-  const float density = (2.0f + inverse) * std::pow(sine, inverse) * (0.5f * kInvPi);
-  return density * wi.z / (4.0f * (wo.z + wi.z - wo.z * wi.z));
-}
+// Its albedo at cosines (i/31)².
+struct GrazingTable {
+  static constexpr int kCosines = 32;
+  std::array<float, kCosines> values;
 
-float sheen_term(const Lobe& lobe, const Vec3& wo, const Vec3& wi) {
-  return lobe.fresnel == FresnelType::Schlick ? grazing_term(wo, wi) : charlie_term(lobe.alpha_x, wo, wi);
-}
-
-constexpr int kCosines = 32;
-constexpr int kRoughnesses = 12;  // the last row: the grazing term
-
-struct SheenTable {
-  std::array<float, kCosines*(kRoughnesses + 1)> values;
-
-  SheenTable() {
-    for (int r = 0; r <= kRoughnesses; r++) {
-      for (int c = 0; c < kCosines; c++) {
-        values[static_cast<size_t>(r * kCosines + c)] = integrate(r, c);
-      }
+  GrazingTable() {
+    for (int i = 0; i < kCosines; i++) {
+      const float x = static_cast<float>(i) / (kCosines - 1);
+      values[static_cast<size_t>(i)] = integrate(std::max(x * x, 1e-4f));
     }
   }
-  static float integrate(int r, int c) {
-    Lobe lobe;
-    lobe.fresnel = r == kRoughnesses ? FresnelType::Schlick : FresnelType::None;
-    lobe.alpha_x = 0.1f + 0.9f * static_cast<float>(r) / (kRoughnesses - 1);
-    const float x = static_cast<float>(c) / (kCosines - 1);
-    const float cosine = std::max(x * x, 1e-4f);
+  static float integrate(float cosine) {
     const Vec3 wo(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
     constexpr int kSteps = 32;
     float sum = 0.0f;
     for (int i = 0; i < kSteps; i++) {
       for (int j = 0; j < kSteps; j++) {
-        // Uniform in z and half the azimuths, with z squared towards the horizon where the lobe is.
+        // Uniform in z² and in half the azimuths.
         const float s = (static_cast<float>(i) + 0.5f) / kSteps;
         const float z = s * s;
         const float phi = kPi * (static_cast<float>(j) + 0.5f) / kSteps;
         const float radius = std::sqrt(1.0f - z * z);
-        sum += sheen_term(lobe, wo, Vec3(radius * std::cos(phi), radius * std::sin(phi), z)) * 2.0f * s;
+        sum += grazing_term(wo, Vec3(radius * std::cos(phi), radius * std::sin(phi), z)) * 2.0f * s;
       }
     }
     return sum * 2.0f * kPi / (kSteps * kSteps);
   }
-};
-
-// Of the terms as published.
-float raw_albedo(const Lobe& lobe, float cosine) {
-  static const SheenTable table;
-  const float x = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * (kCosines - 1);
-  const int c = std::min(static_cast<int>(x), kCosines - 2);
-  const auto row = [&](int r) {
-    const size_t k = static_cast<size_t>(r * kCosines + c);
-    return table.values[k] + (table.values[k + 1] - table.values[k]) * (x - static_cast<float>(c));
-  };
-  if (lobe.fresnel == FresnelType::Schlick) {
-    return row(kRoughnesses);
+  float at(float cosine) const {
+    const float x = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * (kCosines - 1);
+    const size_t i = static_cast<size_t>(std::min(static_cast<int>(x), kCosines - 2));
+    return values[i] + (values[i + 1] - values[i]) * (x - static_cast<float>(i));
   }
-  const float y = (std::clamp(lobe.alpha_x, 0.1f, 1.0f) - 0.1f) / 0.9f * (kRoughnesses - 1);
-  const int r = std::min(static_cast<int>(y), kRoughnesses - 2);
-  return row(r) + (row(r + 1) - row(r)) * (y - static_cast<float>(r));
+};
+float grazing_albedo(float cosine) {
+  static const GrazingTable table;
+  return table.at(cosine);
 }
 
-// Bound of an albedo, with a margin for the table.
-float excess(float albedo) { return std::max(1.0f, 1.02f * albedo); }
+// ---- The fibres: ω' = (s·x + k·z, s·y, z), normalised, is distributed by cosine; x lies along ω_o.
+
+struct Fibres {
+  float scale;
+  float skew;
+  float albedo;
+};
+
+Fibres fibres_at(float roughness, float cosine) {
+  const float x = std::clamp(cosine, 0.0f, 1.0f) * (kSheenSize - 1);
+  const float y = std::clamp(roughness, 0.0f, 1.0f) * (kSheenSize - 1);
+  const int i = std::min(static_cast<int>(x), kSheenSize - 2);
+  const int j = std::min(static_cast<int>(y), kSheenSize - 2);
+  const float s = x - static_cast<float>(i);
+  const float t = y - static_cast<float>(j);
+  const auto mix = [&](const float(*table)[kSheenSize]) {
+    const float low = table[j][i] + (table[j][i + 1] - table[j][i]) * s;
+    const float high = table[j + 1][i] + (table[j + 1][i + 1] - table[j + 1][i]) * s;
+    return low + (high - low) * t;
+  };
+  return {mix(kSheenScale), mix(kSheenSkew), mix(kSheenAlbedo)};
+}
+
+// Unit vector along the projection of ω_o.
+Vec2 heading(const Vec3& wo) {
+  const float length2 = wo.x * wo.x + wo.y * wo.y;
+  return length2 > 1e-12f ? Vec2(wo.x, wo.y) / std::sqrt(length2) : Vec2(1.0f, 0.0f);
+}
+
+float fibre_density(const Fibres& fibres, const Vec3& wo, const Vec3& wi) {
+  const Vec2 axis = heading(wo);
+  const float x = fibres.scale * (wi.x * axis.x + wi.y * axis.y) + fibres.skew * wi.z;
+  const float y = fibres.scale * (wi.y * axis.x - wi.x * axis.y);
+  const float ratio = fibres.scale / (x * x + y * y + wi.z * wi.z);
+  return wi.z * ratio * ratio * kInvPi;
+}
 
 }  // namespace
 
 float sheen_albedo(const Lobe& lobe, float cosine) {
-  const float albedo = raw_albedo(lobe, cosine);
-  return albedo / excess(albedo);
+  return lobe.fresnel == FresnelType::Schlick ? grazing_albedo(cosine) : fibres_at(lobe.alpha_x, cosine).albedo;
 }
 
 BsdfEval evaluate_sheen(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t) {
   if (!(wo.z > 0.0f && wi.z > 0.0f)) {
     return {};
   }
-  // Charlie makes energy at grazing angles of smooth sheen: bounded from both sides, so that it stays reciprocal.
-  const float bound = excess(raw_albedo(lobe, wo.z)) * excess(raw_albedo(lobe, wi.z));
-  return {lobe.weight * sheen_term(lobe, wo, wi) / bound, wi.z * kInvPi};
+  if (lobe.fresnel == FresnelType::Schlick) {
+    return {lobe.weight * grazing_term(wo, wi), wi.z * kInvPi};
+  }
+  const Fibres fibres = fibres_at(lobe.alpha_x, wo.z);
+  const float density = fibre_density(fibres, wo, wi);
+  return {lobe.weight * fibres.albedo * density, density};
 }
 
-bool sample_sheen(const Lobe&, const Vec3&, float, const Vec2& u, uint8_t, Vec3* wi) {
-  *wi = sample_cosine_hemisphere(u);
-  return true;
+bool sample_sheen(const Lobe& lobe, const Vec3& wo, float, const Vec2& u, uint8_t, Vec3* wi) {
+  const Vec3 w = sample_cosine_hemisphere(u);
+  if (lobe.fresnel == FresnelType::Schlick) {
+    *wi = w;
+    return true;
+  }
+  const Fibres fibres = fibres_at(lobe.alpha_x, wo.z);
+  const Vec2 axis = heading(wo);
+  const float x = (w.x - fibres.skew * w.z) / fibres.scale;
+  const float y = w.y / fibres.scale;
+  *wi = glm::normalize(Vec3(x * axis.x - y * axis.y, x * axis.y + y * axis.x, w.z));
+  return wi->z > 0.0f;
 }
 
 }  // namespace gradus
