@@ -122,8 +122,11 @@ SurfacePoint Snapshot::surface_point(const Hit& hit) const {
 
 Vec3 Snapshot::position_at(const Hit& hit, bool next) const {
   const InstanceData& instance = instances[hit.instance];
+  const Mat4& to_world = next ? instance.to_world_next : instance.to_world_previous;
+  // At rest the very same position, so that its motion is exactly zero.
+  if (instance.mesh->key_times.size() == 1 && to_world == instance.to_world) return surface_point(hit).position;
   const Vec3 local = interpolate(triangle_positions_at(*instance.mesh, hit.triangle, next ? 1.0f : -1.0f), hit.barycentric);
-  return Vec3((next ? instance.to_world_next : instance.to_world_previous) * Vec4(local, 1.0f));
+  return Vec3(to_world * Vec4(local, 1.0f));
 }
 
 // pbrt-v4 section 6.8.6: along the geometric normal by the bound, then one float further so that rounding the sum cannot undo it.
