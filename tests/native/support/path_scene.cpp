@@ -1,0 +1,330 @@
+#include "support/path_scene.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "gradus/gradus_nodes.h"
+
+namespace gradus::test {
+
+namespace {
+
+// Collects nodes of a program; closures take constants only.
+class Program {
+ public:
+  int32_t closure(uint32_t op, const std::vector<Vec4>& values, uint32_t mode = 0) {
+    for (const Vec4& v : values) {
+      inputs_.push_back({-1, 0, {v.x, v.y, v.z, v.w}});
+    }
+    return node(op, static_cast<uint32_t>(values.size()), mode);
+  }
+  int32_t combine(uint32_t op, int32_t a, int32_t b, float factor) {
+    if (op == GRADUS_OP_MIX_SHADER) {
+      inputs_.push_back({-1, 0, {factor, factor, factor, factor}});
+    }
+    inputs_.push_back({a, 0, {0, 0, 0, 0}});
+    inputs_.push_back({b, 0, {0, 0, 0, 0}});
+    return node(op, op == GRADUS_OP_MIX_SHADER ? 3 : 2, 0);
+  }
+  int32_t add(int32_t a, int32_t b) { return a < 0 ? b : combine(GRADUS_OP_ADD_SHADER, a, b, 0.0f); }
+  GradusMaterial desc(int32_t surface, const char* name, int32_t index) const {
+    GradusMaterial d{};
+    d.struct_size = sizeof(d);
+    d.node_count = static_cast<uint32_t>(nodes_.size());
+    d.nodes = nodes_.data();
+    d.inputs = inputs_.data();
+    d.input_count = inputs_.size();
+    d.surface = surface;
+    d.sample_as_light = 1;
+    d.transparent_shadow = 1;
+    d.pass_index = index;
+    d.name = name;
+    return d;
+  }
+
+ private:
+  int32_t node(uint32_t op, uint32_t inputs, uint32_t mode) {
+    nodes_.push_back({op, mode, static_cast<uint32_t>(inputs_.size()) - inputs, inputs, 0, 0, 0});
+    return static_cast<int32_t>(nodes_.size()) - 1;
+  }
+  std::vector<GradusNode> nodes_;
+  std::vector<GradusInput> inputs_;
+};
+
+Vec4 rgb(const Rgb& c) { return Vec4(c, 1.0f); }
+
+int32_t build_surface(const Surface& s, Program* p) {
+  int32_t surface = -1;
+  if (!is_black(s.diffuse)) {
+    surface = p->add(surface, p->closure(GRADUS_OP_DIFFUSE, {rgb(s.diffuse)}));
+  }
+  if (!is_black(s.glossy)) {
+    surface = p->add(surface, p->closure(GRADUS_OP_GLOSSY, {rgb(s.glossy), Vec4(s.glossy_roughness)}));
+  }
+  if (s.glass > 0.0f) {
+    surface = p->add(surface, p->closure(GRADUS_OP_GLASS, {Vec4(s.glass), Vec4(s.glass_roughness), Vec4(s.ior)}));
+  }
+  if (!is_black(s.emission)) {
+    surface = p->add(surface, p->closure(GRADUS_OP_EMISSION, {rgb(s.emission), Vec4(1.0f)}));
+  }
+  if (s.transparent > 0.0f) {
+    surface = p->combine(GRADUS_OP_MIX_SHADER, surface, p->closure(GRADUS_OP_TRANSPARENT, {Vec4(1.0f)}), s.transparent);
+  }
+  return surface;
+}
+
+// For messages.
+std::string text_of(const Surface& s) {
+  std::ostringstream text;
+  const auto color = [&text](const char* what, const Rgb& c) -> std::ostringstream& {
+    text << ' ' << what << ' ' << c.x << ' ' << c.y << ' ' << c.z;
+    return text;
+  };
+  if (!is_black(s.diffuse)) color("diffuse", s.diffuse);
+  if (!is_black(s.glossy)) color("glossy", s.glossy) << ' ' << s.glossy_roughness * s.glossy_roughness;
+  if (s.glass > 0.0f) text << " glass " << s.glass_roughness * s.glass_roughness << ' ' << s.ior;
+  if (!is_black(s.emission)) color("emit", s.emission);
+  if (s.transparent > 0.0f) text << " transparent " << s.transparent;
+  return text.str();
+}
+
+Mat4 look_at(const Vec3& from, const Vec3& at) {
+  const Vec3 z = glm::normalize(from - at);
+  const Vec3 up = std::fabs(z.y) > 0.99f ? Vec3(0, 0, -1) : Vec3(0, 1, 0);
+  const Vec3 x = glm::normalize(glm::cross(up, z));
+  Mat4 m(1.0f);
+  m[0] = Vec4(x, 0.0f);
+  m[1] = Vec4(glm::cross(z, x), 0.0f);
+  m[2] = Vec4(z, 0.0f);
+  m[3] = Vec4(from, 1.0f);
+  return m;
+}
+
+}  // namespace
+
+uint64_t PathScene::material(const Surface& surface) {
+  const uint64_t key = next_key_++;
+  Program program;
+  const int32_t result = build_surface(surface, &program);
+  const std::string name = text_of(surface);
+  scene.scene.set_material(key, program.desc(result, name.c_str(), static_cast<int32_t>(key)));
+  return key;
+}
+
+void PathScene::quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t material, uint32_t visibility) {
+  Soup soup;
+  soup.triangle(corner, corner + a, corner + a + b);
+  soup.triangle(corner, corner + a + b, corner + b);
+  const uint64_t key = next_key_++;
+  scene.mesh(key, soup);
+  scene.instance(key, Mat4(1.0f), visibility, material);
+}
+
+void PathScene::ball(const Vec3& centre, float radius, uint64_t material, int rings, bool smooth) {
+  const Soup soup = sphere(centre, radius, rings, 2 * rings);
+  MeshDesc mesh(soup);
+  std::vector<Vec3> normals;
+  if (smooth) {
+    for (const Vec3& p : soup.positions) {
+      normals.push_back(glm::normalize(p - centre));
+    }
+    mesh.desc.normal_domain = GRADUS_DOMAIN_POINT;
+    mesh.desc.normals = &normals[0].x;
+  }
+  const uint64_t key = next_key_++;
+  scene.scene.set_mesh(key, mesh.desc);
+  scene.instance(key, Mat4(1.0f), GRADUS_VISIBLE_ALL, material);
+}
+
+void PathScene::world(const Rgb& radiance) {
+  Surface surface;
+  surface.emission = radiance;
+  scene.world(material(surface));
+}
+
+void PathScene::camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type) {
+  camera_desc.struct_size = sizeof(GradusCamera);
+  camera_desc.type = type;
+  const Mat4 m = look_at(from, at);
+  for (int i = 0; i < 16; ++i) {
+    camera_desc.matrix[i] = camera_desc.matrix_previous[i] = camera_desc.matrix_next[i] = m[i / 4][i % 4];
+  }
+  camera_desc.clip_start = 1e-3f;
+  camera_desc.clip_end = 1e4f;
+  camera_desc.aperture_ratio = 1.0f;
+  camera_desc.focus_distance = 1.0f;
+  field_ = field;
+}
+
+IntegratorContext PathScene::context(const GradusSettings& settings) {
+  const float aspect = static_cast<float>(settings.height) / static_cast<float>(settings.width);
+  const float window[4] = {-0.5f * field_, 0.5f * field_, -0.5f * field_ * aspect, 0.5f * field_ * aspect};
+  for (int i = 0; i < 4; ++i) {
+    camera_desc.window[i] = camera_desc.window_previous[i] = camera_desc.window_next[i] = window[i];
+  }
+  scene.scene.set_camera(camera_desc);
+  scene.lights(lights_);
+  IntegratorContext context;
+  context.snapshot = scene.commit();
+  context.camera = Camera(context.snapshot->camera, settings.width, settings.height);
+  context.settings = settings;
+  return context;
+}
+
+GradusSettings test_settings(uint32_t width, uint32_t height) {
+  GradusSettings s{};
+  s.struct_size = sizeof(s);
+  s.width = width;
+  s.height = height;
+  s.max_bounces = s.diffuse_bounces = s.glossy_bounces = s.transmission_bounces = 64;
+  s.transparent_max_bounces = 8;
+  s.pixel_filter = GRADUS_FILTER_BOX;
+  s.filter_width = 1.5f;
+  s.film_exposure = 1.0f;
+  s.roughness_threshold = 0.1f;
+  s.use_sky = 1;
+  s.independent_sampler = 1;
+  return s;
+}
+
+void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame) {
+  WorkUnit unit;
+  unit.tile = frame->region;
+  unit.first_sample = first;
+  unit.count = count;
+  const std::atomic<bool> stop{false};
+  integrator.sample(unit, frame, &frame->counters, stop);
+}
+
+Frame make_test_frame(const GradusSettings& settings, bool gradients) {
+  const Region region{0, 0, static_cast<int32_t>(settings.width), static_cast<int32_t>(settings.height)};
+  return Frame(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, 1, gradients);
+}
+
+namespace {
+
+Surface matte(const Rgb& color) {
+  Surface s;
+  s.diffuse = color;
+  return s;
+}
+
+// An open box with two coloured walls, seen from its open side.
+void add_box(PathScene* scene, const Surface& floor) {
+  const uint64_t white = scene->material(matte(Rgb(0.7f)));
+  const uint64_t red = scene->material(matte(Rgb(0.7f, 0.2f, 0.1f)));
+  const uint64_t green = scene->material(matte(Rgb(0.1f, 0.6f, 0.2f)));
+  scene->quad(Vec3(-1, -1, 1), Vec3(2, 0, 0), Vec3(0, 0, -2), scene->material(floor));
+  scene->quad(Vec3(-1, 1, -1), Vec3(2, 0, 0), Vec3(0, 0, 2), white);
+  scene->quad(Vec3(-1, -1, -1), Vec3(2, 0, 0), Vec3(0, 2, 0), white);
+  scene->quad(Vec3(-1, -1, 1), Vec3(0, 0, -2), Vec3(0, 2, 0), red);
+  scene->quad(Vec3(1, -1, -1), Vec3(0, 0, 2), Vec3(0, 2, 0), green);
+  scene->camera(Vec3(0, 0, 3.2f), Vec3(0, 0, 0), 0.9f);
+}
+
+void add_ceiling_light(PathScene* scene, float strength, float size = 0.6f) {
+  Surface light;
+  light.emission = Rgb(strength);
+  scene->quad(Vec3(-0.5f * size, 0.98f, -0.5f * size), Vec3(size, 0, 0), Vec3(0, 0, size), scene->material(light));
+}
+
+Surface glossy(float roughness) {
+  Surface s;
+  s.glossy = Rgb(0.8f, 0.7f, 0.6f);
+  s.glossy_roughness = roughness;
+  return s;
+}
+
+Surface glass(float roughness) {
+  Surface s;
+  s.glass = 1.0f;
+  s.glass_roughness = roughness;
+  return s;
+}
+
+GradusLight point_lamp(const Vec3& position, float radius, float intensity) {
+  GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(position), Rgb(intensity));
+  light.radius = radius;
+  return light;
+}
+
+}  // namespace
+
+const char* name_of(Scenario scenario) {
+  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",      "GlossyFloor", "RoughMetal",
+                                      "Mirror",      "Glass",       "RoughGlass", "Transparent", "LampsSeen"};
+  return names[static_cast<int>(scenario)];
+}
+
+void build(Scenario scenario, PathScene* scene) {
+  Surface floor = matte(Rgb(0.6f));
+  if (scenario == Scenario::GlossyFloor) {
+    floor = matte(Rgb(0.4f));
+    floor.glossy = Rgb(0.4f);
+    floor.glossy_roughness = 0.25f;  // class R that light sampling reaches
+  }
+  add_box(scene, floor);
+  switch (scenario) {
+    case Scenario::DiffuseArea:
+      add_ceiling_light(scene, 8.0f);
+      scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
+      break;
+    case Scenario::PointAndSun: {
+      scene->light(point_lamp(Vec3(0.1f, 0.6f, 0.4f), 0.0f, 0.6f));
+      GradusLight sun = make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(1.0f));
+      scene->light(sun);
+      sun.angle = 0.5f;
+      scene->light(sun);
+      scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
+      break;
+    }
+    case Scenario::World:
+      scene->world(Rgb(0.8f, 1.0f, 1.2f));
+      scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
+      break;
+    case Scenario::GlossyFloor:
+      add_ceiling_light(scene, 8.0f);
+      scene->light(point_lamp(Vec3(-0.4f, 0.3f, 0.3f), 0.0f, 0.2f));
+      break;
+    case Scenario::RoughMetal:
+      add_ceiling_light(scene, 8.0f);
+      scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glossy(0.5f)), 10, true);
+      break;
+    case Scenario::Mirror:
+      add_ceiling_light(scene, 8.0f);
+      scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glossy(0.0f)), 10, true);
+      break;
+    case Scenario::Glass:
+      add_ceiling_light(scene, 8.0f, 1.2f);
+      scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glass(0.0f)), 10, true);
+      break;
+    case Scenario::RoughGlass:
+      add_ceiling_light(scene, 8.0f, 1.2f);
+      scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glass(0.25f)), 10, true);
+      break;
+    case Scenario::Transparent: {
+      add_ceiling_light(scene, 8.0f);
+      Surface veil = matte(Rgb(0.5f, 0.4f, 0.3f));
+      veil.transparent = 0.5f;
+      scene->quad(Vec3(-0.7f, -0.7f, 0.4f), Vec3(1.2f, 0, 0.3f), Vec3(0, 1.1f, -0.2f), scene->material(veil));
+      break;
+    }
+    case Scenario::LampsSeen: {
+      scene->light(point_lamp(Vec3(0.3f, 0.2f, 0.2f), 0.15f, 0.5f));
+      GradusLight area = make_light(GRADUS_LIGHT_RECTANGLE, translation(Vec3(-0.3f, 0.9f, 0.0f)), Rgb(4.0f));
+      Mat4 down(1.0f);
+      down[1] = Vec4(0, 0, -1, 0);
+      down[2] = Vec4(0, 1, 0, 0);
+      down[3] = Vec4(-0.3f, 0.9f, 0.0f, 1.0f);
+      for (int i = 0; i < 16; ++i) area.matrix[i] = down[i / 4][i % 4];
+      area.size[0] = area.size[1] = 0.4f;
+      scene->light(area);
+      scene->ball(Vec3(0.0f, -0.5f, 0.0f), 0.4f, scene->material(glossy(0.2f)), 8, true);
+      break;
+    }
+    case Scenario::Count:
+      break;
+  }
+}
+
+}  // namespace gradus::test

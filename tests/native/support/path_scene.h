@@ -1,0 +1,62 @@
+// Small scenes for integrators: materials from a few lobes, cameras, and renders of a few pixels.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "integrator/integrator.h"
+#include "scene/scene_fixture.h"
+
+namespace gradus::test {
+
+// A surface: lobes that are added up, emission, and a share that lets light straight through.
+struct Surface {
+  Rgb diffuse = Rgb(0.0f);
+  Rgb glossy = Rgb(0.0f);
+  float glossy_roughness = 0.0f;  // Blender's: alpha is its square
+  float glass = 0.0f;             // weight
+  float glass_roughness = 0.0f;
+  float ior = 1.5f;
+  Rgb emission = Rgb(0.0f);
+  float transparent = 0.0f;
+};
+
+class PathScene {
+ public:
+  // Key of a material to give to instances.
+  uint64_t material(const Surface& surface);
+  // A parallelogram: corner and two edges; its normal is along a × b.
+  void quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t material, uint32_t visibility = GRADUS_VISIBLE_ALL);
+  // smooth: with normals of the true sphere.
+  void ball(const Vec3& centre, float radius, uint64_t material, int rings = 12, bool smooth = false);
+  void light(const GradusLight& light) { lights_.push_back(light); }
+  void world(const Rgb& radiance);
+  // At `from`, looking at `at`, y up; field: width of the frame at distance 1 (orthographic: in metres).
+  void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
+
+  GradusCamera camera_desc{};
+  // Commits. settings.width and height give the camera's aspect.
+  IntegratorContext context(const GradusSettings& settings);
+
+  TestScene scene;
+
+ private:
+  std::vector<GradusLight> lights_;
+  uint64_t next_key_ = 1;
+  Vec3 camera_from_ = Vec3(0.0f);
+  float field_ = 1.0f;
+};
+
+// Small, independent random numbers, bounces without limit.
+GradusSettings test_settings(uint32_t width, uint32_t height);
+
+// All pixels with samples [first, first + count).
+void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame);
+Frame make_test_frame(const GradusSettings& settings, bool gradients);
+
+// Cornell-like scenes, each for one part of the shift.
+enum class Scenario { DiffuseArea, PointAndSun, World, GlossyFloor, RoughMetal, Mirror, Glass, RoughGlass, Transparent, LampsSeen, Count };
+const char* name_of(Scenario scenario);
+void build(Scenario scenario, PathScene* scene);
+
+}  // namespace gradus::test

@@ -1,0 +1,128 @@
+// The integrators against each other and against differences of images: B3 and B7 for the sampled planes, bit equality of the primal.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+using test::Scenario;
+
+constexpr uint32_t kWidth = 12;
+constexpr uint32_t kHeight = 10;
+
+class Scenarios : public testing::TestWithParam<Scenario> {
+ protected:
+  void SetUp() override { test::build(GetParam(), &scene_); }
+  IntegratorContext context(uint32_t seed, bool independent = true) {
+    GradusSettings settings = test::test_settings(kWidth, kHeight);
+    settings.seed = seed;
+    settings.independent_sampler = independent ? 1 : 0;
+    return scene_.context(settings);
+  }
+  PathScene scene_;
+};
+
+TEST_P(Scenarios, PrimalOfBothIntegratorsIsBitEqual) {
+  const IntegratorContext c = context(1, false);
+  Frame plain = test::make_test_frame(c.settings, false);
+  Frame gradient = test::make_test_frame(c.settings, true);
+  test::sample_frame(*make_path_integrator(c), 0, 16, &plain);
+  test::sample_frame(*make_gradient_integrator(c), 0, 16, &gradient);
+  for (int half = 0; half < kHalves; ++half) {
+    EXPECT_EQ(plain.components[0].primal[half], gradient.components[0].primal[half]);
+  }
+  double sum = 0.0;
+  for (const Radiance& r : plain.components[0].primal[0]) sum += r.x;
+  EXPECT_GT(sum, 0.0);
+  EXPECT_EQ(gradient.counters.nonfinite_radiance + gradient.counters.nonfinite_gradient, 0u);
+}
+
+// Seeds of independent renders; D = sampled difference − difference of the primal images has mean 0 if both are unbiased.
+class DifferenceStatistics {
+ public:
+  void add(const GradientImages& images, bool x) {
+    const int step = images.channels * (x ? 1 : images.width);
+    const std::vector<float>& plane = x ? images.dx : images.dy;
+    sum_.resize(plane.size(), 0.0);
+    squares_.resize(plane.size(), 0.0);
+    for (int row = 0; row + (x ? 0 : 1) < images.height; ++row) {
+      for (int column = 0; column + (x ? 1 : 0) < images.width; ++column) {
+        for (int c = 0; c < 3; ++c) {
+          const int i = (row * images.width + column) * images.channels + c;
+          const double d = double(plane[i]) - (double(images.primal[i + step]) - double(images.primal[i]));
+          sum_[i] += d;
+          squares_[i] += d * d;
+        }
+      }
+    }
+    ++count_;
+  }
+  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), and t of all of them together.
+  void check(const char* what) const {
+    double total = 0.0;
+    double total_variance = 0.0;
+    double sum_t2 = 0.0;
+    int used = 0;
+    for (size_t i = 0; i < sum_.size(); ++i) {
+      const double mean = sum_[i] / count_;
+      const double variance = (squares_[i] - count_ * mean * mean) / (count_ - 1) / count_;
+      if (variance > 0.0) {
+        total += mean;
+        total_variance += variance;
+        sum_t2 += mean * mean / variance;
+        ++used;
+      }
+    }
+    ASSERT_GT(used, 50) << what;
+    const double expected = double(count_ - 1) / double(count_ - 3);
+    EXPECT_LT(sum_t2 / used, 1.35 * expected) << what;
+    // Neighbouring differences share a pixel and cancel in the sum: the bound is generous for them and tight for a common bias.
+    EXPECT_LT(std::fabs(total), 5.0 * std::sqrt(total_variance)) << what;
+    std::printf("  %s: mean t² %.3f (expected %.3f), total %.4g ± %.2g\n", what, sum_t2 / used, expected, total, std::sqrt(total_variance));
+  }
+
+ private:
+  std::vector<double> sum_;
+  std::vector<double> squares_;
+  int count_ = 0;
+};
+
+TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
+  DifferenceStatistics dx;
+  DifferenceStatistics dy;
+  Counters counters;
+  for (uint32_t seed = 0; seed < 32; ++seed) {
+    const IntegratorContext c = context(100 + seed);
+    Frame frame = test::make_test_frame(c.settings, true);
+    test::sample_frame(*make_gradient_integrator(c), 0, 64, &frame);
+    const GradientImages images = read_images(frame, 0, false);
+    dx.add(images, true);
+    dy.add(images, false);
+    counters.add(frame.counters);
+  }
+  dx.check("dx");
+  dy.check("dy");
+  std::printf(
+      "  shifts %lu: reconnected %lu, half-vector %lu, replayed %lu; failed: missed %lu occluded %lu class %lu tir %lu side %lu density "
+      "%lu "
+      "jacobian %lu\n",
+      counters.shifts_attempted, counters.shifts_reconnected, counters.shifts_half_vector, counters.shifts_replayed, counters.fail_missed,
+      counters.fail_occluded, counters.fail_class, counters.fail_total_reflection, counters.fail_side, counters.fail_density,
+      counters.fail_jacobian);
+}
+
+std::vector<Scenario> all_scenarios() {
+  std::vector<Scenario> all;
+  for (int i = 0; i < static_cast<int>(Scenario::Count); ++i) all.push_back(static_cast<Scenario>(i));
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Scenarios, testing::ValuesIn(all_scenarios()),
+                         [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
+
+}  // namespace
+}  // namespace gradus
