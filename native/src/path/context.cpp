@@ -1,5 +1,9 @@
 #include "path/context.h"
 
+#include <algorithm>
+
+#include "shading/material.h"
+
 namespace gradus {
 
 namespace {
@@ -18,6 +22,10 @@ bool is_uniform(const Snapshot& scene) {
   return true;
 }
 
+bool lets_through(const Snapshot& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& material) { return material->may_be_transparent; });
+}
+
 }  // namespace
 
 PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const GradusSettings& settings_)
@@ -27,7 +35,7 @@ PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const 
       filter(settings_.pixel_filter, settings_.filter_width),
       clamp_direct(sum_limit(settings_.clamp_direct)),
       clamp_indirect(sum_limit(settings_.clamp_indirect)),
-      has_transparency(snapshot.features.has_transparent_shadows),
+      has_transparency(lets_through(snapshot)),
       uniform_visibility(is_uniform(snapshot)) {}
 
 }  // namespace gradus

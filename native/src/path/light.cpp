@@ -46,12 +46,13 @@ LitClass light_class(const Vertex& vertex, ScatterClass c, const EmitterView& vi
   return lit;
 }
 
-Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterView& view, uint32_t crossed) {
+Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterPoint& point, const EmitterView& view,
+                        uint32_t crossed) {
   if (!view.casts_shadow) {
     return Rgb(1.0f);
   }
-  const Ray ray = spawn_ray(from, view.direction, view.distance);
-  if (!context.has_transparency) {
+  const Ray ray = shadow_ray(from, point, view);
+  if (!context.scene.features.has_transparent_shadows) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
   const uint32_t allowed = context.settings.transparent_max_bounces;

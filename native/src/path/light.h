@@ -26,7 +26,8 @@ bool sample_light(const PathContext& context, const Sampler& sampler, const Vert
 // Scattering of the emitter's light at a vertex towards its wo; the kinds of bounces that the emitter is hidden from are left out.
 LitClass light_class(const Vertex& vertex, ScatterClass c, const EmitterView& view, bool dirac_emitter);
 // Transmittance for shadow rays.
-Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterView& view, uint32_t crossed);
+Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterPoint& point, const EmitterView& view,
+                        uint32_t crossed);
 // The event from which a ray came; nullptr for the camera.
 struct RaySource {
   const Vertex* vertex = nullptr;

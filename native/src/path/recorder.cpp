@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "frame/gate.h"
+#include "scene/mesh.h"
+#include "shading/material.h"
 
 namespace gradus {
 
@@ -28,6 +30,16 @@ PassShare share_of(const std::array<Rgb, 3>& parts) {
 }
 
 constexpr uint32_t first_pass(int light_pass) { return GRADUS_PASS_DIFFUSE_DIRECT + 3u * static_cast<uint32_t>(light_pass); }
+
+// As Blender's pass has it: u, v, 1; 0 without a UV map.
+Vec3 uv_of(const MeshData& mesh, const Hit& hit) {
+  const MeshAttribute* map = default_uv_map(mesh);
+  if (map == nullptr) {
+    return Vec3(0.0f);
+  }
+  const Vec4 uv = interpolate(corner_values(mesh, *map, hit.triangle), hit.barycentric);
+  return Vec3(uv.x, uv.y, 1.0f);
+}
 
 Vec3 shown_normal(const Vertex& vertex) {
   if (!vertex.shade.closures.empty()) {
@@ -124,7 +136,11 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
   add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position));
   add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
   add(GRADUS_PASS_OBJECT_INDEX, static_cast<float>(instance.pass_index));
+  add(GRADUS_PASS_MATERIAL_INDEX, static_cast<float>(context_.scene.materials[vertex.point.material]->pass_index));
   add(GRADUS_PASS_NORMAL, shown_normal(vertex));
+  if (plane(GRADUS_PASS_UV) != nullptr) {
+    add(GRADUS_PASS_UV, uv_of(*instance.mesh, vertex.point.hit));
+  }
   if (plane(GRADUS_PASS_VECTOR) != nullptr) {
     motion(vertex);
   }

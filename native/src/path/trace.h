@@ -146,7 +146,7 @@ class PathTracer {
       return;
     }
     ++counters_.rays_shadow;
-    const Rgb through = light_transmittance(context_, vertex.point, s_.light.view, state_.ray.state.transparent_depth);
+    const Rgb through = light_transmittance(context_, vertex.point, s_.light.point, s_.light.view, state_.ray.state.transparent_depth);
     for (int k = 0; k < kScatterClasses && !is_black(through); ++k) {
       const Contribution c = light_contribution(context_, state_, s_.light, lit[k], through);
       if (!is_black(c.clamped)) {

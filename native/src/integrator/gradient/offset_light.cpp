@@ -61,17 +61,17 @@ void OffsetPaths::transparent(float value) {
 // ------------------------------------------------------------------------------------------------ emitters that the base's ray found
 
 // From class D: the emitter point is copied. base, offset: as seen from the two vertices; probability: of the base's decisions up to it.
-void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterView& base, const EmitterView& offset, float jacobian,
+void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,
                                float probability) {
   OffsetPath& o = offsets_[k];
-  const ShiftedEvent event = event_towards(base_event_, *o.here, offset.direction, jacobian);
+  const ShiftedEvent event = event_towards(base_event_, *o.here, offset.direction, copy_jacobian(point, base, offset));
   if (event.failure != ShiftFailure::None || is_black(offset.radiance)) {
     count_failure(&counters_, event.failure);
     alone(k, c);
     return;
   }
   ++counters_.rays_shift_shadow;
-  const Rgb through = segment_transmittance(context_, spawn_ray(o.here->point, offset.direction, offset.distance), base_state_.ray);
+  const Rgb through = segment_transmittance(context_, shadow_ray(o.here->point, point, offset), base_state_.ray);
   if (is_black(through)) {
     ++counters_.fail_occluded;
     alone(k, c);
@@ -91,7 +91,7 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
     } else if (o.stage == OffsetStage::Pending) {
       const EmitterView base = view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex));
       const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
-      copy_emitter(k, c, base, view, copy_jacobian(lamp.point, base, view), lamp.probability);
+      copy_emitter(k, c, lamp.point, base, view, lamp.probability);
     } else if (o.stage == OffsetStage::Traced) {
       const LampSighting* own = same_lamp(o.segment, lamp);
       const Contribution other = own != nullptr ? lamp_contribution(context_, o.source(), o.state, *own) : Contribution{};
@@ -115,9 +115,10 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
       base.visibility = context_.scene.world.visibility;
       EmitterView view = base;
       view.radiance = c.light;
-      const RaySource own{o.here, source.event};
-      view.pdf = light_pdf(context_, own, emitter_of_world(context_.scene, direction));
-      copy_emitter(k, c, base, view, 1.0f, base_segment_->probability);
+      EmitterPoint point = emitter_of_world(context_.scene, direction);
+      view.pdf = light_pdf(context_, RaySource{o.here, source.event}, point);
+      point.kind = EmitterKind::World;  // also where light sampling leaves it out
+      copy_emitter(k, c, point, base, view, base_segment_->probability);
     } else if (o.stage == OffsetStage::Traced) {
       const Contribution other = world_contribution(context_, o.source(), o.state);
       is_black(other.clamped) ? alone(k, c) : pair(k, c, other.clamped, o.ratio);
@@ -168,20 +169,21 @@ void OffsetPaths::light_all(const LightSample& sample) {
     o.light.transmittance = Rgb(0.0f);
     wanted[k] = !is_black(o.light.view.radiance);
     if (wanted[k]) {
-      rays[k] = spawn_ray(o.here->point, o.light.view.direction, o.light.view.distance);
+      rays[k] = shadow_ray(o.here->point, sample.point, o.light.view);
       ++counters_.rays_shift_shadow;
       any = true;
     }
   }
-  const bool packet = !context_.has_transparency && sample.view.casts_shadow;
+  const bool packet = !context_.scene.features.has_transparent_shadows && sample.view.casts_shadow;
   if (any && packet) {
     context_.scene.occluded4(rays, blocked);
   }
   for (int k = 0; k < kOffsets; ++k) {
     if (wanted[k]) {
       OffsetPath& o = offsets_[k];
-      o.light.transmittance = packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
-                                     : light_transmittance(context_, o.here->point, o.light.view, o.state.ray.state.transparent_depth);
+      o.light.transmittance =
+          packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
+                 : light_transmittance(context_, o.here->point, sample.point, o.light.view, o.state.ray.state.transparent_depth);
     }
   }
 }

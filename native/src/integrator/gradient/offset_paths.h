@@ -48,7 +48,8 @@ class OffsetPaths {
   void light_all(const LightSample& sample);
   void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
-  void copy_emitter(int k, const Contribution& c, const EmitterView& base, const EmitterView& offset, float jacobian, float probability);
+  void copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,
+                    float probability);
   bool joint(const EmitterView& view) const;
 
   const PathContext& context_;
