@@ -101,14 +101,21 @@ const Rgb* constant_emission(const Snapshot& snapshot, const EmitterPoint& point
   return material.emission_is_constant ? &material.constant_emission : nullptr;
 }
 
-// The program of a lamp sees no mesh: Hit is not valid.
+// Coordinates over an area lamp, 0..1; elsewhere 0.
+Vec2 lamp_uv(const Lamp& lamp, const EmitterPoint& point) {
+  if (lamp.half_width <= 0.0f || lamp.half_height <= 0.0f) return Vec2(0.0f);
+  const Vec3 d = point.position - lamp.position;
+  return 0.5f + 0.5f * Vec2(glm::dot(d, lamp.axis_x) / lamp.half_width, glm::dot(d, lamp.axis_y) / lamp.half_height);
+}
+
 Rgb lamp_emission(const Snapshot& snapshot, const Lamp& lamp, const EmitterPoint& point, const EmitterView& view) {
   if (lamp.material == UINT32_MAX || is_black(view.radiance)) return Rgb(1.0f);
-  SurfacePoint surface;
-  surface.position = point.position;
-  surface.geometric_normal = surface.shading_normal = point.normal == Vec3(0.0f) ? -view.direction : point.normal;
-  surface.material = lamp.material;
-  return shade_emission(snapshot, surface, -view.direction, light_ray(view.distance));
+  LampPoint at;
+  at.position = point.position;
+  at.normal = point.normal == Vec3(0.0f) ? -view.direction : point.normal;
+  at.wo = -view.direction;
+  at.uv = lamp_uv(lamp, point);
+  return shade_lamp(snapshot, lamp.material, at, light_ray(view.distance));
 }
 
 // Geometry and solid angle density of an emissive triangle.
