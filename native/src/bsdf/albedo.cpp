@@ -23,7 +23,7 @@ float mean_dielectric(float eta) {
 Rgb mean_fresnel(const Lobe& lobe) {
   switch (lobe.fresnel) {
     case FresnelType::None:
-      return Rgb(1.0f);
+      return lobe.f0;
     case FresnelType::Dielectric:
       return Rgb(mean_dielectric(lobe.ior));
     case FresnelType::Schlick: {
@@ -122,11 +122,18 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, const Vec3& wo) {
   }
 }
 
+// Layers take what Cycles takes: the albedo as if no energy were lost between facets, and below an IOR of 1 that of its inverse, as
+// its tables end there.
 Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo) {
   Lobe prepared = lobe;
   prepare_lobe(&prepared, glm::dot(lobe.normal, wo) < 0.0f ? -lobe.normal : lobe.normal, wo);
+  float kept = 1.0f;
+  if (prepared.type == LobeType::GgxReflection) {
+    prepared.ior = prepared.fresnel == FresnelType::Schlick ? std::max(prepared.ior, 1.0f / prepared.ior) : prepared.ior;
+    kept = prepared.multiscatter ? 1.0f : ggx_moments(mean_alpha(prepared), glm::dot(prepared.normal, wo)).one;
+  }
   const LobeAlbedo albedo = two_sided_albedo(prepared, make_frame(prepared.normal, prepared.tangent).to_local(wo));
-  return albedo.reflected + albedo.transmitted;
+  return (albedo.reflected + albedo.transmitted) / std::max(kept, 0.05f);
 }
 
 }  // namespace gradus

@@ -43,8 +43,8 @@ enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
 //   fresnel Dielectric     of ior
 //   fresnel Schlick        mix(f0, f90, s): s follows the dielectric curve of ior, scaled to 0…1, as in Blender 4; ior 1: fifth power
 //   fresnel PrincipledMetal  f0, and f90 = tint at 82 degrees (1 = plain Schlick)
-// multiscatter takes the colour of repeated bounces from the Fresnel term: a glossy lobe's own colour then goes into f0 = f90 (Schlick),
-// with a white weight, to be Cycles' MULTI_GGX.
+// multiscatter: the colour of repeated bounces between facets comes from the Fresnel term; without one from f0, a colour that weight
+// holds, too (Cycles' MULTI_GGX).
 // Glass reflects with weight·F and transmits with weight·transmission_tint·(1 − F).
 struct Lobe {
   LobeType type = LobeType::Diffuse;
@@ -83,7 +83,8 @@ struct BsdfSample {
   uint8_t lobe = 0;  // index of the sampled lobe
 };
 
-// Directional albedo of one lobe by itself, weight included, before finish(): for layering. wo is inside where normal·wo < 0.
+// Directional albedo of one lobe by itself, weight included, before finish(): for layering, so without what single scattering loses. wo
+// is inside where normal·wo < 0.
 Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo);
 
 inline constexpr int kMaxLobes = 12;

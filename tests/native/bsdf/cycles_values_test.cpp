@@ -175,9 +175,9 @@ Lobe lobe_of(const std::string& name) {
   metal.f0 = Rgb(0.9f, 0.6f, 0.3f);
   metal.f90 = Rgb(0.7f, 0.8f, 0.9f);
   if (name == "metal05") return metal;
-  // The Glossy node with a colour: the colour acts on each bounce between facets.
-  Lobe glossy = multiscatter(LobeType::GgxReflection, 0.7f, FresnelType::Schlick, 1.0f);
-  glossy.f0 = glossy.f90 = Rgb(0.8f, 0.5f, 0.2f);
+  // The Glossy node with a colour, which acts on each bounce between facets.
+  Lobe glossy = multiscatter(LobeType::GgxReflection, 0.7f, FresnelType::None, 1.0f);
+  glossy.weight = glossy.f0 = Rgb(0.8f, 0.5f, 0.2f);
   return glossy;
 }
 
