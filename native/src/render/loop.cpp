@@ -1,6 +1,7 @@
 #include "render/loop.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <chrono>
@@ -20,13 +21,19 @@ namespace {
 // How often a long batch says that there is something new to see.
 constexpr int64_t kImageIntervalMs = 300;
 
+// TBB prints a warning when asked for more than it has.
+int arena_size(uint32_t threads) {
+  const size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return int(std::clamp<size_t>(threads, 1, std::max<size_t>(most, 1)));
+}
+
 }  // namespace
 
 RenderLoop::RenderLoop(LoopInput input)
     : input_(std::move(input)),
       plan_(make_plan(input_.settings, *input_.snapshot)),
       tiles_(plan_.sampled, tile_side(plan_.sampled, input_.threads)),
-      arena_(int(input_.threads)),
+      arena_(arena_size(input_.threads)),
       process_cpu_start_(process_cpu_nanoseconds()) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
   const uint64_t bytes = planned_bytes(plan_, input_.settings), available = machine_memory_bytes();

@@ -1,0 +1,277 @@
+// G1, G3, G6 and G10 of the C API: wrong handles, the error slot, calls out of order, handles that come and go.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+#include <thread>
+
+#include "api/error_slot.h"
+#include "api/guard.h"
+#include "api/registry.h"
+#include "api/test_scene.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+// Every function that takes a handle, with all else right or NULL.
+std::vector<std::function<GradusError(uint64_t)>> handle_functions(uint32_t kind) {
+  switch (kind) {
+    case 0:
+      return {[](uint64_t h) { return gradus_device_release(h); },
+              [](uint64_t h) {
+                const char* t;
+                return gradus_device_warning(h, &t);
+              },
+              [](uint64_t h) {
+                GradusScene s;
+                return gradus_scene_create(h, &s);
+              },
+              [](uint64_t h) {
+                GradusScene s;
+                return gradus_scene_load(h, "/nonexistent", &s, nullptr);
+              },
+              [](uint64_t h) {
+                GradusFrame f;
+                return gradus_frame_load(h, "/nonexistent", &f);
+              },
+              [](uint64_t h) {
+                GradusColorSpace s = sized<GradusColorSpace>();
+                s.name = "x";
+                return gradus_device_set_color_space(h, &s);
+              }};
+    case 1:
+      return {[](uint64_t h) { return gradus_scene_release(h); },
+              [](uint64_t h) { return set_quad(h); },
+              [](uint64_t h) { return set_instance(h); },
+              [](uint64_t h) { return set_light(h); },
+              [](uint64_t h) { return set_camera(h); },
+              [](uint64_t h) {
+                GradusWorld w = sized<GradusWorld>();
+                return gradus_scene_set_world(h, &w);
+              },
+              [](uint64_t h) {
+                GradusImage i = sized<GradusImage>();
+                return gradus_scene_set_image(h, 1, &i);
+              },
+              [](uint64_t h) {
+                GradusMaterial m = sized<GradusMaterial>();
+                m.surface = -1;
+                return gradus_scene_set_material(h, 1, &m);
+              },
+              [](uint64_t h) { return gradus_scene_remove(h, GRADUS_KIND_MESH, 1); },
+              [](uint64_t h) { return gradus_scene_commit(h, nullptr, nullptr); },
+              [](uint64_t h) { return gradus_scene_record(h, 1); },
+              [](uint64_t h) { return gradus_scene_save(h, nullptr, "/nonexistent/x"); },
+              [](uint64_t h) {
+                GradusRender r;
+                const GradusSettings s = small_render();
+                return gradus_render_start(h, &s, &r);
+              },
+              [](uint64_t h) {
+                GradusRender r;
+                const GradusSettings s = small_render();
+                return gradus_render_resume(h, &s, 0, &r);
+              }};
+    case 2:
+      return {[](uint64_t h) { return gradus_render_release(h); },
+              [](uint64_t h) {
+                GradusProgress p = sized<GradusProgress>();
+                return gradus_render_poll(h, &p);
+              },
+              [](uint64_t h) { return gradus_render_cancel(h); },
+              [](uint64_t h) { return gradus_render_wait(h, 0.0); },
+              [](uint64_t h) {
+                float p[4];
+                return gradus_render_read_pass(h, 0, p, 4);
+              },
+              [](uint64_t h) {
+                const char* j;
+                return gradus_render_stats(h, &j);
+              },
+              [](uint64_t h) {
+                GradusFrame f;
+                return gradus_render_frame(h, &f);
+              }};
+    default:
+      return {[](uint64_t h) { return gradus_frame_release(h); },
+              [](uint64_t h) { return gradus_frame_save(h, "/nonexistent/x"); },
+              [](uint64_t h) { return gradus_frame_merge(h, h); },
+              [](uint64_t h) {
+                uint32_t a, b;
+                return gradus_frame_size(h, &a, &b);
+              },
+              [](uint64_t h) {
+                float p[4];
+                return gradus_frame_reconstruct(h, 0, 0.2f, p, 4);
+              },
+              [](uint64_t h) {
+                float p[4];
+                return gradus_frame_read_pass(h, 0, p, 4);
+              }};
+  }
+}
+
+TEST(G1_Handles, WrongOnesAreRefusedEverywhere) {
+  const GradusDevice device = make_device();
+  const GradusScene scene = make_scene(device);
+  GradusScene freed = 0;
+  ASSERT_OK(gradus_scene_create(device, &freed));
+  ASSERT_OK(gradus_scene_release(freed));
+  GradusScene again = 0;  // takes the freed slot
+  ASSERT_OK(gradus_scene_create(device, &again));
+  EXPECT_NE(again, freed);
+  std::mt19937_64 random(1);
+  for (uint32_t kind = 0; kind < 4; ++kind) {
+    std::vector<uint64_t> wrong = {0, 1, UINT64_MAX, freed, uint64_t{9} << 56 | 1};
+    if (kind != 0) wrong.push_back(device);
+    if (kind != 1) wrong.push_back(scene);
+    for (int i = 0; i < 300; ++i) wrong.push_back(random());
+    for (const auto& function : handle_functions(kind)) {
+      for (const uint64_t handle : wrong) {
+        EXPECT_EQ(function(handle), GRADUS_ERROR_INVALID_ARGUMENT) << kind;
+        EXPECT_FALSE(error_text().empty());
+      }
+    }
+  }
+  EXPECT_OK(gradus_scene_release(again));
+  EXPECT_OK(gradus_scene_release(scene));
+  EXPECT_EQ(gradus_scene_release(scene), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(error_text().find("released before"), std::string::npos);
+  EXPECT_OK(gradus_device_release(device));
+}
+
+TEST(G1_Handles, NullPointersAreRefusedEverywhere) {
+  const GradusDevice device = make_device();
+  const GradusScene scene = make_scene(device);
+  const GradusSettings settings = small_render();
+  GradusRender render = 0;
+  ASSERT_OK(gradus_render_start(scene, &settings, &render));
+  EXPECT_EQ(gradus_device_create(nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_device_warning(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_device_set_color_space(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_create(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_set_mesh(scene, 1, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_set_image(scene, 1, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_set_material(scene, 1, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_set_instances(scene, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_set_lights(scene, nullptr, 1), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_set_lights(scene, nullptr, 0), GRADUS_OK);
+  EXPECT_EQ(gradus_scene_set_camera(scene, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_set_world(scene, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_save(scene, nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_load(device, nullptr, nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_render_start(scene, nullptr, &render), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_render_start(scene, &settings, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_option(0, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_settings_default(nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  gradus_error(nullptr);
+  EXPECT_OK(gradus_scene_release(scene));
+  EXPECT_OK(gradus_device_release(device));
+}
+
+TEST(G3_ErrorSlot, KeepsTheFirstErrorOfEachThreadUntilRead) {
+  gradus_error(nullptr);
+  EXPECT_EQ(gradus_device_release(0), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_pass_info(1000, nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  std::thread other([] {
+    const char* text = nullptr;
+    EXPECT_EQ(gradus_error(&text), GRADUS_OK);
+    EXPECT_STREQ(text, "");
+  });
+  other.join();
+  const char* text = nullptr;
+  EXPECT_EQ(gradus_error(&text), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(std::string(text).find("device"), std::string::npos) << text;
+  EXPECT_EQ(gradus_error(&text), GRADUS_OK);
+  EXPECT_STREQ(text, "");
+}
+
+TEST(G3_ErrorSlot, TextIsUtf8AndEnds) {
+  gradus_error(nullptr);
+  std::string long_text(5000, 'a');
+  long_text[10] = '\xff';
+  long_text.replace(20, 2, "\xc3\xa4");
+  EXPECT_EQ(api::guard([&] { throw invalid_operation(long_text); }), GRADUS_ERROR_INVALID_OPERATION);
+  const char* text = nullptr;
+  gradus_error(&text);
+  EXPECT_LT(std::strlen(text), 3000u);
+  EXPECT_EQ(text[10], '?');
+  EXPECT_EQ(std::string(text, 20, 2), "\xc3\xa4");
+}
+
+TEST(G4_Exceptions, EveryKindBecomesACode) {
+  EXPECT_EQ(api::guard([] { throw std::bad_alloc(); }), GRADUS_ERROR_OUT_OF_MEMORY);
+  EXPECT_EQ(api::guard([] { throw std::length_error("x"); }), GRADUS_ERROR_OUT_OF_MEMORY);
+  EXPECT_EQ(api::guard([] { throw std::runtime_error("x"); }), GRADUS_ERROR_UNKNOWN);
+  EXPECT_EQ(api::guard([] { throw std::invalid_argument("x"); }), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(api::guard([] { throw unsupported("x"); }), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_EQ(api::guard([] { throw cancelled(); }), GRADUS_ERROR_CANCELLED);
+  EXPECT_EQ(api::guard([] { throw 7; }), GRADUS_ERROR_UNKNOWN);
+  gradus_error(nullptr);
+}
+
+TEST(G6_Order, RendersOutliveTheirSceneAndDevice) {
+  const GradusDevice device = make_device();
+  GradusScene scene = 0;
+  ASSERT_OK(gradus_scene_create(device, &scene));
+  const GradusSettings settings = small_render();
+  GradusRender render = 0;
+  EXPECT_EQ(gradus_render_start(scene, &settings, &render), GRADUS_ERROR_INVALID_OPERATION);
+  EXPECT_EQ(error_text(), "the scene was not committed");
+  EXPECT_OK(gradus_scene_commit(scene, nullptr, nullptr));
+  EXPECT_EQ(gradus_render_start(scene, &settings, &render), GRADUS_ERROR_INVALID_OPERATION);
+  EXPECT_EQ(error_text(), "the scene has no camera");
+  EXPECT_EQ(render, 0u);
+  fill_scene(scene);
+  EXPECT_OK(gradus_scene_commit(scene, nullptr, nullptr));
+  ASSERT_OK(gradus_render_start(scene, &settings, &render));
+  EXPECT_OK(set_light(scene));  // edited while it renders
+  EXPECT_OK(gradus_scene_commit(scene, nullptr, nullptr));
+  EXPECT_OK(gradus_scene_release(scene));
+  EXPECT_OK(gradus_device_release(device));
+  EXPECT_OK(gradus_render_wait(render, -1.0));
+  GradusFrame frame = 0;
+  ASSERT_OK(gradus_render_frame(render, &frame));
+  EXPECT_OK(gradus_render_release(render));
+  uint32_t width = 0, height = 0;
+  EXPECT_OK(gradus_frame_size(frame, &width, &height));
+  EXPECT_EQ(width, 24u);
+  std::vector<float> rgba(size_t(width) * height * 4);
+  EXPECT_OK(gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_L1, 0.2f, rgba.data(), rgba.size()));
+  EXPECT_OK(gradus_frame_release(frame));
+}
+
+TEST(G6_Order, ReleaseWhileRenderingWaits) {
+  const GradusDevice device = make_device();
+  const GradusScene scene = make_scene(device);
+  const GradusSettings settings = small_render(256, 256, 100000);
+  GradusRender render = 0;
+  ASSERT_OK(gradus_render_start(scene, &settings, &render));
+  EXPECT_EQ(gradus_render_wait(render, 0.0), GRADUS_ERROR_INVALID_OPERATION);
+  GradusFrame frame = 0;
+  EXPECT_EQ(gradus_render_frame(render, &frame), GRADUS_ERROR_INVALID_OPERATION);
+  const char* json = nullptr;
+  EXPECT_EQ(gradus_render_stats(render, &json), GRADUS_ERROR_INVALID_OPERATION);
+  EXPECT_EQ(json, nullptr);
+  EXPECT_OK(gradus_render_release(render));
+  EXPECT_OK(gradus_scene_release(scene));
+  EXPECT_OK(gradus_device_release(device));
+  gradus_error(nullptr);
+}
+
+TEST(G10_Registry, HandlesComeAndGo) {
+  api::Registry registry;
+  uint64_t last = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const uint64_t handle = registry.add(api::HandleType::Frame, std::make_shared<int>(i));
+    EXPECT_NE(handle, last);
+    EXPECT_EQ(*std::static_pointer_cast<int>(registry.remove(api::HandleType::Frame, handle)), i);
+    last = handle;
+  }
+  EXPECT_EQ(registry.size(), 0u);
+}
+
+}  // namespace
+}  // namespace gradus

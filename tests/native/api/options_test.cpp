@@ -1,0 +1,172 @@
+// G9: options, their defaults and the texts they are set by.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "gradus/gradus.h"
+#include "render/options.h"
+#include "render/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// One line per option: name, type, default, range, choices. Changing one is a change for users: say so in the changelog.
+constexpr const char* kGolden = R"(width 0 1920 1 65536 
+height 0 1080 1 65536 
+samples 0 64 1 1.67772e+07 
+min_samples 0 0 0 1.67772e+07 
+noise_threshold 1 0.01 0 3.4e+38 
+time_limit 1 0 0 3.4e+38 
+seed 0 0 0 2.14748e+09 
+use_animated_seed 2 1 0 1 
+frame 0 0 -2.14748e+09 2.14748e+09 
+integrator 3 0 0 4 auto path gradient bidirectional metropolis
+reconstruction 3 0 0 5 auto none l2 weighted l1 regularized
+reconstruction_alpha 1 0.2 0.001 1000 
+max_bounces 0 12 0 1024 
+diffuse_bounces 0 4 0 1024 
+glossy_bounces 0 4 0 1024 
+transmission_bounces 0 12 0 1024 
+volume_bounces 0 0 0 1024 
+transparent_max_bounces 0 8 0 1024 
+clamp_direct 1 0 0 3.4e+38 
+clamp_indirect 1 0 0 3.4e+38 
+pixel_filter 3 2 0 2 box gaussian blackman_harris
+filter_width 1 1.5 0.01 10 
+film_exposure 1 1 0 3.4e+38 
+film_transparent 2 0 0 1 
+roughness_threshold 1 0.1 0 1 
+strict 2 0 0 1 
+threads 0 0 0 1024 
+alpha_threshold 1 0.5 0 1 
+use_sky 2 1 0 1 
+independent_sampler 2 0 0 1 
+first_sample 0 0 0 1.67772e+07 
+)";
+
+TEST(G9_Options, EqualTheGoldenTable) {
+  std::ostringstream table;
+  for (uint32_t i = 0; i < gradus_option_count(); ++i) {
+    GradusOptionInfo info{};
+    info.struct_size = sizeof(info);
+    ASSERT_EQ(gradus_option(i, &info), GRADUS_OK);
+    table << info.name << " " << info.type << " " << info.default_value << " " << info.minimum << " " << info.maximum << " " << info.choices
+          << "\n";
+    EXPECT_GT(std::string(info.doc).size(), 10u);
+  }
+  EXPECT_EQ(table.str(), kGolden);
+  GradusOptionInfo info{};
+  info.struct_size = sizeof(info);
+  EXPECT_EQ(gradus_option(gradus_option_count(), &info), GRADUS_ERROR_INVALID_ARGUMENT);
+  gradus_error(nullptr);
+}
+
+GradusSettings defaults() {
+  GradusSettings s{};
+  s.struct_size = sizeof(s);
+  EXPECT_EQ(gradus_settings_default(&s), GRADUS_OK);
+  return s;
+}
+
+std::string refused(const char* name, const char* value) {
+  GradusSettings s = defaults();
+  EXPECT_EQ(gradus_settings_parse(&s, name, value), GRADUS_ERROR_INVALID_ARGUMENT) << name << " " << value;
+  const char* text = "";
+  gradus_error(&text);
+  return text;
+}
+
+TEST(G9_Options, AreParsed) {
+  GradusSettings s = defaults();
+  EXPECT_EQ(gradus_settings_parse(&s, "samples", "16"), GRADUS_OK);
+  EXPECT_EQ(s.samples, 16u);
+  EXPECT_EQ(gradus_settings_parse(&s, "noise-threshold", "0.5"), GRADUS_OK);
+  EXPECT_EQ(s.noise_threshold, 0.5f);
+  EXPECT_EQ(gradus_settings_parse(&s, "integrator", "Gradient"), GRADUS_OK);
+  EXPECT_EQ(s.integrator, uint32_t{GRADUS_INTEGRATOR_GRADIENT});
+  EXPECT_EQ(gradus_settings_parse(&s, "pixel_filter", "BLACKMAN-HARRIS"), GRADUS_OK);
+  EXPECT_EQ(gradus_settings_parse(&s, "frame", "-12"), GRADUS_OK);
+  EXPECT_EQ(s.frame, -12);
+  for (const char* text : {"1", "true", "ON"}) {
+    s.strict = 0;
+    EXPECT_EQ(gradus_settings_parse(&s, "strict", text), GRADUS_OK);
+    EXPECT_EQ(s.strict, 1u);
+  }
+  for (const char* text : {"0", "False", "off"}) {
+    EXPECT_EQ(gradus_settings_parse(&s, "use_sky", text), GRADUS_OK);
+    EXPECT_EQ(s.use_sky, 0u);
+  }
+}
+
+TEST(G9_Options, RefusalsNameOptionValueAndWhatIsAllowed) {
+  EXPECT_NE(refused("samples", "0").find("samples = 0: expected 1 to"), std::string::npos);
+  EXPECT_NE(refused("samples", "many").find("a number"), std::string::npos);
+  EXPECT_NE(refused("samples", "1.5").find("a whole number"), std::string::npos);
+  EXPECT_NE(refused("integrator", "photon").find("auto path gradient"), std::string::npos);
+  EXPECT_NE(refused("strict", "maybe").find("true false"), std::string::npos);
+  EXPECT_NE(refused("sample", "3").find("no option sample"), std::string::npos);
+  refused("noise_threshold", "nan");
+  refused("noise_threshold", "inf");
+  refused("noise_threshold", "-1");
+  refused("reconstruction_alpha", "0");
+  refused("samples", "");
+  refused("samples", "1e300");
+  refused("samples", "3 ");
+  EXPECT_EQ(gradus_settings_parse(nullptr, "samples", "3"), GRADUS_ERROR_INVALID_ARGUMENT);
+  GradusSettings s = defaults();
+  EXPECT_EQ(gradus_settings_parse(&s, nullptr, "3"), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_settings_parse(&s, "samples", nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  gradus_error(nullptr);
+}
+
+TEST(G9_Options, SurviveJson) {
+  GradusSettings s = default_settings();
+  s.noise_threshold = 0.1234567f;
+  s.frame = -77;
+  s.integrator = GRADUS_INTEGRATOR_PATH;
+  s.passes = 12345;
+  s.region[2] = 9;
+  s.strict = 1;
+  const GradusSettings back = settings_from_json(settings_to_json(s));
+  EXPECT_EQ(std::memcmp(&s, &back, sizeof(s)), 0);
+}
+
+TEST(G9_Options, SamplingKeyIgnoresHowManySamples) {
+  GradusSettings a = default_settings(), b = a;
+  b.samples = 7;
+  b.time_limit = 3.0f;
+  b.reconstruction = GRADUS_RECONSTRUCTION_L1;
+  b.threads = 5;
+  EXPECT_EQ(sampling_key(a), sampling_key(b));
+  b.seed = 1;
+  EXPECT_NE(sampling_key(a), sampling_key(b));
+  b = a;
+  b.max_bounces = 3;
+  EXPECT_NE(sampling_key(a), sampling_key(b));
+}
+
+TEST(Passes, AreNamedOnce) {
+  std::vector<std::string> names;
+  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
+    const char* name = nullptr;
+    uint32_t channels = 0;
+    ASSERT_EQ(gradus_pass_info(pass, &name, &channels), GRADUS_OK);
+    EXPECT_TRUE(channels == 1 || channels == 3 || channels == 4) << name;
+    EXPECT_EQ(std::count(names.begin(), names.end(), name), 0) << name;
+    names.push_back(name);
+  }
+  EXPECT_EQ(gradus_pass_info(GRADUS_PASS_COUNT, nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  gradus_error(nullptr);
+}
+
+TEST(Passes, LightPassesBringTheirColours) {
+  const uint64_t direct = uint64_t{1} << GRADUS_PASS_GLOSSY_DIRECT;
+  EXPECT_EQ(needed_passes(direct), direct | uint64_t{1} << GRADUS_PASS_GLOSSY_COLOR);
+  EXPECT_EQ(make_pass_planes(direct, 10).size(), 2u);
+  EXPECT_EQ(make_pass_planes(uint64_t{1} << GRADUS_PASS_COMBINED, 10).size(), 0u);
+}
+
+}  // namespace
+}  // namespace gradus

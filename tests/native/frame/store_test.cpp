@@ -1,0 +1,165 @@
+// F6: stored frames are exact, whole or absent; damaged ones are refused. And frames read back resume and reconstruct alike.
+#include "frame/store.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "frame/file_writer.h"
+#include "render/combine.h"
+#include "render/fake_integrator.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+namespace fs = std::filesystem;
+
+class F6_Store : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("gradus_store_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  std::string path(const std::string& name = "frame.exr") const { return (folder / name).string(); }
+  size_t files() const { return size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+  fs::path folder;
+};
+
+GradusSettings all_passes(uint32_t width, uint32_t height, uint32_t samples) {
+  GradusSettings s = small_settings(width, height, samples);
+  s.passes = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
+  return s;
+}
+
+TEST_F(F6_Store, RoundTripIsExact) {
+  GradusSettings settings = all_passes(61, 37, 8);
+  settings.film_transparent = 1;
+  settings.frame = -7;
+  const auto frame = rendered(settings);
+  save_frame(*frame, path());
+  EXPECT_EQ(files(), 1u);
+  const auto back = load_frame(path());
+  EXPECT_TRUE(same_samples(*frame, *back));
+  EXPECT_EQ(frame->fallback, back->fallback);
+  EXPECT_EQ(back->scene_key, frame->scene_key);
+  EXPECT_EQ(back->frame_number, -7);
+  EXPECT_EQ(back->counters.rays_primary, frame->counters.rays_primary);
+  EXPECT_EQ(std::memcmp(&back->settings, &frame->settings, sizeof(GradusSettings)), 0);
+}
+
+TEST_F(F6_Store, RegionsAndPathFramesToo) {
+  GradusSettings settings = small_settings(200, 100, 2);
+  const uint32_t region[4] = {80, 40, 90, 47};
+  std::copy(region, region + 4, settings.region);
+  auto frame = rendered(settings);
+  save_frame(*frame, path());
+  EXPECT_TRUE(same_samples(*frame, *load_frame(path())));
+  EXPECT_EQ(load_frame(path())->region.y0, 5);
+  settings.integrator = GRADUS_INTEGRATOR_PATH;
+  frame = rendered(settings);
+  save_frame(*frame, path());
+  EXPECT_TRUE(same_samples(*frame, *load_frame(path())));
+  EXPECT_FALSE(load_frame(path())->gradients);
+}
+
+TEST_F(F6_Store, L3_ResumeFromAFileHasTheSameBits) {
+  save_frame(*rendered(all_passes(40, 30, 16)), path());
+  EXPECT_TRUE(same_samples(*rendered(all_passes(40, 30, 64), load_frame(path())), *rendered(all_passes(40, 30, 64))));
+}
+
+TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
+  const auto frame = rendered(small_settings(64, 48, 4));
+  save_frame(*frame, path());
+  SolveReport report;
+  const auto never = [] { return false; };
+  for (const uint32_t kind : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
+    EXPECT_EQ(combine(*frame, kind, 0.2f, frame->region, never, &report),
+              combine(*load_frame(path()), kind, 0.2f, frame->region, never, &report));
+  }
+}
+
+TEST_F(F6_Store, FailuresNameThePath) {
+  const auto frame = rendered(small_settings(8, 8, 1));
+  try {
+    save_frame(*frame, path("missing/folder/frame.exr"));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("missing/folder/frame.exr"), std::string::npos);
+  }
+  EXPECT_THROW(load_frame(path("absent.exr")), Error);
+  EXPECT_THROW(load_frame(folder.string()), Error);
+}
+
+TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
+  save_frame(*rendered(small_settings(48, 40, 2)), path());
+  std::ifstream file(path(), std::ios::binary);
+  const std::vector<char> good{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::mt19937 random(3);
+  int refused = 0;
+  for (int round = 0; round < 200; ++round) {
+    std::vector<char> bad = good;
+    if (round % 2 == 0) {
+      bad.resize(random() % bad.size());
+    } else {
+      for (int i = 0; i < 8; ++i) bad[random() % std::min<size_t>(bad.size(), round % 4 == 1 ? 4096 : bad.size())] = char(random());
+    }
+    std::ofstream(path("bad.exr"), std::ios::binary).write(bad.data(), std::streamsize(bad.size()));
+    try {
+      load_frame(path("bad.exr"));
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GE(refused, 100);
+}
+
+TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
+  const auto frame = rendered(all_passes(96, 64, 2));
+  save_frame(*frame, path("reference.exr"));
+  std::mt19937 random(5);
+  int whole = 0;
+  for (int round = 0; round < 20; ++round) {
+    const std::string target = path("killed.exr");
+    fs::remove(target);
+    const pid_t child = fork();
+    if (child == 0) {
+      for (;;) save_frame(*frame, target);
+    }
+    // Every other time after the first whole file, so that both cases are met however slow the machine is.
+    while (round % 2 == 0 && !fs::exists(target)) usleep(1000);
+    usleep(useconds_t(random() % 60000));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    if (!fs::exists(target)) continue;
+    ++whole;
+    EXPECT_TRUE(same_samples(*frame, *load_frame(target)));
+  }
+  EXPECT_GE(whole, 10);
+}
+
+TEST_F(F6_Store, AnAbandonedWriterLeavesNothing) {
+  {
+    FileWriter writer(path("half"));
+    writer.write("abc", 3);
+  }
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(F6_Store, AFullDiskIsAnError) {
+  try {
+    FileWriter writer("/dev/full/x");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("/dev/full/x"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace gradus

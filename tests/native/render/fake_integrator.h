@@ -1,0 +1,144 @@
+// An integrator whose samples are a pure function of pixel and sample number: tests of the loop need no scene.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include "base/error.h"
+#include "render/options.h"
+#include "render/pass_table.h"
+#include "render/render.h"
+
+namespace gradus::test {
+
+inline uint32_t hash(uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  return x ^ (x >> 16);
+}
+
+// In [0, 1).
+inline float random_value(int32_t x, int32_t y, uint32_t sample) {
+  return float(hash(hash(hash(uint32_t(x)) + uint32_t(y)) + sample) >> 8) / float(1 << 24);
+}
+
+// Expectation of a pixel of the fake scene.
+inline float fake_truth(int32_t x, int32_t y) { return 0.5f + 0.3f * std::sin(0.2f * float(x)) * std::cos(0.15f * float(y)); }
+
+struct FakeIntegrator final : Integrator {
+  explicit FakeIntegrator(const IntegratorContext& context, bool with_gradients) : settings(context.settings), gradients(with_gradients) {}
+
+  // Runs before each tile; may wait or throw.
+  std::function<void(const WorkUnit&)> before = [](const WorkUnit&) {};
+  GradusSettings settings;
+  bool gradients;
+  float noise = 1.0f;
+
+  uint32_t count_at(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) const {
+    return unit.count_map ? (*unit.count_map)[frame.index(x, y)] : unit.count;
+  }
+
+  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
+    before(unit);
+    for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
+      for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) sample_pixel(unit, x, y, frame, counters, stop);
+    }
+  }
+
+  void sample_pixel(const WorkUnit& unit, int32_t x, int32_t y, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const {
+    const size_t i = frame->index(x, y);
+    const uint32_t count = count_at(unit, *frame, x, y);
+    for (uint32_t s = unit.first_sample; s < unit.first_sample + count; ++s) {
+      if (stop.load()) return;
+      const int half = int(s % 2);
+      const float value = fake_truth(x, y) + noise * (random_value(x, y, s) - 0.5f);
+      frame->components[0].primal[half][i] += Radiance(value, 0.5f * value, 2.0f * value, frame->channels == 4 ? 0.75f : 0.0f);
+      ++frame->count[half][i];
+      ++counters->rays_primary;
+      for (PassPlane& plane : frame->passes) add_pass(&plane, i, value, s);
+      if (gradients) add_gradients(unit, x, y, half, frame);
+    }
+  }
+
+  static void add_pass(PassPlane* plane, size_t i, float value, uint32_t sample) {
+    for (uint32_t c = 0; c < plane->channels; ++c) {
+      float& v = plane->values[i * plane->channels + c];
+      v = plane->first_sample_only ? (sample == 0 ? value : v) : v + value;
+    }
+    if (plane->skips_transparent) plane->weight[i] += 1.0f;
+  }
+
+  // Exact differences of the truth, each direction carrying half.
+  void add_gradients(const WorkUnit& unit, int32_t x, int32_t y, int half, Frame* frame) const {
+    const size_t i = frame->index(x, y);
+    for (int o = 0; o < kOffsets; ++o) {
+      const int32_t nx = x + kOffsetX[o], ny = y + kOffsetY[o];
+      if (!frame->region.contains(nx, ny) || count_at(unit, *frame, nx, ny) == 0) continue;
+      const float d = 0.5f * (fake_truth(nx, ny) - fake_truth(x, y));
+      frame->components[0].gradient[half][o][i] += Radiance(d, 0.5f * d, 2.0f * d, 0.0f);
+      if (o == kRight || o == kUp) frame->pair_count[half][o][i] += 1.0f;
+    }
+  }
+};
+
+using Configure = std::function<void(FakeIntegrator*)>;
+
+inline IntegratorFactory fake_factory(Configure configure = [](FakeIntegrator*) {}) {
+  return [configure](const IntegratorContext& context, uint32_t integrator) {
+    auto fake = std::make_unique<FakeIntegrator>(context, integrator == GRADUS_INTEGRATOR_GRADIENT);
+    configure(fake.get());
+    return fake;
+  };
+}
+
+inline std::shared_ptr<const Snapshot> empty_snapshot() {
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->has_camera = true;
+  snapshot->camera.clip_end = 100.0f;
+  snapshot->content_key = 42;
+  return snapshot;
+}
+
+inline GradusSettings small_settings(uint32_t width, uint32_t height, uint32_t samples) {
+  GradusSettings s = default_settings();
+  s.width = width;
+  s.height = height;
+  s.samples = samples;
+  s.threads = 2;
+  s.noise_threshold = 0.0f;
+  return s;
+}
+
+inline std::unique_ptr<Render> start(const GradusSettings& settings, const IntegratorFactory& factory = fake_factory(),
+                                     std::shared_ptr<const Frame> resumed = nullptr) {
+  return std::make_unique<Render>(nullptr, empty_snapshot(), settings, std::move(resumed), factory);
+}
+
+inline std::shared_ptr<const Frame> rendered(const GradusSettings& settings, std::shared_ptr<const Frame> resumed = nullptr) {
+  auto render = start(settings, fake_factory(), std::move(resumed));
+  render->wait(-1.0);
+  return render->frame();
+}
+
+inline std::vector<float> read(const Render& render, uint32_t pass, const Region& region) {
+  std::vector<float> pixels(size_t(region.area()) * pass_info(pass).channels);
+  render.read_pass(pass, pixels.data(), pixels.size());
+  return pixels;
+}
+
+inline bool same_samples(const Frame& a, const Frame& b) {
+  for (int half = 0; half < kHalves; ++half) {
+    if (a.components[0].primal[half] != b.components[0].primal[half] || a.count[half] != b.count[half]) return false;
+    if (a.components[0].gradient[half] != b.components[0].gradient[half] || a.pair_count[half] != b.pair_count[half]) return false;
+  }
+  for (size_t i = 0; i < a.passes.size(); ++i) {
+    if (a.passes[i].values != b.passes[i].values || a.passes[i].weight != b.passes[i].weight) return false;
+  }
+  return a.passes.size() == b.passes.size();
+}
+
+}  // namespace gradus::test

@@ -1,0 +1,289 @@
+// The loop: determinism, resume, regions, stops, cancel, progress, what can be read meanwhile.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <nlohmann/json.hpp>
+
+#include "render/batches.h"
+#include "render/fake_integrator.h"
+#include "render/resume.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
+
+std::string failure_of(const GradusSettings& settings, const std::shared_ptr<const Frame>& resumed = nullptr) {
+  try {
+    start(settings, fake_factory(), resumed);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Batches, GrowThenStayAndMeetAgainAfterResume) {
+  EXPECT_EQ(batch_end(0, 64), 1u);
+  EXPECT_EQ(batch_end(1, 64), 2u);
+  EXPECT_EQ(batch_end(2, 64), 4u);
+  EXPECT_EQ(batch_end(8, 64), 16u);
+  EXPECT_EQ(batch_end(16, 64), 32u);
+  EXPECT_EQ(batch_end(16, 20), 20u);
+  EXPECT_EQ(batch_end(20, 64), 32u);
+  EXPECT_EQ(batch_end(3, 64), 4u);
+}
+
+TEST(L1_Threads, SamplesHaveTheSameBitsForAnyNumberOfThreads) {
+  const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 8);
+  GradusSettings settings = small_settings(150, 90, 20);
+  settings.passes |= bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_VECTOR);
+  std::shared_ptr<const Frame> first;
+  std::vector<float> combined;
+  for (const uint32_t threads : {1u, 2u, 3u, 7u}) {
+    settings.threads = threads;
+    auto render = start(settings);
+    ASSERT_TRUE(render->wait(-1.0));
+    const auto image = read(*render, GRADUS_PASS_COMBINED, {0, 0, 150, 90});
+    if (!first) {
+      first = render->frame();
+      combined = image;
+    }
+    EXPECT_TRUE(same_samples(*render->frame(), *first)) << threads;
+    EXPECT_EQ(image, combined) << threads;
+  }
+}
+
+TEST(L3_Resume, SixteenAndFortyEightSamplesHaveTheBitsOfSixtyFour) {
+  const auto whole = rendered(small_settings(70, 50, 64));
+  const auto resumed = rendered(small_settings(70, 50, 64), rendered(small_settings(70, 50, 16)));
+  EXPECT_TRUE(same_samples(*whole, *resumed));
+  // At any number, not only where batches end.
+  EXPECT_TRUE(same_samples(*whole, *rendered(small_settings(70, 50, 64), rendered(small_settings(70, 50, 21)))));
+}
+
+TEST(L3_Resume, RefusesWhatDoesNotFit) {
+  const auto frame = rendered(small_settings(40, 30, 8));
+  GradusSettings other = small_settings(40, 30, 16);
+  other.seed = 1;
+  EXPECT_NE(failure_of(other, frame), "");
+  other = small_settings(41, 30, 16);
+  EXPECT_NE(failure_of(other, frame), "");
+  other = small_settings(40, 30, 4);
+  EXPECT_NE(failure_of(other, frame), "");
+  other = small_settings(40, 30, 16);
+  other.passes |= bit(GRADUS_PASS_MIST);
+  EXPECT_NE(failure_of(other, frame), "");
+  EXPECT_EQ(failure_of(small_settings(40, 30, 16), frame), "");
+}
+
+TEST(L3_Merge, AddsTheSamplesOfTwoRanges) {
+  const auto whole = rendered(small_settings(40, 30, 64));
+  GradusSettings late = small_settings(40, 30, 48);
+  late.first_sample = 16;
+  Frame merged = *rendered(small_settings(40, 30, 16));
+  merge_frames(&merged, *rendered(late));
+  EXPECT_EQ(merged.settings.samples, 64u);
+  EXPECT_EQ(merged.count, whole->count);
+  for (int half = 0; half < kHalves; ++half) {
+    for (size_t i = 0; i < merged.count[half].size(); ++i) {
+      EXPECT_NEAR(merged.components[0].primal[half][i].x, whole->components[0].primal[half][i].x, 1e-5f * 64.0f);
+    }
+  }
+  Frame again = *whole;
+  EXPECT_THROW(merge_frames(&again, *whole), Error);  // the same samples
+}
+
+TEST(L3_Border, SamplesOfARegionAreThoseOfTheFullFrame) {
+  GradusSettings settings = small_settings(160, 120, 8);
+  const auto full = start(settings);
+  full->wait(-1.0);
+  const uint32_t region[4] = {60, 50, 97, 83};
+  std::copy(region, region + 4, settings.region);
+  const auto part = start(settings);
+  part->wait(-1.0);
+  const Region r{60, 50, 97, 83};
+  const Frame &a = *full->frame(), &b = *part->frame();
+  EXPECT_EQ(b.region.x0, 60 - 35);
+  EXPECT_EQ(b.region.y1, 83 + 35);
+  EXPECT_EQ(b.region.x1, 97 + 35);
+  const std::vector<float> noisy = read(*full, GRADUS_PASS_NOISY_IMAGE, {0, 0, 160, 120});
+  const std::vector<float> noisy_part = read(*part, GRADUS_PASS_NOISY_IMAGE, r);
+  const std::vector<float> combined = read(*full, GRADUS_PASS_COMBINED, {0, 0, 160, 120});
+  const std::vector<float> combined_part = read(*part, GRADUS_PASS_COMBINED, r);
+  for (int32_t y = r.y0; y < r.y1; ++y) {
+    for (int32_t x = r.x0; x < r.x1; ++x) {
+      const size_t i = 4 * (size_t(y) * 160 + x), k = 4 * (size_t(y - r.y0) * r.width() + size_t(x - r.x0));
+      ASSERT_EQ(noisy[i], noisy_part[k]);
+      ASSERT_NEAR(combined[i], combined_part[k], 1e-3f * combined[i]);
+    }
+  }
+  EXPECT_EQ(a.components[0].primal[0][a.index(70, 60)], b.components[0].primal[0][b.index(70, 60)]);
+}
+
+TEST(G8_Progress, LiesInTheUnitIntervalNeverFallsEndsAtOne) {
+  auto render = start(small_settings(96, 64, 64), fake_factory([](FakeIntegrator* fake) {
+                        fake->before = [](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
+                      }));
+  float last = 0.0f;
+  uint32_t version = 0, samples = 0;
+  while (!render->wait(0.001)) {
+    const GradusProgress p = render->progress();
+    EXPECT_GE(p.fraction, last);
+    EXPECT_LE(p.fraction, 1.0f);
+    EXPECT_GE(p.version, version);
+    EXPECT_GE(p.samples_done, samples);
+    last = p.fraction;
+    version = p.version;
+    samples = p.samples_done;
+  }
+  const GradusProgress end = render->progress();
+  EXPECT_EQ(end.fraction, 1.0f);
+  EXPECT_EQ(end.phase, uint32_t{GRADUS_PHASE_DONE});
+  EXPECT_EQ(end.samples_done, 64u);
+  EXPECT_GT(end.version, version);
+  EXPECT_GT(end.memory_bytes, 96u * 64u * 160u);
+  EXPECT_GT(end.peak_memory_bytes, end.memory_bytes);
+}
+
+TEST(K2_Cancel, EndsWithinAQuarterSecondAndStaysReadable) {
+  std::atomic<int> tiles{0};
+  auto render = start(small_settings(512, 512, 100000),
+                      fake_factory([&tiles](FakeIntegrator* fake) { fake->before = [&tiles](const WorkUnit&) { ++tiles; }; }));
+  while (tiles < 600) std::this_thread::yield();
+  const auto began = std::chrono::steady_clock::now();
+  render->cancel();
+  ASSERT_TRUE(render->wait(10.0));
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(250));
+  std::string text;
+  EXPECT_EQ(render->outcome(&text), GRADUS_ERROR_CANCELLED);
+  EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_CANCELLED});
+  EXPECT_LT(render->progress().fraction, 1.0f);
+  const std::vector<float> noisy = read(*render, GRADUS_PASS_COMBINED, {0, 0, 512, 512});
+  EXPECT_NEAR(noisy[0], fake_truth(0, 0), 0.51f);
+  EXPECT_EQ(nlohmann::json::parse(render->stats_json())["stopped"], "cancelled");
+}
+
+TEST(K3_Cancel, ManyCancelsThenARenderHasTheBitsOfAFreshOne) {
+  const auto fresh = rendered(small_settings(64, 48, 8));
+  for (int i = 0; i < 100; ++i) start(small_settings(64, 48, 1000))->cancel();
+  EXPECT_TRUE(same_samples(*fresh, *rendered(small_settings(64, 48, 8))));
+}
+
+TEST(Loop, CanBeReadWhileSampling) {
+  GradusSettings settings = small_settings(128, 96, 400);
+  settings.passes |= bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_VARIANCE) | bit(GRADUS_PASS_GRADIENT_X);
+  auto render = start(settings);
+  const Region all{0, 0, 128, 96};
+  int reads = 0;
+  while (!render->wait(0.0)) {
+    for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NORMAL, GRADUS_PASS_VARIANCE, GRADUS_PASS_GRADIENT_X}) {
+      for (const float v : read(*render, pass, all)) ASSERT_TRUE(std::isfinite(v));
+    }
+    ++reads;
+  }
+  EXPECT_GT(reads, 0);
+  std::vector<float> pixels(7);
+  EXPECT_THROW(render->read_pass(GRADUS_PASS_COMBINED, pixels.data(), pixels.size()), Error);
+  EXPECT_THROW(read(*render, GRADUS_PASS_MIST, all), Error);
+}
+
+TEST(Loop, StopsByTimeAndDeliversTheReconstruction) {
+  GradusSettings settings = small_settings(64, 64, 1000000);
+  settings.time_limit = 0.3f;
+  auto render = start(settings);
+  ASSERT_TRUE(render->wait(20.0));
+  EXPECT_EQ(render->outcome(nullptr), GRADUS_OK);
+  const auto stats = nlohmann::json::parse(render->stats_json());
+  EXPECT_EQ(stats["stopped"], "time");
+  EXPECT_LT(stats["seconds"]["sample"], 2.0);
+  EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_DONE});
+}
+
+TEST(Loop, StopsTilesByNoise) {
+  GradusSettings settings = small_settings(128, 64, 256);
+  settings.noise_threshold = 0.05f;
+  auto render = start(settings, fake_factory([](FakeIntegrator* fake) { fake->noise = 0.5f; }));
+  ASSERT_TRUE(render->wait(20.0));
+  const Frame& frame = *render->frame();
+  const auto stats = nlohmann::json::parse(render->stats_json());
+  EXPECT_EQ(stats["stopped"], "noise");
+  EXPECT_FALSE(stats["unbiased"]);
+  uint32_t least = UINT32_MAX, most = 0;
+  for (size_t i = 0; i < frame.count[0].size(); ++i) {
+    least = std::min(least, frame.count[0][i] + frame.count[1][i]);
+    most = std::max(most, frame.count[0][i] + frame.count[1][i]);
+  }
+  EXPECT_GE(least, 16u);
+  EXPECT_LT(most, 256u);
+  // And the error is what was asked for: the picture's relative error is near the threshold or below.
+  const std::vector<float> image = read(*render, GRADUS_PASS_COMBINED, {0, 0, 128, 64});
+  double error = 0.0, signal = 0.0;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const double d = image[4 * (size_t(y) * 128 + x)] - fake_truth(x, y);
+      error += d * d;
+      signal += fake_truth(x, y) * fake_truth(x, y) + 1e-3;
+    }
+  }
+  EXPECT_LT(std::sqrt(error / signal), 0.05);
+}
+
+TEST(Loop, FailuresOfTheIntegratorBecomeTheOutcome) {
+  const auto failing = [](FakeIntegrator* fake) {
+    fake->before = [](const WorkUnit& unit) {
+      if (unit.first_sample >= 4) throw std::runtime_error("the lamp is broken");
+    };
+  };
+  auto render = start(small_settings(64, 48, 16), fake_factory(failing));
+  ASSERT_TRUE(render->wait(10.0));
+  std::string text;
+  EXPECT_EQ(render->outcome(&text), GRADUS_ERROR_UNKNOWN);
+  EXPECT_EQ(text, "the lamp is broken");
+  EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_FAILED});
+}
+
+TEST(Loop, AnswersOutOfOrderCalls) {
+  auto render = start(small_settings(256, 256, 1000));
+  EXPECT_FALSE(render->wait(0.0));
+  EXPECT_THROW(render->outcome(nullptr), Error);
+  EXPECT_THROW(render->stats_json(), Error);
+  EXPECT_THROW(render->frame(), Error);
+}
+
+TEST(Loop, L2IsCloserToTheTruthThanTheNoisyImage) {
+  auto render = start(small_settings(96, 64, 8));
+  render->wait(-1.0);
+  const auto combined = read(*render, GRADUS_PASS_COMBINED, {0, 0, 96, 64});
+  const auto noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, {0, 0, 96, 64});
+  double a = 0.0, b = 0.0;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      const size_t i = 4 * (size_t(y) * 96 + x);
+      a += std::pow(combined[i] - fake_truth(x, y), 2);
+      b += std::pow(noisy[i] - fake_truth(x, y), 2);
+      EXPECT_EQ(combined[i + 3], 1.0f);
+    }
+  }
+  EXPECT_LT(a, 0.1 * b);
+}
+
+TEST(Loop, AlphaAndExposureReachTheImage) {
+  GradusSettings settings = small_settings(32, 32, 4);
+  settings.film_transparent = 1;
+  settings.film_exposure = 2.0f;
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
+    settings.reconstruction = reconstruction;
+    auto render = start(settings);
+    render->wait(-1.0);
+    const auto image = read(*render, GRADUS_PASS_COMBINED, {0, 0, 32, 32});
+    EXPECT_NEAR(image[3], 0.75f, 1e-3f) << reconstruction;
+    double mean = 0.0;
+    for (size_t i = 0; i < image.size(); i += 4) mean += image[i] / (32.0 * 32.0);
+    EXPECT_NEAR(mean, 2.0 * 0.5, 0.05) << reconstruction;
+  }
+}
+
+}  // namespace
+}  // namespace gradus

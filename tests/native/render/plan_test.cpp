@@ -1,0 +1,85 @@
+// What is chosen, what is refused, and that the reasons are said.
+#include <gtest/gtest.h>
+
+#include "plan/plan.h"
+#include "render/fake_integrator.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+Plan plan_for(uint32_t integrator, uint32_t reconstruction) {
+  GradusSettings s = small_settings(64, 64, 4);
+  s.integrator = integrator;
+  s.reconstruction = reconstruction;
+  return make_plan(s, *empty_snapshot());
+}
+
+GradusError refusal(uint32_t integrator, uint32_t reconstruction) {
+  try {
+    plan_for(integrator, reconstruction);
+  } catch (const Error& e) {
+    EXPECT_GT(std::string(e.what()).size(), 20u);
+    return e.code();
+  }
+  return GRADUS_OK;
+}
+
+TEST(Plan, AutoIsGradientWithL2) {
+  const Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_AUTO);
+  EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_GRADIENT});
+  EXPECT_EQ(plan.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_L2});
+  EXPECT_TRUE(plan.unbiased);
+}
+
+TEST(Plan, PathHasNoGradientsAndSaysSo) {
+  const Plan plan = plan_for(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_AUTO);
+  EXPECT_EQ(plan.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_NONE});
+  EXPECT_FALSE(plan.gradients);
+  const auto has = [&](const std::string& what) {
+    return std::any_of(plan.skipped.begin(), plan.skipped.end(), [&](const auto& entry) { return entry.first == what; });
+  };
+  EXPECT_TRUE(has("gradients"));
+  EXPECT_TRUE(has("reconstruction"));
+  EXPECT_TRUE(has("lens samples"));
+}
+
+TEST(Plan, ObeysOrRefuses) {
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_L2), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_L1), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_BIDIRECTIONAL, GRADUS_RECONSTRUCTION_AUTO), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_METROPOLIS, GRADUS_RECONSTRUCTION_AUTO), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_EQ(refusal(7, GRADUS_RECONSTRUCTION_AUTO), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_NONE), GRADUS_OK);
+  EXPECT_FALSE(plan_for(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1).unbiased);
+}
+
+TEST(Plan, RefusesRegionsOutsideTheFrame) {
+  GradusSettings s = small_settings(64, 64, 4);
+  const uint32_t bad[][4] = {{0, 0, 65, 64}, {10, 10, 10, 20}, {30, 10, 20, 20}, {0, 0, 0, 5}};
+  for (const auto& region : bad) {
+    std::copy(region, region + 4, s.region);
+    EXPECT_THROW(make_plan(s, *empty_snapshot()), Error);
+  }
+}
+
+TEST(E8_Sizes, ZeroSamplesGiveAText) {
+  GradusSettings s = small_settings(64, 64, 0);
+  try {
+    make_plan(s, *empty_snapshot());
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("0 samples"), std::string::npos);
+  }
+}
+
+TEST(Plan, NoCameraIsAnError) {
+  auto snapshot = std::make_shared<Snapshot>();
+  EXPECT_THROW(Render(nullptr, snapshot, small_settings(8, 8, 1), nullptr, fake_factory()), Error);
+}
+
+}  // namespace
+}  // namespace gradus
