@@ -1,0 +1,15 @@
+"""Shader graphs of Blender as native node programs.
+
+    program = nodes.translate(material, "SURFACE", resources)
+    struct, keep_alive = program.to_native(native)
+
+`resources` has image(image, image_user) -> key. Warnings are in program.warnings, one per replaced node, naming material and node.
+"""
+
+from __future__ import annotations
+
+from . import colors, inputs, normals, numbers, principled, shaders, tables, textures, vectors  # noqa: F401  (they register themselves)
+from .program import Program
+from .translate import translate
+
+__all__ = ["Program", "translate"]

@@ -1,0 +1,85 @@
+"""Colour arithmetic."""
+
+from __future__ import annotations
+
+from .node import NodeView
+from .ops import Blend, ColorModel, Op
+from .program import Value
+from .registry import translator
+
+_CLAMP_RESULT = 32
+
+
+def mix_colors(view: NodeView, factor: Value, a: Value, b: Value, blend: str, clamp: bool) -> Value:
+    return view.add(Op.MIX_COLOR, (factor, a, b), Blend[blend] | (_CLAMP_RESULT if clamp else 0))
+
+
+@translator("ShaderNodeMixRGB")
+def mix_rgb(view: NodeView) -> Value:
+    factor = view.clamped(view.value("Fac"))
+    return mix_colors(view, factor, view.value("Color1"), view.value("Color2"), view.node.blend_type, view.node.use_clamp)
+
+
+@translator("ShaderNodeHueSaturation")
+def hue_saturation(view: NodeView) -> Value:
+    names = ("Hue", "Saturation", "Value", "Fac", "Color")
+    return view.add(Op.HUE_SATURATION, tuple(view.value(name) for name in names))
+
+
+@translator("ShaderNodeGamma")
+def gamma(view: NodeView) -> Value:
+    return view.add(Op.GAMMA, (view.value("Color"), view.value("Gamma")))
+
+
+@translator("ShaderNodeInvert")
+def invert(view: NodeView) -> Value:
+    return view.add(Op.INVERT, (view.value("Fac"), view.value("Color")))
+
+
+@translator("ShaderNodeBrightContrast")
+def bright_contrast(view: NodeView) -> Value:
+    return view.add(Op.BRIGHT_CONTRAST, (view.value("Color"), view.value("Bright"), view.value("Contrast")))
+
+
+@translator("ShaderNodeRGBToBW")
+def rgb_to_bw(view: NodeView) -> Value:
+    return view.add_float(Op.RGB_TO_BW, (view.value("Color"),))
+
+
+@translator("ShaderNodeBlackbody")
+def blackbody(view: NodeView) -> Value:
+    return view.add(Op.BLACKBODY, (view.value("Temperature"),))
+
+
+def _separate(view: NodeView, source: Value, mode: int, outputs: tuple[str, ...]) -> Value:
+    return view.add_float(Op.SEPARATE, (source,), mode, output=outputs.index(view.output))
+
+
+@translator("ShaderNodeSeparateColor")
+def separate_color(view: NodeView) -> Value:
+    return _separate(view, view.value("Color"), ColorModel[view.node.mode], ("Red", "Green", "Blue"))
+
+
+@translator("ShaderNodeCombineColor")
+def combine_color(view: NodeView) -> Value:
+    return view.add(Op.COMBINE, (view.value("Red"), view.value("Green"), view.value("Blue")), ColorModel[view.node.mode])
+
+
+@translator("ShaderNodeSeparateRGB")
+def separate_rgb(view: NodeView) -> Value:
+    return _separate(view, view.value("Image"), ColorModel.RGB, ("R", "G", "B"))
+
+
+@translator("ShaderNodeCombineRGB")
+def combine_rgb(view: NodeView) -> Value:
+    return view.add(Op.COMBINE, (view.value("R"), view.value("G"), view.value("B")), ColorModel.RGB)
+
+
+@translator("ShaderNodeSeparateHSV")
+def separate_hsv(view: NodeView) -> Value:
+    return _separate(view, view.value("Color"), ColorModel.HSV, ("H", "S", "V"))
+
+
+@translator("ShaderNodeCombineHSV")
+def combine_hsv(view: NodeView) -> Value:
+    return view.add(Op.COMBINE, (view.value("H"), view.value("S"), view.value("V")), ColorModel.HSV)

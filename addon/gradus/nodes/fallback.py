@@ -1,0 +1,54 @@
+"""What stands in for nodes that are not translated: never black, never an exception, always one warning."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import convert, sky
+from .ops import Op
+from .program import COLOR, FLOAT, NO_NORMAL, SHADER, Value, constant_color, constant_float
+from .tree import find_socket
+
+_GREY = (0.8, 0.8, 0.8)
+
+
+def replace(view: Any) -> Value | None:
+    """The value of an output of a node without translator."""
+    name = view.node.bl_idname
+    kind = convert.kind_of(view.socket)
+    if name == "ShaderNodeTexSky":
+        view.warn_replaced("is replaced by its mean radiance")
+        return constant_color(sky.mean_radiance(view.node))
+    if kind == SHADER:
+        view.warn_replaced("is not supported yet and is replaced by a diffuse surface or its input")
+        return _closure(view)
+    if name.startswith("ShaderNodeTex"):
+        view.warn_replaced("is not supported yet and is replaced by its mean")
+        return constant_float(0.5) if kind == FLOAT else Value(kind, (0.5, 0.5, 0.5, 1.0))
+    view.warn_replaced("is not supported yet and is passed through")
+    return _pass_through(view)
+
+
+def _closure(view: Any) -> Value | None:
+    """The first shader that comes in, else a diffuse surface in the node's colour."""
+    for socket in view.node.inputs:
+        if convert.kind_of(socket) == SHADER:
+            value = view.walker.linked(socket, view.path)
+            if value is not None and value.kind == SHADER:
+                return value
+    socket = find_socket(view.node.inputs, "Base Color", "Color")
+    color = view.walker.input(socket, view.path) if socket is not None else constant_color(_GREY)
+    return view.add_closure(Op.DIFFUSE, (color, constant_float(0.0), view.direction("Normal") if view.has("Normal") else NO_NORMAL))
+
+
+def _pass_through(view: Any) -> Value | None:
+    for link in view.node.internal_links:
+        if link.to_socket.identifier == view.socket.identifier:
+            return view.walker.linked_or_default(link.from_socket, view.socket, view.path)
+    kind = convert.kind_of(view.socket)
+    default = getattr(view.socket, "default_value", None)
+    if default is None:
+        return None
+    if kind == FLOAT:
+        return constant_float(default) if isinstance(default, (int, float)) else None
+    return constant_color(default) if kind == COLOR else Value(kind, (*tuple(default)[:3], 1.0))

@@ -1,0 +1,49 @@
+"""Math, Clamp, Map Range, Mix of numbers and vectors."""
+
+from __future__ import annotations
+
+from .colors import mix_colors
+from .node import NodeView
+from .ops import MapRange, Math, Op
+from .program import FLOAT, VECTOR, Value
+from .registry import translator
+
+_CLAMP_RESULT = 64
+
+
+@translator("ShaderNodeMath")
+def math(view: NodeView) -> Value:
+    inputs = (view.value("Value"), view.value("Value_001"), view.value("Value_002"))
+    return view.add_float(Op.MATH, inputs, Math[view.node.operation] | (_CLAMP_RESULT if view.node.use_clamp else 0))
+
+
+@translator("ShaderNodeClamp")
+def clamp(view: NodeView) -> Value:
+    inputs = (view.value("Value"), view.value("Min"), view.value("Max"))
+    return view.add_float(Op.CLAMP, inputs, 1 if view.node.clamp_type == "RANGE" else 0)
+
+
+@translator("ShaderNodeMapRange")
+def map_range(view: NodeView) -> Value:
+    node = view.node
+    mode = MapRange[node.interpolation_type] | (8 if node.clamp else 0)
+    if getattr(node, "data_type", "FLOAT") == "FLOAT_VECTOR":
+        names = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
+        return view.add_vector(Op.MAP_RANGE, tuple(view.value(name) for name in names), mode)
+    names = ("Value", "From Min", "From Max", "To Min", "To Max", "Steps")
+    return view.add_float(Op.MAP_RANGE, tuple(view.value(name) for name in names), mode)
+
+
+@translator("ShaderNodeMix")
+def mix(view: NodeView) -> Value | None:
+    node = view.node
+    factor = view.value("Factor_Vector" if node.data_type == "VECTOR" and node.factor_mode == "NON_UNIFORM" else "Factor_Float")
+    if node.clamp_factor:
+        factor = view.clamped(factor)
+    if node.data_type == "RGBA":
+        return mix_colors(view, factor, view.value("A_Color"), view.value("B_Color"), node.blend_type, node.clamp_result)
+    if node.data_type == "ROTATION":
+        view.warn_replaced("mixes rotations, which is not supported yet")
+        return view.value("A_Rotation")
+    suffix, kind = ("Vector", VECTOR) if node.data_type == "VECTOR" else ("Float", FLOAT)
+    return view.add(Op.MIX, (factor, view.value(f"A_{suffix}"), view.value(f"B_{suffix}")), kind=kind)

@@ -1,0 +1,108 @@
+"""BSDFs but Principled, emission, mixing."""
+
+from __future__ import annotations
+
+from .node import NodeView
+from .ops import Op
+from .program import BLACK_CLOSURE, Value, constant_float
+from .registry import translator
+
+
+def distribution_mode(view: NodeView) -> int:
+    """1: energy of multiple scattering. Beckmann and Ashikhmin-Shirley lobes are rendered as GGX of the same roughness."""
+    return 1 if getattr(view.node, "distribution", "GGX") == "MULTI_GGX" else 0
+
+
+def roughness(view: NodeView) -> Value:
+    """SHARP was a distribution before 4.0; it has no roughness."""
+    if getattr(view.node, "distribution", "") == "SHARP":
+        return constant_float(0.0)
+    return view.value("Roughness")
+
+
+@translator("ShaderNodeBsdfDiffuse")
+def diffuse(view: NodeView) -> Value:
+    # Rough surfaces conserve energy since 4.2.
+    mode = 1 if view.version >= (4, 2, 0) else 0
+    return view.add_closure(Op.DIFFUSE, (view.value("Color"), view.value("Roughness"), view.direction("Normal")), mode)
+
+
+@translator("ShaderNodeBsdfTranslucent")
+def translucent(view: NodeView) -> Value:
+    return view.add_closure(Op.TRANSLUCENT, (view.value("Color"), view.direction("Normal")))
+
+
+@translator("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic")
+def glossy(view: NodeView) -> Value:
+    inputs = (
+        view.value("Color"),
+        roughness(view),
+        view.value("Anisotropy"),
+        view.value("Rotation"),
+        view.direction("Normal"),
+        view.direction("Tangent"),
+    )
+    return view.add_closure(Op.GLOSSY, inputs, distribution_mode(view))
+
+
+@translator("ShaderNodeBsdfGlass")
+def glass(view: NodeView) -> Value:
+    inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
+    return view.add_closure(Op.GLASS, inputs, distribution_mode(view))
+
+
+@translator("ShaderNodeBsdfRefraction")
+def refraction(view: NodeView) -> Value:
+    return view.add_closure(Op.REFRACTION, (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal")))
+
+
+@translator("ShaderNodeBsdfMetallic")
+def metallic(view: NodeView) -> Value:
+    if getattr(view.node, "fresnel_type", "F82") != "F82":
+        view.warn_replaced("is rendered with base and edge colour in place of a conductor's indices")
+    inputs = (
+        view.value("Base Color"),
+        view.value("Edge Tint"),
+        view.value("Roughness"),
+        view.value("Anisotropy"),
+        view.value("Rotation"),
+        view.direction("Normal"),
+        view.direction("Tangent"),
+    )
+    return view.add_closure(Op.METALLIC, inputs, distribution_mode(view))
+
+
+@translator("ShaderNodeBsdfSheen", "ShaderNodeBsdfVelvet")
+def sheen(view: NodeView) -> Value:
+    return view.add_closure(Op.SHEEN, (view.value("Color"), view.value("Roughness", "Sigma"), view.direction("Normal")))
+
+
+@translator("ShaderNodeBsdfTransparent")
+def transparent(view: NodeView) -> Value:
+    return view.add_closure(Op.TRANSPARENT, (view.value("Color"),))
+
+
+@translator("ShaderNodeHoldout")
+def holdout(view: NodeView) -> Value:
+    return view.add_closure(Op.HOLDOUT)
+
+
+@translator("ShaderNodeEmission", "ShaderNodeBackground")
+def emission(view: NodeView) -> Value:
+    return view.add_closure(Op.EMISSION, (view.value("Color"), view.value("Strength")))
+
+
+@translator("ShaderNodeMixShader")
+def mix_shader(view: NodeView) -> Value | None:
+    first, second = view.value("Shader"), view.value("Shader_001")
+    if first == BLACK_CLOSURE and second == BLACK_CLOSURE:
+        return None
+    return view.add_closure(Op.MIX_SHADER, (view.value("Fac"), first, second))
+
+
+@translator("ShaderNodeAddShader")
+def add_shader(view: NodeView) -> Value | None:
+    first, second = view.value("Shader"), view.value("Shader_001")
+    if first == BLACK_CLOSURE and second == BLACK_CLOSURE:
+        return None
+    return view.add_closure(Op.ADD_SHADER, (first, second))

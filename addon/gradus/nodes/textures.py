@@ -1,0 +1,136 @@
+"""Image and procedural textures."""
+
+from __future__ import annotations
+
+from .node import NodeView
+from .ops import Gradient, Mapping, NoiseType, Op, Projection, TexCoord
+from .program import COLOR, FLOAT, Value, constant_vector
+from .registry import translator
+
+_INTERPOLATION = {"Linear": 0, "Closest": 1, "Cubic": 2, "Smart": 2}
+_EXTENSION = {"REPEAT": 0, "EXTEND": 1, "CLIP": 2, "MIRROR": 3}
+_PROJECTION = {"FLAT": Projection.FLAT, "BOX": Projection.BOX, "SPHERE": Projection.SPHERE, "TUBE": Projection.TUBE}
+
+
+def _mapped(view: NodeView, vector: Value) -> Value:
+    """The node's own mapping, which has no sockets; scripts and old files set it."""
+    mapping = getattr(view.node, "texture_mapping", None)
+    if mapping is None:
+        return vector
+    location, rotation, scale = tuple(mapping.translation), tuple(mapping.rotation), tuple(mapping.scale)
+    if not any(location) and not any(rotation) and scale == (1.0, 1.0, 1.0):
+        return vector
+    mode = {"POINT": Mapping.POINT, "TEXTURE": Mapping.TEXTURE, "VECTOR": Mapping.VECTOR, "NORMAL": Mapping.NORMAL}[mapping.vector_type]
+    return view.add_vector(Op.MAPPING, (vector, constant_vector(location), constant_vector(rotation), constant_vector(scale)), mode)
+
+
+def coordinates(view: NodeView, default: TexCoord) -> Value:
+    """What is linked to Vector, else the coordinates that such textures take by themselves."""
+    linked = view.linked("Vector")
+    return _mapped(view, view.add_vector(Op.TEX_COORD, (), default) if linked is None else linked)
+
+
+def _generated(view: NodeView) -> Value:
+    return coordinates(view, TexCoord.GENERATED)
+
+
+def _divides_by_alpha(view: NodeView, image: object) -> bool:
+    """As Cycles: where the Alpha output is used, colours are not associated."""
+    if image is None or image.alpha_mode in {"CHANNEL_PACKED", "NONE"} or image.colorspace_settings.is_data:
+        return False
+    return view.node.outputs["Alpha"].is_linked
+
+
+@translator("ShaderNodeTexImage")
+def image_texture(view: NodeView) -> Value:
+    node, image = view.node, view.node.image
+    key = view.walker.resources.image(image, node.image_user) if image is not None else 0
+    mode = _PROJECTION[node.projection] | _INTERPOLATION[node.interpolation] << 2 | _EXTENSION.get(node.extension, 0) << 4
+    mode |= _divides_by_alpha(view, image) << 6
+    floats = (float(node.projection_blend),) if node.projection == "BOX" else ()
+    alpha = view.output == "Alpha"
+    vector = coordinates(view, TexCoord.UV)
+    return view.add(Op.IMAGE, (vector,), mode, floats, key, kind=FLOAT if alpha else COLOR, output=1 if alpha else 0)
+
+
+@translator("ShaderNodeTexEnvironment")
+def environment_texture(view: NodeView) -> Value:
+    node = view.node
+    key = view.walker.resources.image(node.image, node.image_user) if node.image is not None else 0
+    linked = view.linked("Vector")
+    vector = _mapped(view, view.add_vector(Op.GEOMETRY) if linked is None else linked)
+    mode = (1 if node.projection == "MIRROR_BALL" else 0) | _INTERPOLATION[node.interpolation] << 2
+    return view.add(Op.ENVIRONMENT, (vector,), mode, resource=key)
+
+
+def _color_or_factor(view: NodeView, op: Op, inputs: tuple[Value, ...], mode: int = 0, floats: tuple[float, ...] = ()) -> Value:
+    """Patterns: color is output 0, factor 1."""
+    factor = view.output == "Fac"
+    return view.add(op, inputs, mode, floats, kind=FLOAT if factor else COLOR, output=1 if factor else 0)
+
+
+@translator("ShaderNodeTexNoise")
+def noise(view: NodeView) -> Value:
+    node = view.node
+    legacy = not view.has("Lacunarity")
+    kind = NoiseType[getattr(node, "noise_type", "FBM")]
+    mode = int(node.noise_dimensions[0]) | kind << 3 | bool(getattr(node, "normalize", True)) << 6 | legacy << 7
+    inputs = (
+        _generated(view),
+        view.value("W"),
+        view.value("Scale"),
+        view.value("Detail"),
+        view.value("Roughness"),
+        view.value("Lacunarity", default=2.0),
+        view.value("Offset"),
+        view.value("Gain"),
+        view.value("Distortion"),
+    )
+    factor = view.output == "Fac"
+    return view.add(Op.NOISE, inputs, mode, kind=FLOAT if factor else COLOR, output=0 if factor else 1)
+
+
+@translator("ShaderNodeTexChecker")
+def checker(view: NodeView) -> Value:
+    return _color_or_factor(view, Op.CHECKER, (_generated(view), view.value("Color1"), view.value("Color2"), view.value("Scale")))
+
+
+@translator("ShaderNodeTexGradient")
+def gradient(view: NodeView) -> Value:
+    mode = Gradient[view.node.gradient_type]
+    return view.add(Op.GRADIENT, (_generated(view),), mode, kind=FLOAT if view.output == "Fac" else COLOR)
+
+
+@translator("ShaderNodeTexWhiteNoise")
+def white_noise(view: NodeView) -> Value:
+    value = view.output == "Value"
+    linked = view.linked("Vector")
+    vector = view.value("Vector") if linked is None else linked
+    mode = int(view.node.noise_dimensions[0])
+    return view.add(Op.WHITE_NOISE, (vector, view.value("W")), mode, kind=FLOAT if value else COLOR, output=0 if value else 1)
+
+
+@translator("ShaderNodeTexWave")
+def wave(view: NodeView) -> Value:
+    node = view.node
+    bands = node.wave_type == "BANDS"
+    direction = {"X": 0, "Y": 1, "Z": 2}.get(node.bands_direction if bands else node.rings_direction, 3)
+    mode = (0 if bands else 1) | direction << 1 | {"SIN": 0, "SAW": 1, "TRI": 2}[node.wave_profile] << 3
+    names = ("Scale", "Distortion", "Detail", "Detail Scale", "Detail Roughness", "Phase Offset")
+    inputs = (_generated(view), *(view.value(name) for name in names))
+    return view.add(Op.WAVE, inputs, mode, kind=FLOAT if view.output == "Fac" else COLOR)
+
+
+@translator("ShaderNodeTexMagic")
+def magic(view: NodeView) -> Value:
+    inputs = (_generated(view), view.value("Scale"), view.value("Distortion"))
+    return _color_or_factor(view, Op.MAGIC, inputs, min(max(view.node.turbulence_depth, 0), 10))
+
+
+@translator("ShaderNodeTexBrick")
+def brick(view: NodeView) -> Value:
+    node = view.node
+    names = ("Color1", "Color2", "Mortar", "Scale", "Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height")
+    inputs = (_generated(view), *(view.value(name) for name in names))
+    floats = (float(node.offset), float(node.offset_frequency), float(node.squash), float(node.squash_frequency))
+    return _color_or_factor(view, Op.BRICK, inputs, 0, floats)

@@ -1,0 +1,100 @@
+"""From a material, world or light to its program."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from .ops import Op
+from .program import SHADER, Program, constant_color, constant_float
+from .tree import find_socket
+from .walker import Walker
+
+# A chain of nodes is a chain of calls, about four deep per node.
+_RECURSION_LIMIT = 20000
+
+_KINDS = {"MATERIAL": "SURFACE", "SURFACE": "SURFACE", "WORLD": "WORLD", "LIGHT": "LIGHT"}
+
+
+def host_version() -> tuple[int, ...]:
+    import bpy
+
+    return tuple(bpy.app.version)
+
+
+def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | None = None) -> Program:
+    """The program of a material (kind SURFACE or MATERIAL), world (WORLD) or light (LIGHT). Never raises for what a graph contains."""
+    kind = _KINDS[kind]
+    version = version or host_version()
+    program = Program(name=block.name)
+    _settings(program, block, kind)
+    tree = _node_tree(block, version)
+    if tree is None:
+        program.surface = _without_nodes(program, block, kind)
+        return program
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
+    try:
+        _walk(program, tree, resources, version, kind)
+    except Exception as error:  # noqa: BLE001  (a graph that nobody thought of must cost its material, never the frame)
+        _replace_all(program, kind, f"{type(error).__name__}: {error}")
+    finally:
+        sys.setrecursionlimit(limit)
+    return program
+
+
+def _replace_all(program: Program, kind: str, reason: str) -> None:
+    program.warn(f"{program.name}: its nodes could not be translated, grey instead ({reason})")
+    program.uses_fallback = True
+    op = Op.DIFFUSE if kind == "SURFACE" else Op.EMISSION
+    program.surface = program.add(op, (constant_color((0.8, 0.8, 0.8)), constant_float(1.0 if op == Op.EMISSION else 0.0)))
+
+
+def _settings(program: Program, block: Any, kind: str) -> None:
+    if kind != "SURFACE":
+        return
+    program.pass_index = getattr(block, "pass_index", 0)
+    cycles = getattr(block, "cycles", None)
+    # 3.4: a switch; later an enumeration.
+    program.sample_as_light = bool(getattr(cycles, "sample_as_light", True)) and getattr(cycles, "emission_sampling", "AUTO") != "NONE"
+    shadow = getattr(block, "use_transparent_shadow", None)
+    if shadow is None:
+        shadow = getattr(cycles, "use_transparent_shadow", True)
+    program.transparent_shadow = bool(shadow)
+
+
+def _node_tree(block: Any, version: tuple[int, ...]) -> Any:
+    """None: it has no nodes, or they are switched off (not possible from 5.0 on but for lights)."""
+    if _is_light(block) or version < (5, 0, 0):
+        return block.node_tree if block.use_nodes else None
+    return block.node_tree
+
+
+def _is_light(block: Any) -> bool:
+    return hasattr(block, "energy")
+
+
+def _without_nodes(program: Program, block: Any, kind: str) -> int:
+    if kind == "SURFACE":
+        return program.add(Op.DIFFUSE, (constant_color(block.diffuse_color), constant_float(0.0)))
+    color = (1.0, 1.0, 1.0) if kind == "LIGHT" else block.color
+    return program.add(Op.EMISSION, (constant_color(color), constant_float(1.0)))
+
+
+def _output_node(tree: Any) -> Any:
+    return tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+
+
+def _walk(program: Program, tree: Any, resources: Any, version: tuple[int, ...], kind: str) -> None:
+    output = _output_node(tree)
+    if output is None:
+        return
+    walker = Walker(program, resources, tree, version, kind)
+    surface = find_socket(output.inputs, "Surface")
+    value = walker.input(surface, ())
+    if value.kind == SHADER and not value.is_constant:
+        program.surface = value.node
+    displacement = find_socket(output.inputs, "Displacement")
+    if kind == "SURFACE" and displacement is not None and walker.tree(()).source(displacement):
+        program.warn(f"{program.name}: displacement is not supported yet and is left out")
+        program.uses_fallback = True

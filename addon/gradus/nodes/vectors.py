@@ -1,0 +1,48 @@
+"""Mapping, vector arithmetic and transforms."""
+
+from __future__ import annotations
+
+from .node import NodeView
+from .ops import Mapping, Op, VectorMath
+from .program import FLOAT, VECTOR, Value
+from .registry import translator
+
+
+@translator("ShaderNodeMapping")
+def mapping(view: NodeView) -> Value:
+    location = view.value("Location")
+    inputs = (view.value("Vector"), location, view.value("Rotation"), view.value("Scale"))
+    return view.add_vector(Op.MAPPING, inputs, Mapping[view.node.vector_type])
+
+
+@translator("ShaderNodeVectorMath")
+def vector_math(view: NodeView) -> Value:
+    inputs = (view.value("Vector"), view.value("Vector_001"), view.value("Vector_002"), view.value("Scale"))
+    scalar = view.output == "Value"
+    mode = VectorMath[view.node.operation]
+    return view.add(Op.VECTOR_MATH, inputs, mode, kind=FLOAT if scalar else VECTOR, output=1 if scalar else 0)
+
+
+@translator("ShaderNodeVectorRotate")
+def vector_rotate(view: NodeView) -> Value:
+    mode = {"AXIS_ANGLE": 0, "X_AXIS": 1, "Y_AXIS": 2, "Z_AXIS": 3, "EULER_XYZ": 4}[view.node.rotation_type]
+    inputs = (view.value("Vector"), view.value("Center"), view.value("Axis"), view.value("Angle"), view.value("Rotation"))
+    return view.add_vector(Op.VECTOR_ROTATE, inputs, mode | bool(view.node.invert) << 3)
+
+
+@translator("ShaderNodeVectorTransform")
+def vector_transform(view: NodeView) -> Value:
+    kinds, spaces = {"VECTOR": 0, "POINT": 1, "NORMAL": 2}, {"WORLD": 0, "OBJECT": 1, "CAMERA": 2}
+    node = view.node
+    mode = kinds[node.vector_type] | spaces[node.convert_from] << 2 | spaces[node.convert_to] << 4
+    return view.add_vector(Op.VECTOR_TRANSFORM, (view.value("Vector"),), mode)
+
+
+@translator("ShaderNodeSeparateXYZ")
+def separate_xyz(view: NodeView) -> Value:
+    return view.add_float(Op.SEPARATE, (view.value("Vector"),), output="XYZ".index(view.output))
+
+
+@translator("ShaderNodeCombineXYZ")
+def combine_xyz(view: NodeView) -> Value:
+    return view.add_vector(Op.COMBINE, (view.value("X"), view.value("Y"), view.value("Z")))

@@ -1,0 +1,433 @@
+"""Shader graphs become node programs: what must not fall back, and what must."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+from support.nodes import Resources, new_material, op_names, output_of, show, socket, translate
+
+pytestmark = pytest.mark.usefixtures("scene")
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+# The nodes that the first release promises; those of one version only are skipped in the others.
+PROMISED = [
+    "BsdfPrincipled",
+    "BsdfDiffuse",
+    "BsdfGlossy",
+    "BsdfAnisotropic",
+    "BsdfGlass",
+    "BsdfRefraction",
+    "BsdfTransparent",
+    "BsdfTranslucent",
+    "Emission",
+    "MixShader",
+    "AddShader",
+    "Holdout",
+    "Background",
+    "TexImage",
+    "TexEnvironment",
+    "TexCoord",
+    "UVMap",
+    "Mapping",
+    "NormalMap",
+    "Bump",
+    "Mix",
+    "MixRGB",
+    "Math",
+    "VectorMath",
+    "Clamp",
+    "MapRange",
+    "ValToRGB",
+    "RGBCurve",
+    "VectorCurve",
+    "FloatCurve",
+    "SeparateColor",
+    "CombineColor",
+    "SeparateRGB",
+    "CombineRGB",
+    "SeparateHSV",
+    "CombineHSV",
+    "SeparateXYZ",
+    "CombineXYZ",
+    "Value",
+    "RGB",
+    "HueSaturation",
+    "Gamma",
+    "Invert",
+    "BrightContrast",
+    "Attribute",
+    "VertexColor",
+    "ObjectInfo",
+    "LayerWeight",
+    "Fresnel",
+    "LightPath",
+    "NewGeometry",
+    "TexNoise",
+    "TexChecker",
+    "TexGradient",
+    "TexWhiteNoise",
+    "TexWave",
+    "TexMagic",
+    "TexBrick",
+    "RGBToBW",
+    "Blackbody",
+    "VectorRotate",
+    "VectorTransform",
+    "Tangent",
+    "CameraData",
+    "LightFalloff",
+    "Normal",
+    "BsdfSheen",
+    "BsdfVelvet",
+    "BsdfMetallic",
+]
+# Outputs that fall back although their node does not.
+NOT_YET = {("ShaderNodeNewGeometry", "Pointiness"), ("ShaderNodeNewGeometry", "Random Per Island")}
+
+
+def add(material: bpy.types.Material, kind: str) -> bpy.types.Node:
+    try:
+        return material.node_tree.nodes.new(f"ShaderNode{kind}")
+    except RuntimeError:
+        pytest.skip(f"no {kind} in this Blender")
+
+
+def native_check(library: object, program: object) -> None:
+    """The library takes the program."""
+    from gradus import native
+
+    lib = native.load()
+    device, scene = native.abi.ctypes.c_uint64(), native.abi.ctypes.c_uint64()
+    settings = native.DeviceSettings()
+    settings.threads = 1
+    lib.device_create(native.byref(settings), native.byref(device))
+    lib.scene_create(device, native.byref(scene))
+    struct, keep = program.to_native(native)
+    lib.scene_set_material(scene, 1, native.byref(struct))
+    lib.scene_commit(scene, None, None)
+    del keep
+    lib.scene_release(scene)
+    lib.device_release(device)
+
+
+@pytest.mark.parametrize("kind", PROMISED)
+def test_e5_promised_nodes_do_not_fall_back(kind: str) -> None:
+    for index in range(len(add(new_material(), kind).outputs)):
+        material = new_material()
+        node = add(material, kind)
+        output = node.outputs[index]
+        if (node.bl_idname, output.identifier) in NOT_YET:
+            continue
+        show(material, output)
+        program = translate(material)
+        assert not program.uses_fallback, program.warnings
+        assert not program.warnings
+        assert program.surface >= 0 or kind in {"MixShader", "AddShader"}
+
+
+def test_programs_of_promised_nodes_compile(library: object) -> None:
+    """All of them in one material after another, through the native checks."""
+    for kind in PROMISED:
+        if not hasattr(bpy.types, f"ShaderNode{kind}"):
+            continue
+        material = new_material(kind)
+        try:
+            node = material.node_tree.nodes.new(f"ShaderNode{kind}")
+        except RuntimeError:
+            continue
+        show(material, node.outputs[0])
+        native_check(library, translate(material))
+
+
+def test_e5_unknown_node_falls_back_with_one_warning() -> None:
+    material = new_material("Painted wall")
+    node = material.node_tree.nodes.new("ShaderNodeBsdfToon")
+    node.name = "My toon"
+    node.inputs["Color"].default_value = (1.0, 0.5, 0.25, 1.0)
+    show(material, node.outputs[0])
+    program = translate(material)
+    assert program.uses_fallback
+    assert len(program.warnings) == 1
+    assert "Painted wall" in program.warnings[0]
+    assert "My toon" in program.warnings[0]
+    assert op_names(program) == ["DIFFUSE"]
+    assert program.inputs[0][2][:3] == pytest.approx((1.0, 0.5, 0.25))
+
+
+def test_e5_unknown_texture_is_grey_and_sky_is_not_black() -> None:
+    material = new_material()
+    node = material.node_tree.nodes.new("ShaderNodeTexVoronoi")
+    show(material, node.outputs["Color"])
+    program = translate(material)
+    assert program.uses_fallback
+    assert program.inputs[0][2][:3] == (0.5, 0.5, 0.5)
+    material = new_material()
+    show(material, material.node_tree.nodes.new("ShaderNodeTexSky").outputs[0])
+    assert min(translate(material).inputs[0][2][:3]) > 0.01
+
+
+def test_e5_unknown_value_node_passes_through() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    node = nodes.new("ShaderNodeAmbientOcclusion")
+    color = nodes.new("ShaderNodeRGB")
+    color.outputs[0].default_value = (0.1, 0.2, 0.3, 1.0)
+    links.new(color.outputs[0], node.inputs["Color"])
+    show(material, node.outputs["Color"])
+    program = translate(material)
+    assert len(program.warnings) == 1
+    assert program.inputs[0][2][:3] == pytest.approx((0.1, 0.2, 0.3))
+
+
+def test_e5_no_surface_is_no_program() -> None:
+    assert translate(new_material()).surface == -1
+
+
+def test_e5_loop_through_links_ends() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    first, second = nodes.new("ShaderNodeGamma"), nodes.new("ShaderNodeGamma")
+    links.new(first.outputs[0], second.inputs["Color"])
+    links.new(second.outputs[0], first.inputs["Color"])
+    show(material, second.outputs[0])
+    assert translate(material).surface >= 0
+
+
+def test_e5_loop_through_muted_nodes_ends() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    first, second, third = (nodes.new("ShaderNodeGamma") for _ in range(3))
+    links.new(first.outputs[0], second.inputs["Color"])
+    links.new(second.outputs[0], third.inputs["Color"])
+    links.new(third.outputs[0], first.inputs["Color"])
+    first.mute = second.mute = True
+    show(material, third.outputs[0])
+    assert translate(material).surface >= 0
+
+
+def nested_group(depth: int) -> bpy.types.NodeTree:
+    """A group in a group … that doubles a colour at the bottom."""
+    tree = bpy.data.node_groups.new(f"Group {depth}", "ShaderNodeTree")
+    if hasattr(tree, "interface"):
+        tree.interface.new_socket("In", in_out="INPUT", socket_type="NodeSocketColor")
+        tree.interface.new_socket("Out", in_out="OUTPUT", socket_type="NodeSocketColor")
+    else:
+        tree.inputs.new("NodeSocketColor", "In")
+        tree.outputs.new("NodeSocketColor", "Out")
+    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    if depth == 0:
+        inner = tree.nodes.new("ShaderNodeBrightContrast")
+        inner.inputs["Bright"].default_value = 0.25
+        inner_in, inner_out = inner.inputs["Color"], inner.outputs[0]
+    else:
+        inner = tree.nodes.new("ShaderNodeGroup")
+        inner.node_tree = nested_group(depth - 1)
+        inner_in, inner_out = inner.inputs[0], inner.outputs[0]
+    reroute = tree.nodes.new("NodeReroute")
+    tree.links.new(start.outputs[0], reroute.inputs[0])
+    tree.links.new(reroute.outputs[0], inner_in)
+    tree.links.new(inner_out, end.inputs[0])
+    return tree
+
+
+def test_e5_groups_eight_deep() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    group = nested_group(7)
+    for color in ((0.1, 0.2, 0.3, 1.0), (0.5, 0.5, 0.5, 1.0)):
+        node = nodes.new("ShaderNodeGroup")
+        node.node_tree = group
+        node.inputs[0].default_value = color
+    add_node = nodes.new("ShaderNodeMixRGB")
+    first, second = (node for node in nodes if node.bl_idname == "ShaderNodeGroup")
+    links.new(first.outputs[0], add_node.inputs["Color1"])
+    links.new(second.outputs[0], add_node.inputs["Color2"])
+    show(material, add_node.outputs[0])
+    program = translate(material)
+    assert not program.uses_fallback
+    assert op_names(program) == ["BRIGHT_CONTRAST", "BRIGHT_CONTRAST", "MIX_COLOR", "EMISSION"]
+    assert [program.inputs[i][2][:3] for i in (0, 3)] == [pytest.approx((0.1, 0.2, 0.3)), (0.5, 0.5, 0.5)]
+
+
+def test_group_without_output_or_tree_is_not_linked() -> None:
+    material = new_material()
+    node = material.node_tree.nodes.new("ShaderNodeGroup")
+    node.node_tree = bpy.data.node_groups.new("Empty", "ShaderNodeTree")
+    assert translate(material).surface == -1
+
+
+def test_muted_node_hands_on_its_input() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    color, gamma = nodes.new("ShaderNodeRGB"), nodes.new("ShaderNodeGamma")
+    color.outputs[0].default_value = (0.3, 0.6, 0.9, 1.0)
+    links.new(color.outputs[0], gamma.inputs["Color"])
+    gamma.mute = True
+    show(material, gamma.outputs[0])
+    program = translate(material)
+    assert op_names(program) == ["EMISSION"]
+    assert program.inputs[0][2][:3] == pytest.approx((0.3, 0.6, 0.9))
+
+
+def test_muted_link_counts_for_nothing() -> None:
+    material = new_material()
+    node = material.node_tree.nodes.new("ShaderNodeEmission")
+    show(material, node.outputs[0])
+    material.node_tree.links[0].is_muted = True
+    if not material.node_tree.links[0].is_muted:
+        pytest.skip("links cannot be muted by script here")
+    assert translate(material).surface == -1
+
+
+def test_output_for_cycles_wins() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    output_of(material).target = "EEVEE"
+    other = nodes.new("ShaderNodeOutputMaterial")
+    other.target = "CYCLES"
+    emission, diffuse = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeBsdfDiffuse")
+    links.new(diffuse.outputs[0], output_of(material).inputs["Surface"])
+    links.new(emission.outputs[0], other.inputs["Surface"])
+    assert op_names(translate(material)) == ["EMISSION"]
+
+
+def test_color_to_float_is_luminance_and_vector_to_float_the_mean() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    color, vector, math = nodes.new("ShaderNodeRGB"), nodes.new("ShaderNodeCombineXYZ"), nodes.new("ShaderNodeMath")
+    vector.inputs["X"].default_value = 3.0
+    links.new(color.outputs[0], math.inputs[0])
+    color.outputs[0].default_value = (0.0, 1.0, 0.0, 1.0)
+    links.new(vector.outputs[0], math.inputs[1])
+    show(material, math.outputs[0])
+    program = translate(material)
+    assert op_names(program) == ["COMBINE", "AVERAGE", "MATH", "EMISSION"]
+    assert program.inputs[4][2][0] == pytest.approx(0.7152)
+
+
+def test_value_as_surface_shines() -> None:
+    material = new_material()
+    color = material.node_tree.nodes.new("ShaderNodeRGB")
+    material.node_tree.links.new(color.outputs[0], output_of(material).inputs["Surface"])
+    assert op_names(translate(material)) == ["EMISSION"]
+
+
+def test_equal_nodes_are_stored_once() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    image = bpy.data.images.new("pixels", 4, 4)
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    mix = nodes.new("ShaderNodeMixShader")
+    links.new(texture.outputs["Alpha"], mix.inputs[0])
+    diffuse = nodes.new("ShaderNodeBsdfDiffuse")
+    links.new(texture.outputs["Color"], diffuse.inputs["Color"])
+    links.new(diffuse.outputs[0], mix.inputs[2])
+    show(material, mix.outputs[0])
+    resources = Resources()
+    program = translate(material, resources=resources)
+    assert resources.images == [image]
+    assert op_names(program).count("IMAGE") == 1
+
+
+def test_principled_of_this_version() -> None:
+    material = new_material()
+    node = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
+    show(material, node.outputs[0])
+    expected = "PRINCIPLED_3" if bpy.app.version < (4, 0, 0) else "PRINCIPLED"
+    assert op_names(translate(material)) == [expected]
+    node.inputs["Alpha"].default_value = 0.5
+    assert op_names(translate(material)) == [expected, "TRANSPARENT", "MIX_SHADER"]
+
+
+def test_attribute_names_are_asked_for() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    color, uv = nodes.new("ShaderNodeVertexColor"), nodes.new("ShaderNodeUVMap")
+    color.layer_name, uv.uv_map = "Tint", "Second"
+    mix = nodes.new("ShaderNodeMixRGB")
+    links.new(color.outputs["Color"], mix.inputs["Color1"])
+    links.new(uv.outputs[0], mix.inputs["Color2"])
+    show(material, mix.outputs[0])
+    assert translate(material).attribute_names == {"Tint", "Second"}
+
+
+def test_deep_chains_translate() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    last = nodes.new("ShaderNodeRGB").outputs[0]
+    for _ in range(600):
+        node = nodes.new("ShaderNodeGamma")
+        links.new(last, node.inputs["Color"])
+        last = node.outputs[0]
+    show(material, last)
+    program = translate(material)
+    assert len(program.nodes) == 601
+    assert not program.warnings
+
+
+def test_world_and_light() -> None:
+    world = bpy.data.worlds.new("World")
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = True
+    background = next(node for node in world.node_tree.nodes if node.bl_idname == "ShaderNodeBackground")
+    background.inputs["Strength"].default_value = 2.0
+    program = translate(world, "WORLD")
+    assert op_names(program) == ["EMISSION"]
+    assert program.inputs[1][2][0] == 2.0
+    light = bpy.data.lights.new("Lamp", "POINT")
+    assert op_names(translate(light, "LIGHT")) == ["EMISSION"]
+
+
+def test_without_nodes_the_viewport_color_counts() -> None:
+    if bpy.app.version >= (5, 0, 0):
+        pytest.skip("materials always have nodes from 5.0 on")
+    material = bpy.data.materials.new("Plain")
+    material.diffuse_color = (0.2, 0.4, 0.6, 1.0)
+    program = translate(material)
+    assert op_names(program) == ["DIFFUSE"]
+    assert program.inputs[0][2][:3] == pytest.approx((0.2, 0.4, 0.6))
+
+
+def test_displacement_is_named() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    links.new(nodes.new("ShaderNodeDisplacement").outputs[0], output_of(material).inputs["Displacement"])
+    assert len(translate(material).warnings) == 1
+
+
+def test_operations_are_those_of_the_header() -> None:
+    sys.path.insert(0, str(ROOT / "tools" / "nodes"))
+    import generate_ops
+
+    header = generate_ops.HEADER.read_text(encoding="utf-8")
+    names = {name: value for name, value, _, _ in generate_ops.operations(header)}
+    from gradus.nodes import ops
+
+    assert names == {op.name: op.value for op in ops.Op}
+    for enum, (python, prefix) in generate_ops.ENUMS.items():
+        assert dict(generate_ops.enum_values(header, enum, prefix)) == {item.name: item.value for item in getattr(ops, python)}
+
+
+def test_programs_have_as_many_inputs_as_operations_take() -> None:
+    from gradus.nodes import ops
+
+    for kind in PROMISED:
+        material = new_material(kind)
+        try:
+            node = material.node_tree.nodes.new(f"ShaderNode{kind}")
+        except RuntimeError:
+            continue
+        show(material, node.outputs[0])
+        for record in translate(material).nodes:
+            assert record[3] <= ops.INPUTS[ops.Op(record[0])], (kind, ops.Op(record[0]).name)
+
+
+def test_socket_helper_finds_identifiers() -> None:
+    material = new_material()
+    node = material.node_tree.nodes.new("ShaderNodeMath")
+    assert socket(node.inputs, "Value_001") == node.inputs[1]

@@ -1,0 +1,64 @@
+"""Helpers of the node tests: materials from a few lines, resources that remember."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+
+class Resources:
+    """Keys of images in order of asking."""
+
+    def __init__(self) -> None:
+        self.images: list[Any] = []
+
+    def image(self, image: Any, image_user: Any) -> int:
+        if image not in self.images:
+            self.images.append(image)
+        return self.images.index(image) + 1
+
+    def warn(self, text: str) -> None:
+        raise AssertionError(text)
+
+
+def new_material(name: str = "Material") -> bpy.types.Material:
+    """A material whose tree holds an output alone."""
+    material = bpy.data.materials.new(name)
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    tree.nodes.new("ShaderNodeOutputMaterial")
+    return material
+
+
+def output_of(material: bpy.types.Material) -> bpy.types.Node:
+    return next(node for node in material.node_tree.nodes if node.bl_idname == "ShaderNodeOutputMaterial")
+
+
+def socket(sockets: Any, identifier: str) -> bpy.types.NodeSocket:
+    return next(item for item in sockets if item.identifier == identifier)
+
+
+def show(material: bpy.types.Material, source: bpy.types.NodeSocket) -> None:
+    """Links an output to the surface, values through an emission."""
+    tree = material.node_tree
+    if source.type != "SHADER":
+        emission = tree.nodes.new("ShaderNodeEmission")
+        tree.links.new(source, emission.inputs["Color"])
+        source = emission.outputs[0]
+    tree.links.new(source, output_of(material).inputs["Surface"])
+
+
+def translate(block: Any, kind: str = "SURFACE", resources: Resources | None = None) -> Any:
+    from gradus import nodes
+
+    return nodes.translate(block, kind, resources or Resources())
+
+
+def op_names(program: Any) -> list[str]:
+    """Operations of a program in order."""
+    from gradus.nodes.ops import Op
+
+    return [Op(node[0]).name for node in program.nodes]
