@@ -12,6 +12,13 @@ from . import renderer, viewport
 from .failure import is_expected, user_text
 
 
+def free(state: dict[str, Any]) -> None:
+    """Releases what an engine object holds. Bears half-built objects: Blender deletes many that never rendered."""
+    for part in (state.pop("job", None), state.pop("view", None)):
+        if part is not None:
+            part.free()
+
+
 class GradusRenderEngine(bpy.types.RenderEngine):
     """No __init__: in Blender 4.5 and 5.0 it would run twice on one object. State is in class-level defaults."""
 
@@ -30,24 +37,11 @@ class GradusRenderEngine(bpy.types.RenderEngine):
     failed = False
 
     def __del__(self) -> None:
-        self.free()
-        parent = getattr(super(), "__del__", None)
+        # At the end of Blender its side of the object is gone before ours, and then every look-up on self raises.
+        free(object.__getattribute__(self, "__dict__"))
+        parent = getattr(bpy.types.RenderEngine, "__del__", None)
         if parent is not None:
-            parent()
-
-    def free(self) -> None:
-        """Tolerates half-built objects: Blender deletes engines that never rendered."""
-        self._drop_job()
-        view = getattr(self, "view", None)
-        if view is not None:
-            self.view = None
-            view.free()
-
-    def _drop_job(self) -> None:
-        job = getattr(self, "job", None)
-        if job is not None:
-            self.job = None
-            job.free()
+            parent(self)
 
     def update_render_passes(self, scene: bpy.types.Scene | None = None, renderlayer: bpy.types.ViewLayer | None = None) -> None:
         self._guard(lambda: renderer.register_passes(self, scene, renderlayer))
@@ -75,7 +69,9 @@ class GradusRenderEngine(bpy.types.RenderEngine):
             action()
         except Exception as error:
             self.failed = True
-            self._drop_job()
+            if self.job is not None:
+                self.job.free()
+                self.job = None
             text = f"Gradus: {user_text(error)}"
             if not is_expected(error):
                 traceback.print_exc()

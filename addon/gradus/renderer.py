@@ -230,7 +230,7 @@ def _sample(job: Job, view: str, result: Any) -> None:
 
 def _wait(job: Job, handle: int, result: Any) -> None:
     """Until the library is done; a cancelled render ends well, too: what it has so far is delivered."""
-    library, engine = job.session.library, job.engine
+    library = job.session.library
     progress = native.Progress()
     display = _Display(job, handle, result)
     running = True

@@ -1,100 +1,119 @@
-"""What a user does: F12 in a window, and a look at the picture."""
+"""Blender's window under Xvfb: the Rendered viewport, F12, Escape, material previews, two viewports and a render at once."""
 
 from __future__ import annotations
 
+import json
+import os
 import shutil
+import signal
+import subprocess
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from support import window
+from support.application import ROOT, environment
 
 pytestmark = pytest.mark.application
 
-# A green, glowing cube before a red world: no other part of Blender's window has these colours.
-SCENE = """
-import bpy
-
-def emission(tree, kind, color):
-    tree.nodes.clear()
-    shader = tree.nodes.new(kind)
-    shader.inputs["Color"].default_value = color
-    output = tree.nodes.new("ShaderNodeOutputWorld" if kind == "ShaderNodeBackground" else "ShaderNodeOutputMaterial")
-    tree.links.new(shader.outputs[0], output.inputs["Surface"])
-
-scene = bpy.context.scene
-scene.render.engine = "GRADUS"
-scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 320, 240, 100
-scene.view_settings.view_transform = "Standard"
-scene.gradus.samples = SAMPLES
-scene.gradus.noise_threshold = 0
-scene.world.use_nodes = True
-emission(scene.world.node_tree, "ShaderNodeBackground", (1, 0, 0, 1))
-material = bpy.data.materials.new("glow")
-material.use_nodes = True
-emission(material.node_tree, "ShaderNodeEmission", (0, 1, 0, 1))
-bpy.data.objects["Cube"].data.materials.clear()
-bpy.data.objects["Cube"].data.materials.append(material)
-preferences = bpy.context.preferences.view
-preferences.render_display_type, preferences.show_splash = "AREA", False
-
-def tell(text):
-    def handler(*_):
-        print(text, flush=True)
-    return handler
-
-bpy.app.handlers.render_init.append(tell("RENDER-STARTED"))
-bpy.app.handlers.render_complete.append(tell("RENDER-COMPLETE"))
-bpy.app.handlers.render_cancel.append(tell("RENDER-CANCELLED"))
-bpy.app.timers.register(tell("WINDOW-READY"), first_interval=1.0)
-"""
+LIMIT = 240
 
 
-@pytest.fixture(autouse=True)
-def tools() -> None:
-    if not all(shutil.which(name) for name in ("Xvfb", "xdotool", "import")):
-        pytest.skip("needs the packages of tools/setup/debian-window.txt")
+@pytest.fixture(scope="module")
+def display() -> Iterator[str]:
+    for program in ("Xvfb", "xdotool", "import"):
+        if shutil.which(program) is None:
+            pytest.skip(f"needs {program}")
+    reading, writing = os.pipe()
+    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1024x700x24", "+extension", "GLX", "-nolisten", "tcp"]
+    server = subprocess.Popen(command, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(writing)
+    with os.fdopen(reading) as pipe:
+        number = pipe.readline().strip()
+    yield f":{number}"
+    server.terminate()
+    server.wait()
 
 
-def shares(path: Path) -> tuple[float, float]:
-    """Shares of the screen that are pure red and pure green."""
-    image = oiio.ImageInput.open(str(path))
-    spec = image.spec()
-    pixels = np.asarray(image.read_image("float")).reshape(spec.height, spec.width, spec.nchannels)[..., :3]
-    image.close()
-    red = (pixels[..., 0] > 0.9) & (pixels[..., 1] < 0.1) & (pixels[..., 2] < 0.1)
-    green = (pixels[..., 1] > 0.9) & (pixels[..., 0] < 0.1) & (pixels[..., 2] < 0.1)
-    return float(red.mean()), float(green.mean())
+@pytest.fixture(scope="module")
+def session(display: str) -> Iterator[tuple[Path, dict]]:
+    """One session at the window: its folder of pictures, and its answers."""
+    with tempfile.TemporaryDirectory(prefix="gradus-window-") as name:
+        folder = Path(name)
+        arguments = ["--factory-startup", "-noaudio", "-p", "0", "0", "1024", "700"]
+        script = ["--python", str(ROOT / "tests" / "support" / "window_script.py"), "--", str(ROOT / "addon"), str(folder)]
+        process = subprocess.Popen(
+            [os.environ.get("BLENDER") or "blender", *arguments, *script],
+            env=environment(folder / "home", DISPLAY=display),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+        try:
+            output, _ = process.communicate(timeout=LIMIT)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            output, _ = process.communicate()
+            pytest.fail(f"the window did not finish in {LIMIT} s\n{output.decode()}")
+        text = output.decode("utf-8", "replace")
+        assert process.returncode == 0, text
+        assert "Traceback" not in text, text
+        answers = json.loads((folder / "answers.json").read_text())
+        assert answers.get("finished"), answers
+        yield folder, answers
 
 
-def wait_for_picture(blender: window.Window) -> tuple[float, float]:
-    """The window shows the result soon after the render has ended, or while it goes on."""
-    for _ in range(40):
-        red, green = shares(blender.screenshot())
-        if red > 0.02 and green > 0.002:
-            return red, green
-    raise AssertionError(f"no picture on the screen: red {red:.4f}, green {green:.4f}\n{blender.log}")
+def picture(path: Path) -> np.ndarray:
+    """RGB, 0 to 1, top row first."""
+    file = oiio.ImageInput.open(str(path))
+    return np.asarray(file.read_image("float"))[:, :, :3]
 
 
-def test_f12_shows_the_picture() -> None:
-    with window.blender(SCENE.replace("SAMPLES", "8")) as blender:
-        blender.wait_for("WINDOW-READY")
-        assert max(shares(blender.screenshot())) < 1e-4
-        blender.press("F12")
-        blender.wait_for("RENDER-COMPLETE")
-        red, green = wait_for_picture(blender)
-        assert red > 3 * green  # the cube covers about an eighth of the frame
-        assert "Error" not in blender.log
+def viewport(path: Path) -> np.ndarray:
+    """The middle of the 3D viewport in the factory layout."""
+    return picture(path)[200:420, 150:620]
 
 
-def test_f12_grows_on_screen_and_escape_ends_it() -> None:
-    with window.blender(SCENE.replace("SAMPLES", "1000000")) as blender:
-        blender.wait_for("WINDOW-READY")
-        blender.press("F12")
-        blender.wait_for("RENDER-STARTED")
-        wait_for_picture(blender)  # while it samples
-        assert "RENDER-COMPLETE" not in blender.log
-        blender.press("Escape")
-        blender.wait_for("RENDER-CANCELLED", limit=3)
-        wait_for_picture(blender)  # what there was stays
+def test_viewport_shows_the_scene(session: tuple[Path, dict]) -> None:
+    rendered = viewport(session[0] / "rendered.png")
+    assert rendered.max() > 0.5, "black"
+    assert np.ptp(rendered.mean(axis=2)) > 0.2, "flat"
+    assert np.abs(rendered - viewport(session[0] / "solid.png")).mean() > 0.02, "solid shading was drawn"
+
+
+def test_viewport_follows_an_edit(session: tuple[Path, dict]) -> None:
+    before, after = (viewport(session[0] / f"{name}.png").mean(axis=2) for name in ("rendered", "moved"))
+    bright_rows = [np.average(np.arange(image.shape[0]), weights=(image > 0.4).sum(axis=1) + 1e-9) for image in (before, after)]
+    assert bright_rows[1] < bright_rows[0] - 10, "the cube did not go up"
+
+
+def test_f12_renders_while_two_viewports_sample(session: tuple[Path, dict]) -> None:
+    folder, answers = session
+    assert answers["areas"] == 2
+    assert answers["f12"] == ["complete"]
+    assert answers["views"] == 2
+    image = picture(folder / "f12.png")
+    assert image.shape == (90, 160, 3)
+    assert image[45, 80].max() > 0.1
+    assert np.ptp(image) > 0.2
+    two = picture(folder / "two.png")[200:420]
+    assert two[:, 60:330].max() > 0.5
+    assert two[:, 390:620].max() > 0.5
+
+
+def test_k1_escape_ends_the_render_and_keeps_the_picture(session: tuple[Path, dict]) -> None:
+    folder, answers = session
+    assert answers["escape"] == ["cancel"]
+    assert answers["escape_seconds"] <= 2.0  # with what the window itself takes; the library's share is tested elsewhere
+    assert picture(folder / "escape.png")[45, 80].max() > 0.1
+
+
+def test_material_preview(session: tuple[Path, dict]) -> None:
+    assert session[1]["preview"] > 0.1
+
+
+def test_viewports_are_freed(session: tuple[Path, dict]) -> None:
+    assert session[1]["views_left"] == 0
