@@ -15,6 +15,16 @@ def test_e1_empty_scene_with_a_camera(scene: bpy.types.Scene) -> None:
     assert (report.width, report.height) == (64, 36)
 
 
+def test_layer_without_sky_has_no_world(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.mist_settings.start = 3.0
+    assert recording.export(scene)[0].world.material != 0
+    scene.view_layers[0].use_sky = False
+    world = recording.export(scene)[0].world
+    assert world.material == 0 and world.mist_start == 3.0
+
+
 def test_e1_all_hidden(scene: bpy.types.Scene) -> None:
     recording.add_camera()
     recording.add(recording.grid(1))

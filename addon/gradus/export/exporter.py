@@ -199,6 +199,8 @@ class _Sync:
         return record
 
     def _set_world(self) -> None:
-        found = getattr(self._depsgraph.view_layer_eval, "world_override", None) or self._scene.world
-        key = self._materials.key(found, "WORLD")
+        layer = self._depsgraph.view_layer_eval
+        found = getattr(layer, "world_override", None) or self._scene.world
+        # Without sky the layer has no world at all, as in Cycles: neither seen nor shining.
+        key = self._materials.key(found, "WORLD") if layer.use_sky else 0
         self._target.set_world(world.fill_world(found, key))
