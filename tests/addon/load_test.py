@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+import json
+import os
 import re
 import subprocess
 from pathlib import Path
@@ -31,3 +33,17 @@ def test_h4_exports_are_those_of_the_header(library_path: Path) -> None:
     exported = {line.split()[-1].partition("@")[0] for line in lines}
     assert "gradus_version" in declared
     assert exported == declared
+
+
+def test_h4_soname_changes_with_the_layout(library: ctypes.CDLL, library_path: Path) -> None:
+    """abi_golden.json holds what the last release had: a new layout under an old number would pass for that release.
+
+    After raising SOVERSION in native/CMakeLists.txt (or before the first release): GRADUS_UPDATE_GOLDEN=1 make test-addon TESTS=this file.
+    """
+    golden = Path(__file__).with_name("abi_golden.json")
+    dynamic = subprocess.run(["readelf", "-d", library_path], check=True, capture_output=True, text=True).stdout
+    library.gradus_abi_hash.restype = ctypes.c_uint64
+    found = {"layout": f"{library.gradus_abi_hash():016x}", "soname": re.search(r"\(SONAME\).*\[(.*)\]", dynamic).group(1)}
+    if os.environ.get("GRADUS_UPDATE_GOLDEN"):
+        golden.write_text(json.dumps(found) + "\n")
+    assert found == json.loads(golden.read_text())
