@@ -12,7 +12,7 @@ case ${1:-} in
   tests) targets=(all) ;;
   *) targets=(gradus) ; grep -q '^build gradus_tool:' build/build.ninja && targets+=(gradus_tool) ;;
 esac
-ninja -C build --quiet "${targets[@]}" >&2
+ninja -C build "${targets[@]}" | sed -u -e '/Entering directory/d' -e '/Re-checking globbed/d' -e '/no work to do/d' >&2
 /usr/bin/python3 tools/bundle.py build/native/libgradus.so addon/gradus/lib
 case ${1:-} in
   package) /usr/bin/python3 tools/package.py ;;

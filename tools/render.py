@@ -54,7 +54,8 @@ def scripts_folder() -> Path:
 
 def command(blender: str, scene: Path, arguments: list[str]) -> list[str]:
     script = str(ROOT / "tools" / "render_output.py")
-    head = [blender, "-b", str(scene), "--factory-startup", "-noaudio", "--addons", "gradus", "-E", "GRADUS"]
+    # The add-on comes before the file, or Blender complains of an unknown engine when it reads a file that names ours.
+    head = [blender, "-b", "--factory-startup", "-noaudio", "--addons", "gradus", str(scene), "-E", "GRADUS"]
     return [*head, "--python-exit-code", "1", "--python", script, "--", *arguments]
 
 
