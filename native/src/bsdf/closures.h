@@ -37,7 +37,7 @@ enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
 //
 // Which fields count:
 //   Diffuse                alpha_x = Oren-Nayar roughness, 0 = Lambert; multiscatter: energy conserving, f0 = the surface's colour (which
-//                          weight holds, too)
+//                          weight holds, too); fresnel Schlick: Disney's diffuse, alpha_x = roughness
 //   Sheen                  alpha_x = sheen roughness, not squared; fresnel Schlick: the grazing term of Blender before 4.0
 //   Ggx…, Dirac…           alpha_x, alpha_y, ior, fresnel; finish() makes a Ggx lobe Dirac where alpha is too small for float
 //   fresnel Dielectric     of ior

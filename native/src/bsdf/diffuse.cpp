@@ -1,10 +1,12 @@
-// Lambert; Oren-Nayar in Fujii's improved form, and its energy-conserving extension EON.
+// Lambert; Oren-Nayar in Fujii's improved form, and its energy-conserving extension EON; Disney's diffuse with retro-reflection.
 //
 // Fujii, "A tiny improvement of Oren-Nayar reflectance model" (2012); Portsmouth, Kutz, Hill, "EON: A practical energy-preserving rough
-// diffuse BRDF" (2024), whose equation numbers are given below. Cycles uses the first up to 4.1 and the second from 4.2 on.
+// diffuse BRDF" (2024), whose equation numbers are given below. Cycles uses the first up to 4.1 and the second from 4.2 on. Disney's
+// (Burley 2015, "Extending the Disney BRDF to a BSDF with integrated subsurface scattering", eq. 4) is the base of Principled before 4.0.
 #include <algorithm>
 #include <cmath>
 
+#include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
 #include "bsdf/warp.h"
 
@@ -36,6 +38,14 @@ Rgb multiple_scattering(const Lobe& lobe, float cos_o, float cos_i) {
   return color * color * (mean * std::max(0.0f, shape)) / (Rgb(1.0f) - color * (1.0f - mean));
 }
 
+// Times π. At grazing angles darker than Lambert where smooth, brighter towards the light where rough.
+float disney(float roughness, const Vec3& wo, const Vec3& wi) {
+  const float fl = pow5(std::clamp(1.0f - wi.z, 0.0f, 1.0f));
+  const float fv = pow5(std::clamp(1.0f - wo.z, 0.0f, 1.0f));
+  const float retro = roughness * (glm::dot(wo, wi) + 1.0f);
+  return (1.0f - 0.5f * fl) * (1.0f - 0.5f * fv) + retro * (fl + fv + fl * fv * (retro - 1.0f));
+}
+
 }  // namespace
 
 BsdfEval evaluate_diffuse(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t) {
@@ -43,6 +53,9 @@ BsdfEval evaluate_diffuse(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint
     return {};
   }
   const float pdf = wi.z * kInvPi;
+  if (lobe.fresnel == FresnelType::Schlick) {
+    return {lobe.weight * (std::max(0.0f, disney(lobe.alpha_x, wo, wi)) * pdf), pdf};
+  }
   if (lobe.alpha_x <= 0.0f) {
     return {lobe.weight * pdf, pdf};
   }

@@ -51,7 +51,10 @@ class Parts {
 
   void diffuse() {
     const Rgb color = glm::max(args_.v(kDiffuseColor), Vec3(0.0f));
-    add_lobe(result_, LobeType::Diffuse, LightPass::Diffuse, args_.weight * color * diffuse_, normal_);
+    Lobe* lobe = add_lobe(result_, LobeType::Diffuse, LightPass::Diffuse, args_.weight * color * diffuse_, normal_);
+    if (!lobe) return;
+    lobe->fresnel = FresnelType::Schlick;  // Disney's diffuse
+    lobe->alpha_x = saturate(args_.f(kRoughness));
   }
 
   void sheen() {

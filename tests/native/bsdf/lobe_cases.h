@@ -12,6 +12,7 @@ struct LobeCase {
   std::string name;
   Lobe lobe;
   bool lossless = false;  // gives back all energy: albedo at least 0.99
+  bool bounded = true;    // no more than all; not so for Disney's diffuse, which is kept as old files have it
 };
 
 inline Lobe make_lobe(LobeType type, float alpha = 0.0f, FresnelType fresnel = FresnelType::None, float ior = 1.0f) {
@@ -28,6 +29,8 @@ inline std::vector<LobeCase> diffuse_cases() {
   std::vector<LobeCase> cases = {{"Lambert", make_lobe(LobeType::Diffuse), true},
                                  {"OrenNayar", make_lobe(LobeType::Diffuse, 1.0f), false},
                                  {"EON", make_lobe(LobeType::Diffuse, 1.0f), true},
+                                 {"Disney", make_lobe(LobeType::Diffuse, 0.5f, FresnelType::Schlick), false, false},
+                                 {"DisneyRough", make_lobe(LobeType::Diffuse, 1.0f, FresnelType::Schlick), false, false},
                                  {"Translucent", make_lobe(LobeType::Translucent), true},
                                  {"Sheen", make_lobe(LobeType::Sheen, 0.5f), false},
                                  {"SheenSmooth", make_lobe(LobeType::Sheen, 0.1f), false},
