@@ -19,6 +19,7 @@ Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, ui
 void attribute(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   uint32_t channels = 0;
   Vec4 v = attribute_value(c, args.name, false, &channels);
+  if (channels == 0) v.w = 1.0f;  // as in Cycles: what is missing is black, but opaque
   if (channels == 1) v = Vec4(v.x, v.x, v.x, 1.0f);
   out[0] = out[1] = Vec4(Vec3(v), 1.0f);
   out[2] = splat(channels == 1 ? v.x : mean_component(Vec3(v)));
