@@ -30,6 +30,7 @@ struct NoObserver {
   void passed(const Segment&) {}
   void world(const RaySource&, const Contribution&) {}
   void emission(const RaySource&, const Contribution&, const Vertex&) {}
+  void seen() {}  // all that the segment shows has been told
   void transparent(float) {}
   void light(const Vertex&, const LightSample&, ScatterClass, const Contribution&) {}
   void scatter(const Vertex&, const ScatterEvent&) {}
@@ -65,17 +66,9 @@ class PathTracer {
   bool step(const Sampler& sampler, const RaySource& source, Vertex* vertex) {
     trace_segment(context_, sampler, state_.depth, nullptr, &state_.ray, vertex, &s_.segment);
     observer_.arrive(source, state_, s_.segment, *vertex);
-    add_lamps(source);
-    apply_segment(s_.segment, &state_);
-    observer_.passed(s_.segment);
-    if (s_.segment.end == SegmentEnd::Escaped) {
-      add_world(source);
-    }
-    if (s_.segment.end != SegmentEnd::Surface) {
-      return false;
-    }
-    result_.fallback |= vertex->shade.fallback;
-    if (!add_surface(sampler, source, *vertex) || state_.emission_only) {
+    const bool goes_on = see(sampler, source, *vertex);
+    observer_.seen();
+    if (!goes_on || state_.emission_only) {
       return false;
     }
     add_light(sampler, *vertex);
@@ -88,6 +81,21 @@ class PathTracer {
     }
     observer_.scatter(*vertex, s_.event);
     return true;
+  }
+
+  // Emitters along the segment and at its end. False: there is no surface to scatter from.
+  bool see(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
+    add_lamps(source);
+    apply_segment(s_.segment, &state_);
+    observer_.passed(s_.segment);
+    if (s_.segment.end == SegmentEnd::Escaped) {
+      add_world(source);
+    }
+    if (s_.segment.end != SegmentEnd::Surface) {
+      return false;
+    }
+    result_.fallback |= vertex.shade.fallback;
+    return add_surface(sampler, source, vertex);
   }
 
   void add(const Rgb& value) { result_.radiance += Radiance(value, 0.0f); }

@@ -47,6 +47,7 @@ struct OffsetPath {
   Segment segment;          // that segment
   ScatterEvent event;       // density and kind of the event that began it
   bool from_camera = true;  // there was no such event
+  bool fresh = false;       // it traced its own ray for the base's current segment
   OffsetLink link;
   OffsetLight light;
   // Own vertices, the current one first; and the base's vertex as seen from here.

@@ -79,8 +79,10 @@ void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& le
 void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex&) {
   base_segment_ = &segment;
   base_state_ = state;
+  seen_ = Radiance(0.0f);
   for (OffsetPath& o : offsets_) {
     o.light.known = false;
+    o.fresh = false;
   }
   if (source.vertex == nullptr) {
     trace_camera(state);
@@ -100,8 +102,8 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
 
 void OffsetPaths::passed(const Segment& segment) {
   for (OffsetPath& o : offsets_) {
-    if (o.stage == OffsetStage::Linked || o.stage == OffsetStage::Traced) {
-      o.state.throughput *= o.stage == OffsetStage::Linked ? segment.weight : o.segment.weight;
+    if (o.stage == OffsetStage::Linked) {
+      o.state.throughput *= segment.weight;
     }
   }
 }

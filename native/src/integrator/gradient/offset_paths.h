@@ -22,7 +22,8 @@ class OffsetPaths {
   void lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp);
   void world(const RaySource& source, const Contribution& c);
   void emission(const RaySource& source, const Contribution& c, const Vertex& vertex);
-  void transparent(float value);
+  void transparent(float value) { seen_.w -= value; }
+  void seen();
   void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void scatter(const Vertex& vertex, const ScatterEvent& event);
 
@@ -44,7 +45,8 @@ class OffsetPaths {
   ShiftFailure try_link(OffsetPath* offset, const Vertex& vertex, ShiftedEvent* event) const;
   void open_link(OffsetPath* offset, const Vertex& vertex, const ShiftedEvent& event, const Rgb& through);
 
-  // Emitters (offset_light.cpp).
+  // Emitters (offset_emission.cpp, offset_light.cpp).
+  Radiance see(OffsetPath* offset) const;
   void light_all(const LightSample& sample);
   void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
@@ -60,6 +62,8 @@ class OffsetPaths {
   std::array<PairCount, kOffsets> pairs_{};
   std::array<Radiance, kOffsets> gradient_{};
   std::array<OffsetPath, kOffsets> offsets_;
+  // What the base's current segment shows.
+  Radiance seen_ = Radiance(0.0f);
   // Of the base: what its last ray met, and if that ray left in class D, from where and how.
   const Segment* base_segment_ = nullptr;
   const Vertex* base_from_ = nullptr;
@@ -70,5 +74,7 @@ class OffsetPaths {
 };
 
 void count_failure(Counters* counters, ShiftFailure cause);
+// Jacobian of copying an emitter point between two receivers, see shift/reconnection.h.
+float copy_jacobian(const EmitterPoint& point, const EmitterView& base, const EmitterView& offset);
 
 }  // namespace gradus

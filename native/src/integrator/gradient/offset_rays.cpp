@@ -5,8 +5,8 @@
 
 namespace gradus {
 
-// Traces the rays of the offsets in `wanted`, the first hit of all four together. The end must be that of the base: surface with surface,
-// background with background.
+// Traces the rays of the offsets in `wanted`, the first hit of all four together. To go on, both paths must have met a surface; what the
+// two segments show is compared in any case, see seen().
 void OffsetPaths::trace_all(const bool wanted[kOffsets]) {
   Ray rays[kOffsets];
   Hit hits[kOffsets];
@@ -24,6 +24,7 @@ void OffsetPaths::trace_all(const bool wanted[kOffsets]) {
       ++counters_.rays_shift;
       std::swap(o.here, o.previous);
       trace_segment(context_, *sampler_, base_state_.depth, &hits[k], &o.state.ray, o.here, &o.segment);
+      o.fresh = true;
       if (o.segment.end != base_segment_->end) {
         fail(&o, ShiftFailure::Missed);
       }

@@ -1,0 +1,159 @@
+// Emitters at the ends of offset paths.
+//
+// An emitter is found by two techniques, light sampling with density p_n and BSDF sampling with p_b. With the balance heuristic a
+// contribution is C = f/(p_n + p_b) whichever found it. Where both techniques take the same shift (class D: the emitter point is copied)
+// and see the same integrand, a gradient sample is weighed against all four strategies, {light, BSDF} × {base, offset} (thesis 5.4.2):
+//   (r·C' − C) / (m_p + m_q·r)  with  r = |T'|·(p_n(y) + p_b(y)) / (p_n(x) + p_b(x)).
+// Elsewhere (sharp classes: BSDF samples copy the half-vector, light samples the emitter point; shadows that are not what rays see) each
+// technique is paired with itself: r = |T'|·p_t(y)/p_t(x), with the same C and C'. Both are unbiased.
+//
+// Where base and offset both traced a ray of their own (from the camera, or after a copied event), what the two rays show is one function
+// of the ray, and the pair needs no condition: it is formed by seen() also where one of the two shows nothing. So the edges of visible
+// lights, and of their mirror images, are sampled from both sides.
+#include "integrator/gradient/offset_paths.h"
+
+namespace gradus {
+
+namespace {
+
+constexpr uint32_t kAllBounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION;
+
+// From the ratio of BSDF densities, which r holds already, to that of all techniques.
+float all_techniques(const Contribution& base, float pdf_light, float pdf_bsdf) {
+  return (1.0f + pdf_light / pdf_bsdf) / (1.0f + base.pdf_light / base.pdf_bsdf);
+}
+
+}  // namespace
+
+// 1 where the choice of the point is discrete, or a direction that is copied.
+float copy_jacobian(const EmitterPoint& point, const EmitterView& base, const EmitterView& offset) {
+  const bool copied = point.dirac || point.at_infinity();
+  return copied ? 1.0f : emitter_jacobian(base.cosine, base.distance, offset.cosine, offset.distance);
+}
+
+bool OffsetPaths::joint(const EmitterView& view) const {
+  return joint_ && view.casts_shadow && (view.visibility & kAllBounces) == kAllBounces;
+}
+
+// What the offset's own segment shows; alpha is 1 − what the camera sees through. Brings its throughput to the end of the segment.
+Radiance OffsetPaths::see(OffsetPath* o) const {
+  Radiance seen(0.0f);
+  for (int i = 0; i < o->segment.lamp_count; ++i) {
+    seen += Radiance(lamp_contribution(context_, o->source(), o->state, o->segment.lamps[i]).clamped, 0.0f);
+  }
+  o->state.throughput *= o->segment.weight;
+  const float all = mean_component(o->state.throughput);
+  if (o->segment.end == SegmentEnd::Escaped) {
+    seen += Radiance(world_contribution(context_, o->source(), o->state).clamped, o->from_camera ? -all : 0.0f);
+  } else if (o->segment.end == SegmentEnd::Surface) {
+    const ShadeResult& shade = o->here->shade;
+    if (o->from_camera && (context_.scene.instances[o->here->point.hit.instance].visibility & GRADUS_HOLDOUT) != 0) {
+      return seen - Radiance(0.0f, 0.0f, 0.0f, all);
+    }
+    const float hole = o->from_camera ? held_out(o->state.throughput, shade.holdout) : 0.0f;
+    seen += Radiance(emission_contribution(context_, o->source(), o->state, *o->here).clamped, -hole);
+  }
+  return seen;
+}
+
+void OffsetPaths::seen() {
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    if (o.fresh) {
+      gradient_[k] += pairs_[k].paired(seen_, see(&o), o.ratio);
+    }
+  }
+}
+
+// From class D: the emitter point is copied. base, offset: as seen from the two vertices; probability: of the base's decisions up to it.
+void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,
+                               float probability) {
+  OffsetPath& o = offsets_[k];
+  const ShiftedEvent event = event_towards(base_event_, *o.here, offset.direction, copy_jacobian(point, base, offset));
+  if (event.failure != ShiftFailure::None || is_black(offset.radiance)) {
+    count_failure(&counters_, event.failure);
+    alone(k, c);
+    return;
+  }
+  ++counters_.rays_shift_shadow;
+  const Rgb through = segment_transmittance(context_, shadow_ray(o.here->point, point, offset), base_state_.ray);
+  if (is_black(through)) {
+    ++counters_.fail_occluded;
+    alone(k, c);
+    return;
+  }
+  const Rgb value = o.state.throughput * event.factor * offset.radiance * through * (bsdf_weight(offset.pdf, event.pdf) / probability);
+  pair(k, c, value, o.ratio * event.ratio * (joint(base) ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
+}
+
+void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
+  seen_ += Radiance(c.clamped, 0.0f);
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    if (o.fresh) {
+      continue;
+    }
+    if (o.stage == OffsetStage::Dead) {
+      alone(k, c);
+    } else if (o.stage == OffsetStage::Linked) {
+      pair(k, c, o.state.throughput * lamp.weight * c.tail, o.ratio);
+    } else if (o.stage == OffsetStage::Pending) {
+      const EmitterView base = view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex));
+      const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
+      copy_emitter(k, c, lamp.point, base, view, lamp.probability);
+    }
+  }
+}
+
+void OffsetPaths::world(const RaySource& source, const Contribution& c) {
+  seen_ += Radiance(c.clamped, 0.0f);
+  const Vec3 direction = base_state_.ray.ray.direction;
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    if (o.fresh) {
+      continue;
+    }
+    if (o.stage == OffsetStage::Dead) {
+      alone(k, c);
+    } else if (o.stage == OffsetStage::Linked) {
+      pair(k, c, o.state.throughput * c.tail, o.ratio);
+    } else if (o.stage == OffsetStage::Pending) {
+      // The same direction, so the same radiance.
+      EmitterView base;
+      base.direction = direction;
+      base.visibility = context_.scene.world.visibility;
+      EmitterView view = base;
+      view.radiance = c.light;
+      EmitterPoint point = emitter_of_world(context_.scene, direction);
+      view.pdf = light_pdf(context_, RaySource{o.here, source.event}, point);
+      point.kind = EmitterKind::World;  // also where light sampling leaves it out
+      copy_emitter(k, c, point, base, view, base_segment_->probability);
+    }
+  }
+}
+
+void OffsetPaths::emission(const RaySource& source, const Contribution& c, const Vertex& vertex) {
+  seen_ += Radiance(c.clamped, 0.0f);
+  link_all(vertex);
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    if (o.fresh) {
+      continue;
+    }
+    if (o.stage == OffsetStage::Dead) {
+      alone(k, c);
+    } else if (o.stage == OffsetStage::Linked) {
+      pair(k, c, o.state.throughput * c.tail, o.ratio);
+    } else if (o.stage == OffsetStage::Pending) {
+      if (!o.link.open || is_black(o.linked->shade.emission)) {
+        alone(k, c);
+        continue;
+      }
+      const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, emitter_of_surface(context_.scene, vertex.point));
+      const Rgb value = o.link.throughput * o.linked->shade.emission * bsdf_weight(pdf_light, o.link.pdf);
+      pair(k, c, value, o.link.ratio * (joint_ ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
+    }
+  }
+}
+
+}  // namespace gradus
