@@ -172,8 +172,8 @@ def render(engine: Any, depsgraph: Any) -> None:
         job.cancelled = True
         _empty_result(job)
     finally:
-        if job.is_preview:
-            job.free()
+        engine.job = None  # engine and job refer to each other, and the buffers are large
+        job.free()
     if engine.is_animation and not job.is_preview and not job.cancelled:
         _files.after_frame(job.scene.render, job.scene.frame_current)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import threading
 import time
+import weakref
 from array import array
 from ctypes import byref
 from typing import Any
@@ -33,7 +34,8 @@ class View:
     """One viewport in rendered shading."""
 
     def __init__(self, engine: Any, depsgraph: Any) -> None:
-        self.engine = engine
+        # Weak: engine and view would keep each other alive, and the view's threads with them, after Blender dropped the engine.
+        self._engine = weakref.ref(engine)
         scene, layer = depsgraph.scene, depsgraph.view_layer
         self.key = Key(VIEWPORT, scene.name_full, layer.name, id(self))
         self.session: Session = store.acquire(self.key)
@@ -50,6 +52,15 @@ class View:
         self.failed = False
         self.picture = _Picture()
         self.done = False
+        self.ticking = False
+
+    @property
+    def engine(self) -> Any:
+        """Raises ReferenceError when Blender has dropped it."""
+        engine = self._engine()
+        if engine is None:
+            raise ReferenceError("the viewport is gone")
+        return engine
 
     # Reading Blender.
 
@@ -105,8 +116,7 @@ class View:
         old, self.render = self.render, 0
         self.worker = threading.Thread(target=self._work, args=(old,), name="gradus-viewport", daemon=True)
         self.worker.start()
-        if not bpy.app.timers.is_registered(self._tick):
-            bpy.app.timers.register(self._tick, first_interval=REFRESH_SECONDS)
+        _redraw_while_running(self)
 
     def _work(self, old: int) -> None:
         library = self.session.library
@@ -120,16 +130,6 @@ class View:
         except GradusError as error:
             if error.code != Error.CANCELLED:
                 self.error = error
-
-    def _tick(self) -> float | None:
-        """Timer: asks for a redraw when there is something new. Ends with the render, or with the engine."""
-        try:
-            if self.session.scene == 0:
-                return None
-            self.engine.tag_redraw()
-        except ReferenceError:
-            return None
-        return None if self.done else REFRESH_SECONDS
 
     def refresh(self) -> None:
         """Takes the newest image of the running render into the texture."""
@@ -155,6 +155,28 @@ class View:
             self.session.library.render_release(self.render)
             self.render = 0
         store.release(self.key)
+
+
+def _redraw_while_running(view: View) -> None:
+    """A timer that asks for redraws until the render is done. It must not keep the view alive."""
+    if view.ticking:
+        return
+    view.ticking = True
+    reference = weakref.ref(view)
+
+    def tick() -> float | None:
+        view = reference()
+        if view is None or view.session.scene == 0:
+            return None
+        try:
+            view.engine.tag_redraw()
+        except ReferenceError:
+            view.free()
+            return None
+        view.ticking = not view.done
+        return REFRESH_SECONDS if view.ticking else None
+
+    bpy.app.timers.register(tick, first_interval=REFRESH_SECONDS)
 
 
 class _Picture:

@@ -46,7 +46,7 @@ def views() -> list[Any]:
 
     from gradus.viewport import View
 
-    return [item for item in gc.get_objects() if isinstance(item, View) and item.session.scene]
+    return [item for item in gc.get_objects() if type(item) is View and item.session.scene]
 
 
 def prepare() -> None:
