@@ -52,4 +52,13 @@ class SceneRecorder {
 // damaged or of another version.
 GradusSettings load_scene(const std::string& path, Scene* scene);
 
+// What a scene file holds, without building it.
+struct SceneSummary {
+  GradusSettings settings{};
+  size_t meshes = 0, vertices = 0, triangles = 0, instances = 0, lights = 0, materials = 0, nodes = 0, images = 0;
+  uint64_t image_bytes = 0, file_bytes = 0;
+  bool has_camera = false;
+};
+SceneSummary summarize_scene(const std::string& path);
+
 }  // namespace gradus::api

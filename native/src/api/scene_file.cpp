@@ -83,7 +83,9 @@ void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, Sc
 
 bool has_key(RecordKind kind) { return kind == RecordKind::Image || kind == RecordKind::Material || kind == RecordKind::Mesh; }
 
-GradusSettings read_records(const FileBytes& file, Scene* scene) {
+// Calls record(kind, key, data, size) for all but settings, which are returned.
+template <class Function>
+GradusSettings read_records(const FileBytes& file, Function&& record_function) {
   FileHeader header;
   const FileHeader expected;
   if (file.size() < sizeof(header)) throw invalid_argument("it is no scene of Gradus");
@@ -107,7 +109,7 @@ GradusSettings read_records(const FileBytes& file, Scene* scene) {
       settings = settings_from_json(nlohmann::json::parse(data, data + record.size));
     } else {
       if (has_key(kind) && record.key == 0) throw invalid_argument("it holds an object without a key");
-      set_record(kind, record.key, data, record.size, scene);
+      record_function(kind, record.key, data, record.size);
     }
     position += padded(record.size);
   }
@@ -115,9 +117,35 @@ GradusSettings read_records(const FileBytes& file, Scene* scene) {
 
 }  // namespace
 
-GradusSettings load_scene(const std::string& path, Scene* scene) {
+namespace {
+
+void summarize(RecordKind kind, const char* data, size_t size, SceneSummary* summary) {
+  ArchiveReader reader(data, size);
+  if (kind == RecordKind::Mesh) {
+    const GradusMesh mesh = read_record<GradusMesh>(&reader);
+    ++summary->meshes;
+    summary->vertices += mesh.vertex_count;
+    summary->triangles += mesh.triangle_count;
+  } else if (kind == RecordKind::Image) {
+    ++summary->images;
+    summary->image_bytes += size;
+  } else if (kind == RecordKind::Material) {
+    ++summary->materials;
+    summary->nodes += read_record<GradusMaterial>(&reader).node_count;
+  } else if (kind == RecordKind::Instances) {
+    summary->instances = read_record<GradusInstances>(&reader).count;
+  } else if (kind == RecordKind::Lights) {
+    summary->lights = read_record<LightList>(&reader).count;
+  } else if (kind == RecordKind::Camera) {
+    summary->has_camera = true;
+  }
+}
+
+// Runs the function; what it throws becomes an Error with the path.
+template <class Function>
+auto loading(const std::string& path, Function&& function) {
   try {
-    return read_records(FileBytes(path), scene);
+    return function(FileBytes(path));
   } catch (const Error& e) {
     throw Error(e.code(), "cannot load scene " + path + ": " + e.what());
   } catch (const std::bad_alloc&) {
@@ -125,6 +153,25 @@ GradusSettings load_scene(const std::string& path, Scene* scene) {
   } catch (const std::exception& e) {
     throw invalid_argument("cannot load scene " + path + ": " + e.what());
   }
+}
+
+}  // namespace
+
+GradusSettings load_scene(const std::string& path, Scene* scene) {
+  return loading(path, [&](const FileBytes& file) {
+    return read_records(file,
+                        [&](RecordKind kind, uint64_t key, const char* data, size_t size) { set_record(kind, key, data, size, scene); });
+  });
+}
+
+SceneSummary summarize_scene(const std::string& path) {
+  return loading(path, [](const FileBytes& file) {
+    SceneSummary summary;
+    summary.file_bytes = file.size();
+    summary.settings =
+        read_records(file, [&](RecordKind kind, uint64_t, const char* data, size_t size) { summarize(kind, data, size, &summary); });
+    return summary;
+  });
 }
 
 }  // namespace gradus::api

@@ -3,7 +3,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
@@ -13,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "frame/file_writer.h"
+#include "frame/exr_stream.h"
 #include "frame/store_planes.h"
 #include "render/clock.h"
 #include "render/options.h"
@@ -28,35 +27,6 @@ constexpr int kFormat = 1;
 constexpr int kMaxSide = 1 << 16;
 constexpr int kBlockRows = 16;  // of the ZIP compression: blocks are written whole
 constexpr const char* kAttribute = "gradus";
-
-// Adapts the atomic writer to OpenEXR. Errors that OpenEXR swallows (its destructor writes, too) are kept for afterwards.
-class WriterStream final : public Imf::OStream {
- public:
-  WriterStream(FileWriter* writer, const std::string& path) : Imf::OStream(path.c_str()), writer_(writer) {}
-  void write(const char data[], int size) override {
-    run([&] { writer_->write(data, size_t(size)); });
-  }
-  uint64_t tellp() override { return writer_->position(); }
-  void seekp(uint64_t position) override {
-    run([&] { writer_->seek(position); });
-  }
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  template <class Function>
-  void run(Function&& function) {
-    try {
-      function();
-    } catch (...) {
-      failure_ = std::current_exception();
-      throw;
-    }
-  }
-  FileWriter* writer_;
-  std::exception_ptr failure_;
-};
 
 std::string hex(uint64_t value) {
   char text[20];
@@ -235,18 +205,7 @@ Frame read_frame(const std::string& path) {
 void save_frame(const Frame& frame, const std::string& path) {
   // The planes are only read here; the list is shared with reading, which writes them.
   const std::vector<StoredPlane> planes = stored_planes(const_cast<Frame*>(&frame));
-  FileWriter writer(path);
-  WriterStream stream(&writer, path);
-  try {
-    write_rows(frame, planes, make_header(frame, planes), &stream);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    stream.rethrow();
-    throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot write " + path + ": " + e.what());
-  }
-  stream.rethrow();
-  writer.commit();
+  write_exr(path, [&](WriterStream* stream) { write_rows(frame, planes, make_header(frame, planes), stream); });
 }
 
 std::shared_ptr<const Frame> load_frame(const std::string& path) {

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Gradus: the C API as C++ objects that release themselves and throw. Header only; adds nothing to gradus.h, which documents what the
+ * calls do.
+ */
+#ifndef GRADUS_HPP
+#define GRADUS_HPP
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gradus/gradus.h"
+
+namespace gradus::client {
+
+class Error : public std::runtime_error {
+ public:
+  Error(GradusError code, const std::string& text) : std::runtime_error(text), code_(code) {}
+  GradusError code() const { return code_; }
+
+ private:
+  GradusError code_;
+};
+
+// Throws what the thread's error slot holds unless the call went well.
+inline void check(GradusError code) {
+  if (code == GRADUS_OK) return;
+  const char* text = "";
+  gradus_error(&text);
+  throw Error(code, text);
+}
+
+// A struct of the API, zeroed, that knows its size.
+template <class T>
+T make() {
+  T value{};
+  value.struct_size = sizeof(T);
+  return value;
+}
+
+// Owns a handle; moved, not copied.
+template <class Id, GradusError (*Release)(Id)>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(Id id) : id_(id) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ != 0) Release(id_);
+  }
+  Id id() const { return id_; }
+
+ protected:
+  Id id_ = 0;
+};
+
+class Device : public Handle<GradusDevice, gradus_device_release> {
+ public:
+  explicit Device(uint32_t threads = 0, const char* color_config = nullptr) {
+    auto settings = make<GradusDeviceSettings>();
+    settings.threads = threads;
+    settings.color_config = color_config;
+    check(gradus_device_create(&settings, &id_));
+  }
+  // Empty when there is none.
+  std::string warning() const {
+    const char* text = nullptr;
+    check(gradus_device_warning(id_, &text));
+    return text ? text : "";
+  }
+};
+
+inline GradusSettings default_settings() {
+  auto settings = make<GradusSettings>();
+  check(gradus_settings_default(&settings));
+  return settings;
+}
+
+class Scene : public Handle<GradusScene, gradus_scene_release> {
+ public:
+  explicit Scene(const Device& device) { check(gradus_scene_create(device.id(), &id_)); }
+  static Scene load(const Device& device, const std::string& path, GradusSettings* settings) {
+    GradusScene id = 0;
+    check(gradus_scene_load(device.id(), path.c_str(), &id, settings));
+    return Scene(id);
+  }
+  void set_mesh(uint64_t key, const GradusMesh& mesh) { check(gradus_scene_set_mesh(id_, key, &mesh)); }
+  void set_image(uint64_t key, const GradusImage& image) { check(gradus_scene_set_image(id_, key, &image)); }
+  void set_material(uint64_t key, const GradusMaterial& material) { check(gradus_scene_set_material(id_, key, &material)); }
+  void set_instances(const GradusInstances& instances) { check(gradus_scene_set_instances(id_, &instances)); }
+  void set_lights(const std::vector<GradusLight>& lights) { check(gradus_scene_set_lights(id_, lights.data(), lights.size())); }
+  void set_camera(const GradusCamera& camera) { check(gradus_scene_set_camera(id_, &camera)); }
+  void set_world(const GradusWorld& world) { check(gradus_scene_set_world(id_, &world)); }
+  void remove(GradusObjectKind kind, uint64_t key) { check(gradus_scene_remove(id_, kind, key)); }
+  void commit() { check(gradus_scene_commit(id_, nullptr, nullptr)); }
+  void record(bool enabled) { check(gradus_scene_record(id_, enabled ? 1 : 0)); }
+  void save(const GradusSettings& settings, const std::string& path) const { check(gradus_scene_save(id_, &settings, path.c_str())); }
+
+ private:
+  explicit Scene(GradusScene id) : Handle(id) {}
+};
+
+inline uint32_t pass_channels(uint32_t pass) {
+  uint32_t channels = 0;
+  check(gradus_pass_info(pass, nullptr, &channels));
+  return channels;
+}
+
+inline std::string pass_name(uint32_t pass) {
+  const char* name = "";
+  check(gradus_pass_info(pass, &name, nullptr));
+  return name;
+}
+
+class Frame : public Handle<GradusFrame, gradus_frame_release> {
+ public:
+  using Handle::Handle;
+  static Frame load(const Device& device, const std::string& path) {
+    GradusFrame id = 0;
+    check(gradus_frame_load(device.id(), path.c_str(), &id));
+    return Frame(id);
+  }
+  void save(const std::string& path) const { check(gradus_frame_save(id_, path.c_str())); }
+  void merge(const Frame& other) { check(gradus_frame_merge(id_, other.id())); }
+  std::pair<uint32_t, uint32_t> size() const {
+    uint32_t width = 0, height = 0;
+    check(gradus_frame_size(id_, &width, &height));
+    return {width, height};
+  }
+  std::vector<float> reconstruct(uint32_t reconstruction, float alpha) const {
+    std::vector<float> rgba(pixels() * 4);
+    check(gradus_frame_reconstruct(id_, reconstruction, alpha, rgba.data(), rgba.size()));
+    return rgba;
+  }
+  std::vector<float> read_pass(uint32_t pass) const {
+    std::vector<float> values(pixels() * pass_channels(pass));
+    check(gradus_frame_read_pass(id_, pass, values.data(), values.size()));
+    return values;
+  }
+
+ private:
+  size_t pixels() const {
+    const auto [width, height] = size();
+    return size_t(width) * height;
+  }
+};
+
+class Render : public Handle<GradusRender, gradus_render_release> {
+ public:
+  Render(const Scene& scene, const GradusSettings& settings) { check(gradus_render_start(scene.id(), &settings, &id_)); }
+  Render(const Scene& scene, const GradusSettings& settings, const Frame& resumed) {
+    check(gradus_render_resume(scene.id(), &settings, resumed.id(), &id_));
+  }
+  GradusProgress poll() const {
+    auto progress = make<GradusProgress>();
+    check(gradus_render_poll(id_, &progress));
+    return progress;
+  }
+  void cancel() { check(gradus_render_cancel(id_)); }
+  void wait() const { check(gradus_render_wait(id_, -1.0)); }
+  std::string stats() const {
+    const char* json = nullptr;
+    check(gradus_render_stats(id_, &json));
+    return json;
+  }
+  Frame frame() const {
+    GradusFrame id = 0;
+    check(gradus_render_frame(id_, &id));
+    return Frame(id);
+  }
+};
+
+}  // namespace gradus::client
+
+#endif

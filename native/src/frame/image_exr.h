@@ -1,0 +1,31 @@
+// Plain images in OpenEXR: what the tool writes, and reads to compare.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+// Interleaved channels, bottom row first.
+struct ImageLayer {
+  std::string name;  // "" for the main image; else channels are called NAME.R …
+  int channels = 0;  // 1 (V), 3 (RGB) or 4 (RGBA)
+  std::vector<float> pixels;
+};
+
+// 32-bit float, ZIP; whole or not at all. Throws Error with path and cause.
+void save_image(const std::string& path, int width, int height, const std::vector<ImageLayer>& layers);
+
+struct LoadedImage {
+  int width = 0, height = 0;
+  std::vector<float> rgb;  // bottom row first
+};
+// Reads R, G, B of the layer whose channel names end with `layer` (".R" and so on); "": the plain RGB, else a layer Combined. Throws
+// invalid_argument with path and cause, naming the layers there are.
+LoadedImage load_rgb(const std::string& path, const std::string& layer);
+// Names of all channels.
+std::vector<std::string> image_channels(const std::string& path);
+// The file is a frame store of Gradus, not an image.
+bool is_frame_file(const std::string& path);
+
+}  // namespace gradus

@@ -1,0 +1,100 @@
+// gradus info FILE
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "api/recorder.h"
+#include "common.h"
+#include "frame/image_exr.h"
+#include "frame/store.h"
+#include "render/options.h"
+
+namespace gradus::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json scene_info(const std::string& path) {
+  const api::SceneSummary s = api::summarize_scene(path);
+  return {{"kind", "scene"},
+          {"bytes", s.file_bytes},
+          {"meshes", s.meshes},
+          {"vertices", s.vertices},
+          {"triangles", s.triangles},
+          {"instances", s.instances},
+          {"lights", s.lights},
+          {"materials", s.materials},
+          {"nodes", s.nodes},
+          {"images", s.images},
+          {"image_bytes", s.image_bytes},
+          {"camera", s.has_camera},
+          {"settings", settings_to_json(s.settings)}};
+}
+
+ordered_json frame_info(const std::string& path) {
+  const auto frame = load_frame(path);
+  uint64_t samples = 0, least = UINT64_MAX, most = 0;
+  for (size_t i = 0; i < frame->count[0].size(); ++i) {
+    const uint64_t n = uint64_t(frame->count[0][i]) + frame->count[1][i];
+    samples += n;
+    least = std::min(least, n);
+    most = std::max(most, n);
+  }
+  const Region& r = frame->region;
+  char scene_key[20];
+  std::snprintf(scene_key, sizeof(scene_key), "%016llx", static_cast<unsigned long long>(frame->scene_key));
+  return {{"kind", "frame"},
+          {"resolution", {frame->full_width, frame->full_height}},
+          {"sampled_region", {r.x0, r.y0, r.x1, r.y1}},
+          {"frame", frame->frame_number},
+          {"samples", double(samples) / double(r.area())},
+          {"samples_least", least},
+          {"samples_most", most},
+          {"gradients", frame->gradients},
+          {"components", frame->components.size()},
+          {"alpha", frame->channels == 4},
+          {"memory_bytes", frame->memory_bytes()},
+          {"scene_key", scene_key},
+          {"settings", settings_to_json(frame->settings)}};
+}
+
+ordered_json describe(const std::string& path) {
+  if (std::filesystem::path(path).extension() == ".gradus") return scene_info(path);
+  if (is_frame_file(path)) return frame_info(path);
+  return {{"kind", "image"}, {"channels", image_channels(path)}};
+}
+
+void print(const ordered_json& info, const std::string& indent) {
+  for (const auto& [name, value] : info.items()) {
+    if (value.is_object()) {
+      std::printf("%s%s\n", indent.c_str(), name.c_str());
+      print(value, indent + "  ");
+    } else {
+      std::printf("%s%-*s %s\n", indent.c_str(), int(26 - indent.size()), name.c_str(), value.dump().c_str());
+    }
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App* app, int* exit_code) {
+  struct Arguments {
+    std::string path;
+    bool json = false;
+  };
+  auto args = std::make_shared<Arguments>();
+  CLI::App* command = app->add_subcommand("info", "Say what a scene file, a stored frame or an image holds");
+  command->add_option("file", args->path, "FILE.gradus or FILE.exr")->required()->check(CLI::ExistingFile);
+  command->add_flag("--json", args->json, "Print one JSON object");
+  command->callback([args, exit_code] {
+    const ordered_json info = describe(args->path);
+    if (args->json) {
+      std::printf("%s\n", info.dump().c_str());
+    } else {
+      print(info, "");
+    }
+    *exit_code = 0;
+  });
+}
+
+}  // namespace gradus::tool

@@ -1,0 +1,44 @@
+// gradus reconstruct FRAME.exr -o IMAGE.exr
+#include "common.h"
+#include "frame/image_exr.h"
+
+namespace gradus::tool {
+namespace {
+
+struct ReconstructArguments {
+  std::string frame, output, reconstruction = "auto", passes;
+  std::vector<std::string> merged;
+  float alpha = 0.2f;
+};
+
+int run(const ReconstructArguments& args) {
+  const client::Device device;
+  client::Frame frame = client::Frame::load(device, args.frame);
+  for (const std::string& path : args.merged) frame.merge(client::Frame::load(device, path));
+  const auto [width, height] = frame.size();
+  std::vector<ImageLayer> layers = {{"", 4, frame.reconstruct(parse_choice("reconstruction", args.reconstruction), args.alpha)}};
+  const uint64_t passes = args.passes.empty() ? 1 : parse_passes(args.passes);
+  for (uint32_t pass = 1; pass < GRADUS_PASS_COUNT; ++pass) {
+    if ((passes >> pass & 1) == 0) continue;
+    layers.push_back({client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
+  }
+  save_image(args.output, int(width), int(height), layers);
+  return 0;
+}
+
+}  // namespace
+
+void add_reconstruct(CLI::App* app, int* exit_code) {
+  auto args = std::make_shared<ReconstructArguments>();
+  CLI::App* command = app->add_subcommand("reconstruct", "Reconstruct a stored frame into an image");
+  command->add_option("frame", args->frame, "Stored frame, as gradus render writes it")->required()->check(CLI::ExistingFile);
+  command->add_option("-o,--output", args->output, "Image to write, FILE.exr")->required();
+  command->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased) or l1 (biased, no dipoles)")
+      ->capture_default_str();
+  command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients")->capture_default_str();
+  command->add_option("--merge", args->merged, "Frames of the same scene with other samples, to add")->check(CLI::ExistingFile);
+  command->add_option("--passes", args->passes, "Passes to write as layers, separated by commas; they must be in the frame");
+  command->callback([args, exit_code] { *exit_code = run(*args); });
+}
+
+}  // namespace gradus::tool

@@ -1,0 +1,94 @@
+// gradus render SCENE.gradus -o STORE
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "common.h"
+#include "frame/image_exr.h"
+#include "progress_line.h"
+
+namespace gradus::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> interrupted{false};
+
+struct RenderArguments {
+  std::string scene, output, image, stats;
+  bool resume = false;
+  OptionFlags options;
+};
+
+// FILE.exr itself, or in a store: STORE/<scene>/ViewLayer/f<frame>.base.exr (contract 7.2).
+fs::path frame_path(const RenderArguments& args, int32_t frame) {
+  const fs::path output = args.output;
+  if (output.extension() == ".exr") return output;
+  char name[32];
+  std::snprintf(name, sizeof(name), "f%+08d.base.exr", frame);
+  return output / fs::path(args.scene).stem() / "ViewLayer" / name;
+}
+
+client::Frame render_frame(const client::Device& device, const client::Scene& scene, const GradusSettings& settings, const fs::path& target,
+                           const RenderArguments& args) {
+  const bool resumed = args.resume && fs::exists(target);
+  client::Render render =
+      resumed ? client::Render(scene, settings, client::Frame::load(device, target.string())) : client::Render(scene, settings);
+  {
+    ProgressLine line;
+    while (gradus_render_wait(render.id(), 0.1) == GRADUS_ERROR_INVALID_OPERATION) {
+      gradus_error(nullptr);
+      line.show(render.poll(), settings.samples);
+      if (interrupted) render.cancel();
+    }
+    gradus_error(nullptr);
+  }
+  render.wait();
+  if (!args.stats.empty()) std::ofstream(args.stats, std::ios::app) << render.stats() << "\n";
+  return render.frame();
+}
+
+void write_image(const client::Frame& frame, const GradusSettings& settings, const std::string& path) {
+  const auto [width, height] = frame.size();
+  std::vector<ImageLayer> layers;
+  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
+    if (pass != GRADUS_PASS_COMBINED && (settings.passes >> pass & 1) == 0) continue;
+    layers.push_back({pass == 0 ? "" : client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
+  }
+  save_image(path, int(width), int(height), layers);
+}
+
+int run(const RenderArguments& args) {
+  GradusSettings settings = client::default_settings();
+  const client::Device device;
+  const client::Scene scene = client::Scene::load(device, args.scene, &settings);
+  args.options.apply(&settings);
+  const fs::path target = frame_path(args, settings.frame);
+  if (target.has_parent_path()) fs::create_directories(target.parent_path());
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  const client::Frame frame = render_frame(device, scene, settings, target, args);
+  frame.save(target.string());
+  if (!args.image.empty()) write_image(frame, settings, args.image);
+  print_warnings(device);
+  std::printf("%s\n", target.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_render(CLI::App* app, int* exit_code) {
+  auto args = std::make_shared<RenderArguments>();
+  CLI::App* command = app->add_subcommand("render", "Render a saved scene into a frame store");
+  command->add_option("scene", args->scene, "Scene file, FILE.gradus")->required()->check(CLI::ExistingFile);
+  command->add_option("-o,--output", args->output, "Folder of the frame store, or FILE.exr for one frame")->required();
+  command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr");
+  command->add_option("--stats", args->stats, "Append one JSON object about the render to this file");
+  command->add_flag("--resume", args->resume, "Go on from the samples of the frame that is already in the store");
+  args->options.add_to(command);
+  command->footer("Options not given are those the scene was saved with.");
+  command->callback([args, exit_code] { *exit_code = run(*args); });
+}
+
+}  // namespace gradus::tool

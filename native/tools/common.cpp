@@ -1,0 +1,97 @@
+#include "common.h"
+
+#include <cstdio>
+#include <sstream>
+
+namespace gradus::tool {
+namespace {
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+std::string canonical(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (c == ' ' || c == '-') c = '_';
+  }
+  return text;
+}
+
+std::string describe(const GradusOptionInfo& info) {
+  std::ostringstream text;
+  text << info.doc;
+  if (info.type == GRADUS_OPTION_ENUM) {
+    std::istringstream names(info.choices);
+    std::string name;
+    for (int i = 0; i <= int(info.default_value); ++i) names >> name;
+    text << " (" << info.choices << "; default " << name << ")";
+  } else {
+    text << " (default " << info.default_value << ")";
+  }
+  return text.str();
+}
+
+void parse_region(const std::string& text, GradusSettings* settings) {
+  const std::vector<std::string> parts = split(text);
+  if (parts.size() != 4) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "region = " + text + ": expected x0,y0,x1,y1");
+  for (size_t i = 0; i < 4; ++i) {
+    if (parts[i].empty() || parts[i].find_first_not_of("0123456789") != std::string::npos || parts[i].size() > 9) {
+      throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "region = " + text + ": expected four numbers of pixels");
+    }
+    settings->region[i] = static_cast<uint32_t>(std::stoul(parts[i]));
+  }
+}
+
+}  // namespace
+
+void OptionFlags::add_to(CLI::App* command) {
+  for (uint32_t i = 0; i < gradus_option_count(); ++i) {
+    auto info = client::make<GradusOptionInfo>();
+    client::check(gradus_option(i, &info));
+    flags_.push_back(std::make_unique<Flag>(Flag{info.name, ""}));
+    std::string name = info.name;
+    for (char& c : name) c = c == '_' ? '-' : c;
+    command->add_option("--" + name, flags_.back()->value, describe(info))->type_name("VALUE")->group("Render options");
+  }
+  command->add_option("--region", region_, "Part to render: x0,y0,x1,y1 in pixels, y up, upper bounds exclusive")->group("Render options");
+  command->add_option("--passes", passes_, "Passes besides Combined, separated by commas, or all")->group("Render options");
+}
+
+void OptionFlags::apply(GradusSettings* settings) const {
+  for (const auto& flag : flags_) {
+    if (!flag->value.empty()) client::check(gradus_settings_parse(settings, flag->name.c_str(), flag->value.c_str()));
+  }
+  if (!region_.empty()) parse_region(region_, settings);
+  if (!passes_.empty()) settings->passes = parse_passes(passes_);
+}
+
+uint64_t parse_passes(const std::string& text) {
+  if (canonical(text) == "all") return (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
+  uint64_t mask = 1;
+  for (const std::string& part : split(text)) {
+    std::string all;
+    uint32_t pass = 0;
+    for (; pass < GRADUS_PASS_COUNT && canonical(client::pass_name(pass)) != canonical(part); ++pass) {
+      all += (pass ? ", " : "") + canonical(client::pass_name(pass));
+    }
+    if (pass == GRADUS_PASS_COUNT) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "there is no pass " + part + "; there are " + all);
+    mask |= uint64_t{1} << pass;
+  }
+  return mask;
+}
+
+uint32_t parse_choice(const std::string& option, const std::string& value) {
+  GradusSettings settings = client::default_settings();
+  client::check(gradus_settings_parse(&settings, option.c_str(), value.c_str()));
+  return option == "integrator" ? settings.integrator : settings.reconstruction;
+}
+
+void print_warnings(const client::Device& device) {
+  for (std::string text = device.warning(); !text.empty(); text = device.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+}
+
+}  // namespace gradus::tool

@@ -1,0 +1,46 @@
+// What the subcommands of the tool share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gradus/gradus.hpp"
+
+namespace gradus::tool {
+
+inline constexpr int kExitFailure = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitInterrupted = 130;  // as shells report SIGINT
+
+// Each adds its subcommand to `app`; *exit_code is what the program ends with.
+void add_render(CLI::App* app, int* exit_code);
+void add_reconstruct(CLI::App* app, int* exit_code);
+void add_compare(CLI::App* app, int* exit_code);
+void add_info(CLI::App* app, int* exit_code);
+
+// Render options from the library's own table: what the user gave overlays settings.
+class OptionFlags {
+ public:
+  // `skipped`: names that the subcommand has another meaning for.
+  void add_to(CLI::App* command);
+  void apply(GradusSettings* settings) const;
+
+ private:
+  struct Flag {
+    std::string name, value;
+  };
+  std::vector<std::unique_ptr<Flag>> flags_;
+  std::string region_, passes_;
+};
+
+// Bit mask from names separated by commas ("depth,diffuse_direct", any case, '_', '-' and ' ' alike; "all"); throws with the names there
+// are.
+uint64_t parse_passes(const std::string& text);
+// Value of an option of kind enum; throws as the library does.
+uint32_t parse_choice(const std::string& option, const std::string& value);
+
+void print_warnings(const client::Device& device);
+
+}  // namespace gradus::tool

@@ -1,0 +1,31 @@
+// gradus: renders saved scenes into frame stores, reconstructs frame stores, compares images.
+#include <cstdio>
+#include <exception>
+
+#include "common.h"
+
+int main(int argc, char** argv) {
+  using namespace gradus::tool;
+  CLI::App app("Gradus, a gradient-domain path tracer: renders saved scenes, reconstructs stored frames, compares images.", "gradus");
+  app.set_version_flag("--version", gradus_version_text());
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  app.footer("Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted. gradus COMMAND --help tells more.");
+  int exit_code = 0;
+  add_render(&app, &exit_code);
+  add_reconstruct(&app, &exit_code);
+  add_compare(&app, &exit_code);
+  add_info(&app, &exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : kExitUsage;
+  } catch (const gradus::client::Error& e) {
+    std::fprintf(stderr, "gradus: %s\n", e.what());
+    return e.code() == GRADUS_ERROR_CANCELLED ? kExitInterrupted : kExitFailure;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "gradus: %s\n", e.what());
+    return kExitFailure;
+  }
+  return exit_code;
+}
