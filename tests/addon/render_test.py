@@ -243,3 +243,40 @@ def test_warnings_are_reported_once(cube: bpy.types.Scene, render: Render) -> No
     assert summary[(cube.name, cube.view_layers[0].name)]["frame"] == 1
     render(cube, frame=2)
     assert summary[(cube.name, cube.view_layers[0].name)]["frame"] == 2
+
+
+def test_scene_file_and_frame_store(cube: bpy.types.Scene, render: Render, tmp_path: Path, arguments: Callable[..., None]) -> None:
+    arguments("--gradus-save-scene", tmp_path / "s_%f.gradus", "--gradus-frame-store", tmp_path / "store")
+    render(cube, frame=4)
+    assert (tmp_path / "s_4.gradus").stat().st_size > 100
+    stored = list((tmp_path / "store").rglob("*.exr"))
+    assert [path.name for path in stored] == ["f+0000004.base.exr"]
+    assert stored[0].parent.parent.name == frame_store_name(cube.name)
+
+
+def frame_store_name(name: str) -> str:
+    from gradus import frame_store
+
+    return frame_store.escape(name)
+
+
+def test_a_saved_scene_renders_to_the_same_picture(cube: Any, render: Render, tmp_path: Path, arguments: Callable[..., None]) -> None:
+    """What the tool gets is what Blender showed."""
+    import ctypes
+    from ctypes import byref
+
+    from gradus import native, store
+
+    path = tmp_path / "s.gradus"
+    arguments("--gradus-save-scene", path)
+    expected = render(cube)["Combined"]
+    library = native.load()
+    scene, handle, settings = ctypes.c_uint64(), ctypes.c_uint64(), native.Settings()
+    library.scene_load(store.device(library), native.text(str(path)), byref(scene), byref(settings))
+    library.render_start(scene.value, byref(settings), byref(handle))
+    library.render_wait(handle.value, -1.0)
+    pixels = (ctypes.c_float * expected.size)()
+    library.render_read_pass(handle.value, native.Pass.COMBINED, pixels, expected.size)
+    library.render_release(handle.value)
+    library.scene_release(scene.value)
+    assert np.array_equal(np.frombuffer(pixels, np.float32).reshape(expected.shape), expected)

@@ -1,0 +1,97 @@
+"""Every panel of ours draws in every host, closed ones too: all properties that it names exist."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import bpy
+import pytest
+from gradus import store, ui
+from gradus.ui import presets, render_panels
+
+
+class Layout:
+    """Takes all calls of a UILayout; a property must exist, and an operator gives something to set values on."""
+
+    def prop(self, data: Any, name: str, **_: Any) -> None:
+        assert name in data.bl_rna.properties, f"{type(data).__name__}.{name}"
+
+    def operator(self, name: str, **_: Any) -> SimpleNamespace:
+        module, function = name.split(".")
+        getattr(getattr(bpy.ops, module), function).get_rna_type()
+        return SimpleNamespace()
+
+    def template_node_view(self, tree: Any, node: Any, socket: Any) -> None:
+        assert socket.name in node.inputs
+
+    def label(self, text: str = "", icon: str = "NONE") -> None:
+        assert text
+        assert icon in bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *_, **__: Layout()
+
+
+PANELS = [kind for kind in ui.classes() if issubclass(kind, bpy.types.Panel) and kind is not presets.GRADUS_PT_presets]
+
+
+def context(scene: bpy.types.Scene, light: str) -> SimpleNamespace:
+    material, world = bpy.data.materials.new("M"), bpy.data.worlds.new("W")
+    for block in (material, world):
+        if block.node_tree is None:
+            block.use_nodes = True
+    data = bpy.data.lights.new("L", light)
+    layer = scene.view_layers[0]
+    return SimpleNamespace(scene=scene, view_layer=layer, material=material, world=world, light=data, engine="GRADUS")
+
+
+@pytest.mark.parametrize("light", ["POINT", "SUN", "SPOT", "AREA"])
+@pytest.mark.parametrize("panel", PANELS, ids=lambda panel: panel.__name__)
+def test_panel_draws(scene: bpy.types.Scene, panel: Any, light: str) -> None:
+    instance = SimpleNamespace(layout=Layout())
+    instance.columns = lambda: instance.layout
+    for name, value in vars(panel).items():
+        if name == "VALUES":
+            setattr(instance, name, value)
+    shown = context(scene, light)
+    if light == "AREA":
+        shown.light.shape = "RECTANGLE"
+    panel.draw(instance, shown)
+
+
+def test_panels_show_for_our_engine_only(scene: bpy.types.Scene) -> None:
+    shown = context(scene, "POINT")
+    for panel in PANELS:
+        assert panel.poll(shown)
+        assert not panel.poll(SimpleNamespace(**{**vars(shown), "engine": "CYCLES"}))
+
+
+def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:
+    summary = {
+        "frame": 3,
+        "samples": 16.0,
+        "seconds": {"sample": 2.5, "total": 3.0, "filter": 0.0},
+        "plan": {"chosen": {"integrator gradient": "the default"}, "skipped": {"lens samples": "the camera is a pinhole"}},
+        "warnings": ["image missing"],
+    }
+    assert render_panels.plan_lines(summary) == [
+        "Frame 3: 16 samples per pixel in 3.0 s",
+        "Sample: 2.50 s",
+        "Chosen: integrator gradient: the default",
+        "Skipped: lens samples: the camera is a pinhole",
+    ]
+    store.summaries[(scene.name, scene.view_layers[0].name)] = summary
+    instance = SimpleNamespace(layout=Layout())
+    render_panels.GRADUS_RENDER_PT_plan.draw(instance, context(scene, "POINT"))
+    store.summaries.clear()
+
+
+def test_presets_set_what_they_name_and_reset_the_rest(scene: bpy.types.Scene) -> None:
+    scene.gradus.samples, scene.gradus.min_samples = 7, 9
+    bpy.ops.gradus.preset(preset="REFERENCE")
+    settings = bpy.context.scene.gradus
+    assert (settings.integrator, settings.reconstruction, settings.samples, settings.min_samples) == ("PATH", "NONE", 4096, 0)
+    bpy.ops.gradus.preset(preset="FINAL")
+    assert (settings.integrator, settings.samples) == ("AUTO", 256)
+    assert all(set(values) <= set(presets.SAVED) for _, values in presets.BUILT_IN.values())
