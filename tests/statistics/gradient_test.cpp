@@ -21,6 +21,7 @@ class Scenarios : public testing::TestWithParam<Scenario> {
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.seed = seed;
     settings.independent_sampler = independent ? 1 : 0;
+    settings.film_transparent = GetParam() == Scenario::World ? 1 : 0;  // alpha is a channel with gradients of its own
     return scene_.context(settings);
   }
   PathScene scene_;
@@ -51,7 +52,7 @@ class DifferenceStatistics {
     squares_.resize(plane.size(), 0.0);
     for (int row = 0; row + (x ? 0 : 1) < images.height; ++row) {
       for (int column = 0; column + (x ? 1 : 0) < images.width; ++column) {
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < images.channels; ++c) {
           const int i = (row * images.width + column) * images.channels + c;
           const double d = double(plane[i]) - (double(images.primal[i + step]) - double(images.primal[i]));
           sum_[i] += d;

@@ -280,6 +280,7 @@ void build(Scenario scenario, PathScene* scene) {
     }
     case Scenario::World:
       scene->world(Rgb(0.8f, 1.0f, 1.2f));
+      scene->camera(Vec3(0, 0, 3.2f), Vec3(0, 0, 0), 1.4f);  // sees past the box
       scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
       break;
     case Scenario::GlossyFloor:

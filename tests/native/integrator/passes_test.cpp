@@ -1,0 +1,96 @@
+// Light passes add up to the noisy image (contract 6.5); data passes are in Blender's conventions.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "render/pass_read.h"
+#include "render/pass_table.h"
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::Scenario;
+
+constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
+
+std::vector<float> read(const Frame& frame, uint32_t pass) {
+  std::vector<float> pixels(static_cast<size_t>(frame.region.area()) * pass_info(pass).channels);
+  read_frame_pass(frame, pass, frame.region, pixels.data());
+  return pixels;
+}
+
+Frame render_passes(Scenario scenario, bool gradient) {
+  test::PathScene scene;
+  test::build(scenario, &scene);
+  GradusSettings settings = test::test_settings(24, 20);
+  settings.passes = kAllPasses;
+  const IntegratorContext context = scene.context(settings);
+  Frame frame = test::make_test_frame(settings, gradient);
+  frame.settings = settings;
+  frame.passes = make_pass_planes(settings.passes, static_cast<size_t>(frame.region.area()));
+  test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 8, &frame);
+  return frame;
+}
+
+class Passes : public testing::TestWithParam<Scenario> {};
+
+TEST_P(Passes, LightAddsUpToTheNoisyImage) {
+  const Frame frame = render_passes(GetParam(), true);
+  const std::vector<float> noisy = read(frame, GRADUS_PASS_NOISY_IMAGE);
+  std::vector<float> sum = read(frame, GRADUS_PASS_EMISSION);
+  const std::vector<float> environment = read(frame, GRADUS_PASS_ENVIRONMENT);
+  for (size_t i = 0; i < sum.size(); ++i) sum[i] += environment[i];
+  for (uint32_t direct : {GRADUS_PASS_DIFFUSE_DIRECT, GRADUS_PASS_GLOSSY_DIRECT, GRADUS_PASS_TRANSMISSION_DIRECT}) {
+    const std::vector<float> d = read(frame, direct);
+    const std::vector<float> i = read(frame, direct + 1);
+    const std::vector<float> c = read(frame, direct + 2);
+    for (size_t k = 0; k < sum.size(); ++k) sum[k] += c[k] * (d[k] + i[k]);
+  }
+  for (size_t pixel = 0; pixel < sum.size() / 3; ++pixel) {
+    for (size_t c = 0; c < 3; ++c) {
+      const float expected = noisy[4 * pixel + c];
+      EXPECT_NEAR(sum[3 * pixel + c], expected, 1e-4f * (1.0f + expected)) << "pixel " << pixel;
+    }
+  }
+  EXPECT_EQ(frame.counters.nonfinite_feature, 0u);
+}
+
+TEST_P(Passes, PlainAndGradientTracingGiveTheSame) {
+  const Frame plain = render_passes(GetParam(), false);
+  const Frame gradient = render_passes(GetParam(), true);
+  for (size_t i = 0; i < plain.passes.size(); ++i) {
+    EXPECT_EQ(plain.passes[i].values, gradient.passes[i].values) << pass_info(plain.passes[i].pass).name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Passes,
+                         testing::Values(Scenario::DiffuseArea, Scenario::World, Scenario::GlossyFloor, Scenario::Glass,
+                                         Scenario::RoughGlass, Scenario::Transparent, Scenario::LampsSeen),
+                         [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
+
+TEST(DataPasses, DepthIsPlanarAndBackgroundFar) {
+  const Frame frame = render_passes(Scenario::World, false);
+  const std::vector<float> depth = read(frame, GRADUS_PASS_DEPTH);
+  // The back wall, 4.2 m from the camera along its axis, is the same everywhere on it.
+  EXPECT_NEAR(depth[frame.index(12, 12)], 4.2f, 1e-4f);
+  EXPECT_NEAR(depth[frame.index(10, 13)], 4.2f, 1e-4f);
+  EXPECT_EQ(depth[frame.index(0, 0)], 1e10f);
+}
+
+TEST(DataPasses, NothingMovesAtRest) {
+  const Frame frame = render_passes(Scenario::World, false);
+  for (float v : read(frame, GRADUS_PASS_VECTOR)) EXPECT_EQ(v, 0.0f);
+}
+
+TEST(DataPasses, NormalsFaceTheViewer) {
+  const Frame frame = render_passes(Scenario::DiffuseArea, false);
+  const std::vector<float> normal = read(frame, GRADUS_PASS_NORMAL);
+  const size_t i = 3 * frame.index(12, 12);
+  EXPECT_NEAR(normal[i], 0.0f, 1e-5f);
+  EXPECT_NEAR(normal[i + 1], 0.0f, 1e-5f);
+  EXPECT_NEAR(normal[i + 2], 1.0f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace gradus

@@ -1,0 +1,73 @@
+// B8: the weights of all techniques and both directions of a pair sum to one.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "integrator/gradient/pair.h"
+#include "path/light.h"
+
+namespace gradus {
+namespace {
+
+// A path x and its shift y, with the densities of light and BSDF sampling at both and the Jacobian.
+struct Densities {
+  float light_x, bsdf_x, light_y, bsdf_y, jacobian;
+};
+
+Densities random_densities(std::mt19937* random) {
+  std::uniform_real_distribution<float> exponent(-12.0f, 12.0f);
+  std::uniform_real_distribution<float> kind(0.0f, 1.0f);
+  Densities d{std::exp(exponent(*random)), std::exp(exponent(*random)), std::exp(exponent(*random)), std::exp(exponent(*random)),
+              std::exp(0.25f * exponent(*random))};
+  if (kind(*random) < 0.1f) {
+    d.light_x = d.light_y = 0.0f;  // an emitter that light sampling leaves out
+  }
+  return d;
+}
+
+// What a sample of technique density `pdf` at x adds to the coefficient of f(x) in the estimate, times its density: its weight.
+// PairCount works on C = f/(sum of densities); `own` is the base's count.
+double weight(const PairCount& pair, float r, double share) {
+  const Radiance with_base = pair.paired(Radiance(1.0f), Radiance(0.0f), r);
+  return -double(with_base.x) * pair.own / pair.norm() * share;
+}
+
+TEST(B8_Weights, TechniquesAndDirectionsSumToOne) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 100000; ++i) {
+    const Densities d = random_densities(&random);
+    const PairCount forward{float(1 + i % 5), float(1 + i % 3)};
+    const PairCount backward{forward.other, forward.own};
+    const float total_x = d.light_x + d.bsdf_x;
+    const float total_y = d.light_y + d.bsdf_y;
+    const float r = d.jacobian * total_y / total_x;
+    // Light and BSDF samples of x, in their shares of x's density.
+    const double bsdf_share = bsdf_weight(d.light_x, d.bsdf_x);
+    const double there = weight(forward, r, bsdf_share) + weight(forward, r, 1.0 - bsdf_share);
+    // The same coefficient from base paths y: the shifted-back contribution, C(x)·(1/r), at density y.
+    const Radiance shifted = backward.paired(Radiance(0.0f), Radiance(1.0f), 1.0f / r);
+    const double back = double(shifted.x) * backward.own / backward.norm() * r;
+    EXPECT_NEAR(there + back, 1.0, 2e-6);
+  }
+}
+
+TEST(B8_Weights, FailedShiftCountsTheBaseAlone) {
+  const PairCount pair{3.0f, 2.0f};
+  EXPECT_FLOAT_EQ(pair.unpaired(Radiance(1.0f)).x * pair.own / pair.norm(), -1.0f);
+}
+
+// Swapping base and offset negates the gradient that is estimated: the samples of both ends are opposite.
+TEST(B4_Shift, SwapNegates) {
+  const PairCount pair{4.0f, 4.0f};
+  for (float r : {1e-3f, 0.5f, 1.0f, 7.0f, 1e4f}) {
+    const Radiance base(0.3f, 2.0f, 0.0f, 1.0f);
+    const Radiance offset(0.7f, 0.1f, 5.0f, 0.0f);
+    const Radiance there = pair.paired(base, offset, r);
+    const Radiance back = pair.paired(offset, base, 1.0f / r);
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(there[c], -back[c], 1e-5f * (1.0f + std::fabs(there[c])));
+  }
+}
+
+}  // namespace
+}  // namespace gradus

@@ -1,0 +1,94 @@
+// A8: the reported variance of the mean against the spread over seeds. A10: seeds and pixels are uncorrelated.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::Scenario;
+
+GradusSettings sobol_settings(uint32_t size) {
+  GradusSettings settings = test::test_settings(size, size);
+  settings.independent_sampler = 0;
+  settings.max_bounces = 4;
+  return settings;
+}
+
+TEST(A8_Variance, HalfBuffersAgreeWithTheSpreadOverSeeds) {
+  test::PathScene scene;
+  test::build(Scenario::PointAndSun, &scene);
+  IntegratorContext context = scene.context(sobol_settings(16));
+  constexpr int seeds = 32;
+  std::vector<double> sum(16 * 16 * 3);
+  std::vector<double> squares(16 * 16 * 3);
+  double estimated = 0.0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    context.settings.seed = static_cast<uint32_t>(seed);
+    Frame frame = test::make_test_frame(context.settings, false);
+    test::sample_frame(*make_path_integrator(context), 0, 16, &frame);
+    const std::vector<float> image = read_images(frame, 0, false).primal;
+    for (size_t i = 0; i < image.size(); ++i) {
+      sum[i] += image[i];
+      squares[i] += double(image[i]) * image[i];
+    }
+    for (float v : read_variance(frame)) estimated += v / seeds;
+  }
+  double empirical = 0.0;
+  for (size_t i = 0; i < sum.size(); ++i) {
+    empirical += (squares[i] - sum[i] * sum[i] / seeds) / (seeds - 1);
+  }
+  EXPECT_GT(estimated / empirical, 0.85);
+  EXPECT_LT(estimated / empirical, 1.15);
+}
+
+// Residuals against the mean over seeds, away from edges: only pixels with little spread relative to their neighbours' are smooth, so
+// the whole back wall of the box is taken.
+std::vector<std::vector<double>> residuals(uint32_t size, int seeds) {
+  test::PathScene scene;
+  test::build(Scenario::World, &scene);
+  IntegratorContext context = scene.context(sobol_settings(size));
+  std::vector<std::vector<double>> images;
+  std::vector<double> mean(size * size, 0.0);
+  for (int seed = 0; seed < seeds; ++seed) {
+    context.settings.seed = static_cast<uint32_t>(seed);
+    Frame frame = test::make_test_frame(context.settings, false);
+    test::sample_frame(*make_path_integrator(context), 0, 2, &frame);
+    const std::vector<float> image = read_images(frame, 0, false).primal;
+    std::vector<double>& residual = images.emplace_back(mean.size());
+    for (size_t i = 0; i < mean.size(); ++i) {
+      residual[i] = image[3 * i + 1];
+      mean[i] += residual[i] / seeds;
+    }
+  }
+  for (auto& image : images) {
+    for (size_t i = 0; i < mean.size(); ++i) image[i] -= mean[i];
+  }
+  return images;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b, size_t shift) {
+  double ab = 0.0;
+  double aa = 0.0;
+  double bb = 0.0;
+  for (size_t i = 0; i + shift < a.size(); ++i) {
+    ab += a[i] * b[i + shift];
+    aa += a[i] * a[i];
+    bb += b[i + shift] * b[i + shift];
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+TEST(A10_Seeds, ResidualsAreUncorrelated) {
+  constexpr uint32_t size = 96;
+  const auto images = residuals(size, 24);
+  // Subtracting the mean of n seeds leaves −1/(n − 1) between two of them.
+  EXPECT_NEAR(correlation(images[0], images[1], 0), -1.0 / 23.0, 0.05);
+  EXPECT_NEAR(correlation(images[0], images[0], 1), 0.0, 0.05);
+  EXPECT_NEAR(correlation(images[0], images[0], size), 0.0, 0.05);
+}
+
+}  // namespace
+}  // namespace gradus
