@@ -162,19 +162,22 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
   const CommitMonitor monitor(cancel, progress);
   monitor.check();
   auto snapshot = std::make_shared<Snapshot>();
-  device_->arena().execute([&] {
+  const auto build = [&] {
     const FlushDenormals flush;
     load_images(*device_, monitor, state_.get(), snapshot.get());
     monitor.report(0.2f);
     const MaterialIndex materials = compile_materials(monitor, state_.get(), snapshot.get());
     const std::vector<size_t> chosen = place_instances(*state_, snapshot.get());
+    monitor.check();
     assign_materials(state_->instances, chosen, materials, snapshot.get());
     build_geometry(device_, chosen, monitor.step(0.25f, 0.8f), state_.get(), snapshot.get());
     place_camera(*state_, snapshot.get());
     place_world(*state_, materials, snapshot.get());
     build_lights(device_, place_lamps(*state_, materials, snapshot.get()), monitor, snapshot.get());
     find_specular(snapshot.get());
-  });
+  };
+  // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.
+  device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });
   snapshot->content_key = content_key(*state_);
   for (const std::string& text : snapshot->warnings) device_->warn(text);
   monitor.report(1.0f);

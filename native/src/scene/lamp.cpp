@@ -31,8 +31,10 @@ void set_round(const GradusLight& d, Lamp* lamp) {
     const float width = (1.0f - lamp->cos_cone) * std::max(d.blend, 0.0f);
     lamp->cone_slope = width > 0.0f ? 1.0f / width : kInfinity;
   }
-  if (!(d.radius > 0.0f)) return;
+  constexpr float kPointRadius = 1e-12f;  // m; below, the radiance would leave float's range
+  if (!(d.radius > kPointRadius)) return;
   lamp->shape = d.flags & GRADUS_LIGHT_DISK_FACING ? Lamp::Shape::FacingDisk : Lamp::Shape::Sphere;
+  lamp->radius = d.radius;
   lamp->area = kPi * d.radius * d.radius;
   lamp->intensity /= lamp->area;  // the radiance whose disk or sphere has this intensity
 }
@@ -79,7 +81,6 @@ bool make_lamp(const GradusLight& d, const Vec3& origin, Lamp* lamp) {
   lamp->pass_index = d.pass_index;
   for (int i = 0; i < 3; ++i) lamp->position[i] = float(double(d.matrix[12 + i]) - double(origin[i]));
   lamp->intensity = Rgb(d.strength[0], d.strength[1], d.strength[2]);
-  lamp->radius = std::max(d.radius, 0.0f);
   set_axes(d, lamp);
   if (d.type == GRADUS_LIGHT_SUN) set_sun(d, lamp);
   if (d.type == GRADUS_LIGHT_POINT || d.type == GRADUS_LIGHT_SPOT) set_round(d, lamp);

@@ -32,24 +32,35 @@ float sphere_one_minus_cos(const Lamp& lamp, const Vec3& to_centre) {
   return sine2 / (1.0f + std::sqrt(1.0f - sine2));
 }
 
-// Distance along a unit direction to the near side of the sphere (from inside: the only one). Grazing rays touch.
-float sphere_distance(const Lamp& lamp, const Vec3& to_centre, const Vec3& direction) {
+// Normal of the visible side at a point sampled uniformly in solid angle (pbrt-v4 section 6.2.4): by the angle at the centre, because
+// the difference of points would cancel for a small or distant sphere.
+Vec3 sample_visible_normal(const Vec3& axis, float one_minus_cos, const Vec2& u) {
+  const float max_sine2 = one_minus_cos * (2.0f - one_minus_cos);
+  const float h = u.x * one_minus_cos;
+  const float sine2 = h * (2.0f - h);
+  const float ratio2 = std::min(sine2 / max_sine2, 1.0f);
+  const float cosine = sine2 / std::sqrt(max_sine2) + (1.0f - h) * std::sqrt(1.0f - ratio2);
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+  Vec3 x, y;
+  orthonormal_basis(axis, &x, &y);
+  const float phi = 2.0f * kPi * u.y;
+  return glm::normalize((x * std::cos(phi) + y * std::sin(phi)) * sine - axis * cosine);
+}
+
+// From inside: uniform directions, and where they leave the sphere.
+Vec3 sample_normal_from_inside(const Lamp& lamp, const Vec3& to_centre, const Vec2& u) {
+  const Vec3 direction = uniform_cone(Vec3(0, 0, 1), 2.0f, u);
   const float middle = glm::dot(to_centre, direction);
   const Vec3 closest = to_centre - direction * middle;
   const float half_chord = std::sqrt(std::max(0.0f, lamp.radius * lamp.radius - glm::dot(closest, closest)));
-  const bool inside = glm::dot(to_centre, to_centre) < lamp.radius * lamp.radius;
-  return inside ? middle + half_chord : middle - half_chord;
+  return glm::normalize(direction * half_chord - closest);
 }
 
 void sample_sphere(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point) {
   const Vec3 to_centre = lamp.position - from;
-  const float distance = glm::length(to_centre);
-  const Vec3 axis = distance > 0.0f ? to_centre / distance : Vec3(0, 0, 1);
-  const Vec3 direction = uniform_cone(axis, sphere_one_minus_cos(lamp, to_centre), u);
-  const Vec3 offset = direction * sphere_distance(lamp, to_centre, direction) - to_centre;
-  // Onto the sphere: rounding at large distances would leave it.
-  const float length = glm::length(offset);
-  point->normal = length > 0.0f ? offset / length : -axis;
+  const float one_minus_cos = sphere_one_minus_cos(lamp, to_centre);
+  point->normal = one_minus_cos < 2.0f ? sample_visible_normal(glm::normalize(to_centre), one_minus_cos, u)
+                                       : sample_normal_from_inside(lamp, to_centre, u);
   point->position = lamp.position + point->normal * lamp.radius;
 }
 

@@ -120,6 +120,22 @@ TEST(D7_Degenerate, MeshWithoutTriangles) {
   EXPECT_TRUE(scene.commit()->instances.empty());
 }
 
+TEST(D8_Instances, HundredThousandAreAllThere) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 0.4f, 4, 8));
+  for (int i = 0; i < 100000; ++i)
+    scene.instance(1, translation(Vec3(float(i % 400), float(i / 400), 0)) * scaling(Vec3(i % 2 ? 1.0f : -1.0f, 1, 1)));
+  const auto snapshot = scene.commit();
+  ASSERT_EQ(snapshot->instances.size(), 100000u);
+  for (uint32_t i = 0; i < 100000; i += 37) {
+    Hit hit;
+    ASSERT_TRUE(
+        snapshot->intersect({Vec3(float(i % 400), float(i / 400), 3), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+    EXPECT_EQ(hit.instance, i);
+    EXPECT_GT(snapshot->surface_point(hit).geometric_normal.z, 0.5f);
+  }
+}
+
 TEST(BadMatrix, OneWarningNamesTheFirstAndCounts) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));

@@ -54,6 +54,36 @@ TEST(LightUnits, FacingDisk) {
   EXPECT_NEAR(irradiance_of(light), 3.0 / (0.25 + 4.0), 1e-3);
 }
 
+TEST(LightUnits, TinyRadiusIsAPoint) {
+  GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(Vec3(1, 0, 2)), Rgb(3.0f));
+  for (const float radius : {1e-30f, 1e-12f, 1e-9f, 1e-4f}) {
+    light.radius = radius;
+    EXPECT_NEAR(irradiance_of(light), 3.0 * 2.0 / std::pow(5.0, 1.5), 1e-4) << radius;
+  }
+}
+
+TEST(LightUnits, BrokenAndDarkLightsGiveNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (uint32_t type = 0; type < 5; ++type) {
+    GradusLight light = make_light(GradusLightType(type), translation(Vec3(0, 0, 2)), Rgb(0.0f));
+    EXPECT_EQ(irradiance_of(light), 0.0);
+    light.strength[1] = nan;
+    EXPECT_EQ(irradiance_of(light), 0.0);
+    light = make_light(GradusLightType(type), translation(Vec3(nan, 0, 2)), Rgb(1.0f));
+    EXPECT_EQ(irradiance_of(light), 0.0);
+    light = make_light(GradusLightType(type), scaling(Vec3(0.0f)), Rgb(1.0f));
+    EXPECT_TRUE(std::isfinite(irradiance_of(light)));
+  }
+}
+
+// E4: huge and negative energies.
+TEST(LightUnits, NegativeLightsTakeAwayAndHugeOnesStayPositive) {
+  GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 2)), Rgb(-3.0f));
+  EXPECT_NEAR(irradiance_of(light), -0.75, 1e-5);
+  light = make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 2)), Rgb(1e38f));
+  EXPECT_GT(irradiance_of(light), 1e37);
+}
+
 TEST(LightUnits, SpotBlendAndExtraCosine) {
   GradusLight light = make_light(GRADUS_LIGHT_SPOT, translation(Vec3(0, 0, 2)) * kDown, Rgb(3.0f));
   light.cone = 1.0f;
