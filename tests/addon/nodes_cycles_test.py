@@ -1,0 +1,141 @@
+"""A9 for nodes: what Cycles of the same Blender shows for a node, Gradus shows. Values shine, so that there is no noise but at edges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from support import images
+from support.nodes import new_material, show, socket
+
+VERSION = tuple(bpy.app.version)
+
+
+class Graph:
+    """Builds nodes in one expression."""
+
+    def __init__(self, material: bpy.types.Material) -> None:
+        self.tree = material.node_tree
+
+    def __call__(self, kind: str, output: str, inputs: dict[str, Any] | None = None, **properties: Any) -> bpy.types.NodeSocket:
+        node = self.tree.nodes.new(f"ShaderNode{kind}")
+        for name, value in properties.items():
+            setattr(node, name, value)
+        for name, value in (inputs or {}).items():
+            target = socket(node.inputs, name)
+            if isinstance(value, bpy.types.NodeSocket):
+                self.tree.links.new(value, target)
+            else:
+                target.default_value = value
+        return socket(node.outputs, output)
+
+    def place(self) -> bpy.types.NodeSocket:
+        return self("TexCoord", "Object")
+
+
+def checker_image() -> bpy.types.Image:
+    """32×32: red to the right, green up, blue checks, half transparent stripes."""
+    image = bpy.data.images.new("pattern", 32, 32, alpha=True)
+    y, x = np.mgrid[0:32, 0:32].astype(np.float32)
+    pixels = np.stack([x / 31, y / 31, (x // 4 + y // 4) % 2, np.where((x // 8) % 2 == 0, 1.0, 0.5)], axis=2).astype(np.float32)
+    image.pixels.foreach_set(pixels.ravel())
+    image.pack()
+    return image
+
+
+def noise(graph: Graph, **properties: Any) -> bpy.types.NodeSocket:
+    inputs = {"Vector": graph.place(), "Scale": 3.0, "Detail": 2.5, "Roughness": 0.6, "Distortion": 0.5, "W": 0.7}
+    return graph("TexNoise", "Color", inputs, **properties)
+
+
+def normal_colors(graph: Graph) -> bpy.types.NodeSocket:
+    """A normal map that bends moderately."""
+    image = graph("TexImage", "Color", image=checker_image())
+    return graph("MixRGB", "Color", {"Fac": 0.25, "Color1": (0.5, 0.5, 1.0, 1.0), "Color2": image})
+
+
+CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
+    "generated": lambda g: g("TexCoord", "Generated"),
+    "normal": lambda g: g("TexCoord", "Normal"),
+    "uv": lambda g: g("TexCoord", "UV"),
+    "object": lambda g: g("TexCoord", "Object"),
+    "camera": lambda g: g("TexCoord", "Camera"),
+    "window": lambda g: g("TexCoord", "Window"),
+    "reflection": lambda g: g("TexCoord", "Reflection"),
+    "position": lambda g: g("NewGeometry", "Position"),
+    "tangent": lambda g: g("NewGeometry", "Tangent"),
+    "incoming": lambda g: g("NewGeometry", "Incoming"),
+    "mapping": lambda g: g("Mapping", "Vector", {"Vector": g.place(), "Location": (0.1, 0.2, 0.3), "Rotation": (0.4, 0.5, 0.6)}),
+    "image flat": lambda g: g("TexImage", "Color", image=checker_image()),
+    "image alpha": lambda g: g("TexImage", "Alpha", image=checker_image()),
+    "image box": lambda g: g("TexImage", "Color", {"Vector": g.place()}, image=checker_image(), projection="BOX", projection_blend=0.3),
+    "image sphere": lambda g: g("TexImage", "Color", {"Vector": g.place()}, image=checker_image(), projection="SPHERE"),
+    "image tube": lambda g: g("TexImage", "Color", {"Vector": g.place()}, image=checker_image(), projection="TUBE"),
+    "environment": lambda g: g("TexEnvironment", "Color", {"Vector": g("TexCoord", "Reflection")}, image=checker_image()),
+    "mirror ball": lambda g: g(
+        "TexEnvironment", "Color", {"Vector": g("TexCoord", "Reflection")}, image=checker_image(), projection="MIRROR_BALL"
+    ),
+    "noise 1D": lambda g: noise(g, noise_dimensions="1D"),
+    "noise 2D": lambda g: noise(g, noise_dimensions="2D"),
+    "noise 3D": lambda g: noise(g, noise_dimensions="3D"),
+    "noise 4D": lambda g: noise(g, noise_dimensions="4D"),
+    "overlay": lambda g: g("MixRGB", "Color", {"Fac": 0.7, "Color1": g.place(), "Color2": (0.6, 0.3, 0.8, 1.0)}, blend_type="OVERLAY"),
+    "hue": lambda g: g("HueSaturation", "Color", {"Hue": 0.7, "Saturation": 1.3, "Color": g("TexCoord", "UV")}),
+    "ramp": lambda g: g("ValToRGB", "Color", {"Fac": g.place()}),
+    "curves": lambda g: g("RGBCurve", "Color", {"Color": g.place()}),
+    "facing": lambda g: g("LayerWeight", "Facing", {"Blend": 0.3}),
+    "fresnel": lambda g: g("Fresnel", "Fac", {"IOR": 1.7}),
+    "normal map": lambda g: g("NormalMap", "Normal", {"Color": normal_colors(g)}),
+    "bump": lambda g: g("Bump", "Normal", {"Distance": 0.2, "Height": g("TexNoise", "Fac", {"Vector": g.place(), "Scale": 2.0})}),
+    "tangent uv": lambda g: g("Tangent", "Tangent", direction_type="UV_MAP"),
+}
+
+
+@pytest.fixture(scope="module")
+def stage() -> bpy.types.Scene:
+    """A smooth sphere and a turned cube before a grey world."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    scene = bpy.context.scene
+    images.prepare(scene)
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(-1.2, 0.0, 0.0))
+    bpy.ops.object.shade_smooth()
+    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(1.2, 0.2, 0.0), rotation=(0.3, 0.2, 0.5))
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location, camera.rotation_euler = (0.5, -6.0, 1.5), (1.33, 0.0, 0.08)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.world = bpy.data.worlds.new("World")
+    return scene
+
+
+def picture(scene: bpy.types.Scene, folder: Path, engine: str) -> np.ndarray:
+    """Means of blocks of 4×4 pixels."""
+    scene.render.engine = engine
+    cycles = scene.cycles
+    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 16, False, False
+    cycles.pixel_filter_type = "BOX"
+    cycles.filter_width = 1.0
+    settings = {"samples": 16, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "BOX", "filter_width": 1.0}
+    image = images.render(scene, folder, **settings)["Combined"][..., :3]
+    return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a9_node(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    material = new_material()
+    show(material, CASES[name](Graph(material)))
+    for item in stage.objects:
+        if item.type == "MESH":
+            item.data.materials.clear()
+            item.data.materials.append(material)
+    expected, found = (picture(stage, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    difference = np.abs(expected - found)
+    scale = np.abs(expected).mean() + 1e-2
+    # Edges of the objects and of patterns are sampled at other places: a few blocks may differ, the mean may not.
+    assert difference.mean() / scale < 0.025
+    assert np.quantile(difference, 0.95) / scale < 0.15
+    assert np.abs(expected.mean(axis=(0, 1)) - found.mean(axis=(0, 1))).max() / scale < 0.02
