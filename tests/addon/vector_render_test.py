@@ -1,0 +1,134 @@
+"""C1: the Vector pass of known motions, within 0.01 px: XY = previous - current, ZW = current - next, in pixels, y up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from support import recording
+
+SETTINGS = {"samples": 2, "integrator": "PATH", "reconstruction": "NONE", "max_bounces": 0}
+PIXELS_PER_METRE = 16.0  # 64 px over 4 m
+
+
+def _key(owner: Any, path: str, frames: dict[int, Any]) -> None:
+    """Keys with linear interpolation."""
+    preferences = bpy.context.preferences.edit
+    before = preferences.keyframe_new_interpolation_type
+    preferences.keyframe_new_interpolation_type = "LINEAR"
+    for frame, value in frames.items():
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+    preferences.keyframe_new_interpolation_type = before
+    for curve in _curves(owner.id_data):
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+
+
+def _curves(block: bpy.types.ID) -> list:
+    action = block.animation_data.action
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
+
+
+@pytest.fixture
+def vectors(scene: bpy.types.Scene, render: Callable[..., Any]) -> Callable[[], np.ndarray]:
+    """vectors(): the Vector pass at frame 2."""
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+
+    def run() -> np.ndarray:
+        scene.view_layers[0].use_pass_vector = True
+        return render(scene, frame=2, **SETTINGS)["Vector"]
+
+    return run
+
+
+def _covered(vector: np.ndarray) -> np.ndarray:
+    """The middle of the picture, which the object covers at all frames."""
+    height, width, _ = vector.shape
+    return vector[height // 2 - 4 : height // 2 + 4, width // 2 - 4 : width // 2 + 4]
+
+
+def test_c1_moving_object_over_a_resting_background(vectors: Callable[[], np.ndarray]) -> None:
+    obj = recording.add(recording.grid(1, 1.5))
+    _key(obj, "location", {1: (-0.25, -0.125, 0), 2: (0, 0, 0), 3: (0.5, 0.125, 0)})
+    found = vectors()
+    expected = (-0.25 * PIXELS_PER_METRE, -0.125 * PIXELS_PER_METRE, -0.5 * PIXELS_PER_METRE, -0.125 * PIXELS_PER_METRE)
+    assert np.allclose(_covered(found), expected, atol=0.01)
+    assert np.array_equal(found[0, 0], np.zeros(4)), "the background rests"
+
+
+def test_c1_resting_object_is_exactly_zero(vectors: Callable[[], np.ndarray]) -> None:
+    recording.add(recording.grid(1, 1.5)).rotation_euler = (0.3, 0.2, 0.1)
+    moving = recording.add(recording.grid(1, 0.2), "Moving", (0, 1.05, 0))
+    _key(moving, "location", {1: (-1, 1.05, 0), 3: (1, 1.05, 0)})
+    assert np.array_equal(_covered(vectors()), np.zeros((8, 8, 4)))
+
+
+def test_c1_deformation(vectors: Callable[[], np.ndarray]) -> None:
+    """A shape key that moves all points."""
+    obj = recording.add(recording.grid(2, 2.0))
+    obj.shape_key_add(name="Basis")
+    key = obj.shape_key_add(name="Moved")
+    for point in key.data:
+        point.co.x += 1.0
+    _key(key, "value", {1: 0.0, 2: 0.25, 3: 0.375})
+    assert np.allclose(_covered(vectors()), (-4.0, 0.0, -2.0, 0.0), atol=0.01)
+
+
+def test_c1_instances(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
+    """A moving empty shows a resting collection."""
+    source = bpy.data.collections.new("Source")
+    source.objects.link(bpy.data.objects.new("Inner", recording.grid(1, 1.5)))
+    empty = recording.add(None, "Copy")
+    empty.instance_type, empty.instance_collection = "COLLECTION", source
+    _key(empty, "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
+    assert np.allclose(_covered(vectors()), (-4.0, 0.0, -4.0, 0.0), atol=0.01)
+
+
+def test_c1_camera_pan(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
+    """What rests moves against the camera."""
+    recording.add(recording.grid(1, 1.5))
+    _key(scene.camera, "location", {1: (-0.25, 0, 5), 2: (0, 0, 5), 3: (0.25, 0, 5)})
+    assert np.allclose(_covered(vectors()), (4.0, 0.0, 4.0, 0.0), atol=0.01)
+
+
+def test_c1_camera_zoom(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
+    """A point at p pixels from the centre was at p s_2/s_1 before."""
+    recording.add(recording.grid(1, 8.0))
+    _key(scene.camera.data, "ortho_scale", {1: 5.0, 2: 4.0, 3: 3.2})
+    found = vectors()
+    height, width, _ = found.shape
+    x = np.arange(width) + 0.5 - width / 2
+    row = found[height // 2]
+    # Averaged over samples within the pixel: half a filter width times the relative change.
+    assert np.allclose(row[:, 0], x * (4.0 / 5.0 - 1.0), atol=0.25)
+    assert np.allclose(row[:, 2], x * (1.0 - 4.0 / 3.2), atol=0.25)
+
+
+def test_c1_rotation(vectors: Callable[[], np.ndarray]) -> None:
+    """A quad that turns about the view axis: vectors across the radius, of its length times the angle."""
+    obj = recording.add(recording.grid(1, 3.0))
+    angle = 0.01
+    _key(obj, "rotation_euler", {1: (0, 0, -angle), 2: (0, 0, 0), 3: (0, 0, angle)})
+    found = vectors()
+    height, width, _ = found.shape
+    x, y = 15.0, 10.0
+    pixel = found[height // 2 + int(y), width // 2 + int(x)]
+    assert np.allclose(pixel, (angle * (y + 0.5), -angle * (x + 0.5), angle * (y + 0.5), -angle * (x + 0.5)), atol=0.02)
+
+
+def test_c1_topology_change_does_not_crash(vectors: Callable[[], np.ndarray]) -> None:
+    obj = recording.add(recording.grid(2, 2.0))
+    modifier = obj.modifiers.new("Array", "ARRAY")
+    _key(modifier, "count", {1: 1, 2: 2, 3: 3})
+    assert np.isfinite(vectors()).all()
+
+
+def test_c1_without_motion_blur_or_vector_the_pass_is_absent(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
+    recording.add_camera()
+    assert "Vector" not in render(scene, **SETTINGS)
