@@ -32,6 +32,11 @@ def bundled_python_packages() -> str:
     return str(found[-1]) if found else ""
 
 
+def image_color_spaces() -> set[str]:
+    """Names of the colour spaces of all images."""
+    return {image.colorspace_settings.name for image in bpy.data.images}
+
+
 def fixed_threads(render: Any) -> int:
     """Threads that the scene asks for; 0 = all."""
     return render.threads if render.threads_mode == "FIXED" else 0

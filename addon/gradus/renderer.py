@@ -118,7 +118,7 @@ class Job:
         if view:
             self.engine.active_view_set(view)
         with self.clock.phase("export"):
-            report = self.session.exporter.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop)
+            report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop)
         self.settings.width, self.settings.height = report.width, report.height
         self.warn(report.warnings)
 

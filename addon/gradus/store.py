@@ -46,6 +46,13 @@ class Session:
         self.exporter = Exporter(library, self.scene)
         self.reported: set[str] = set()
 
+    def sync(self, *arguments: Any) -> Any:
+        """Exporter.sync, after the colour spaces that the images need are known to the device."""
+        baker = _bakers.get(self.device)
+        if baker is not None:
+            baker.hand_over(self.library, self.device, compat.image_color_spaces())
+        return self.exporter.sync(*arguments)
+
     def commit(self, cancelled: Callable[[], bool]) -> None:
         """Builds the snapshot on another thread, asking `cancelled` meanwhile. Raises Cancelled or GradusError."""
         cancel, progress = ctypes.c_int32(0), ctypes.c_float(0.0)
@@ -86,6 +93,7 @@ class Session:
 _lock = threading.RLock()
 _sessions: dict[Key, Session] = {}
 _devices: dict[tuple[str, int], int] = {}
+_bakers: dict[int, color.Baker] = {}
 summaries: dict[tuple[str, str], dict[str, Any]] = {}
 """(scene, layer) -> stats of the last final render, for the panels."""
 
@@ -96,10 +104,13 @@ def device(library: native.Library, threads: int = 0) -> int:
     with _lock:
         key = (path, threads)
         if key not in _devices:
-            settings = native.DeviceSettings(threads=threads, color_config=native.text(path) or None)
+            baker = color.baker_for(path, compat.bundled_python_packages())
+            # With a baker, the configuration would only make the library say that it cannot read it.
+            settings = native.DeviceSettings(threads=threads, color_config=None if baker else native.text(path) or None)
             handle = ctypes.c_uint64()
             library.device_create(byref(settings), byref(handle))
-            color.hand_over(library, handle.value, path, compat.bundled_python_packages())
+            if baker is not None:
+                _bakers[handle.value] = baker
             _devices[key] = handle.value
         return _devices[key]
 
@@ -136,6 +147,7 @@ def clear() -> None:
     with _lock:
         handles = list(_devices.values())
         _devices.clear()
+        _bakers.clear()
     for handle in handles:
         native.load().device_release(handle)
     summaries.clear()

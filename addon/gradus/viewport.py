@@ -70,7 +70,7 @@ class View:
             self.engine.tag_update()
             return
         self.failed = False
-        report = self.session.exporter.sync(depsgraph, self.engine, override, False, None)
+        report = self.session.sync(depsgraph, self.engine, override, False, None)
         self.session.take_new_warnings(report.warnings)
         self.override = override
         self.stale = True
