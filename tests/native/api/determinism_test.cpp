@@ -1,0 +1,102 @@
+// L1, L3 with the real integrators, through the C API: the bits do not depend on threads, batches or borders.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "api/test_scene.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+class L1_Determinism : public ::testing::TestWithParam<uint32_t> {
+ protected:
+  void SetUp() override {
+    device = make_device();
+    scene = make_scene(device);
+  }
+  void TearDown() override {
+    EXPECT_OK(gradus_scene_release(scene));
+    EXPECT_OK(gradus_device_release(device));
+  }
+  GradusSettings settings(uint32_t samples) const {
+    GradusSettings s = small_render(70, 50, samples);
+    s.integrator = GetParam();
+    s.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | uint64_t{1} << GRADUS_PASS_DIFFUSE_DIRECT;
+    return s;
+  }
+  // Renders to the end, going on from `resumed` if it is not 0.
+  GradusFrame render(const GradusSettings& s, GradusFrame resumed = 0) {
+    GradusRender r = 0;
+    GradusFrame frame = 0;
+    EXPECT_OK(resumed ? gradus_render_resume(scene, &s, resumed, &r) : gradus_render_start(scene, &s, &r));
+    EXPECT_OK(gradus_render_wait(r, -1.0));
+    EXPECT_OK(gradus_render_frame(r, &frame));
+    EXPECT_OK(gradus_render_release(r));
+    return frame;
+  }
+  static std::vector<float> pass(GradusFrame frame, uint32_t pass) {
+    uint32_t width = 0, height = 0, channels = 0;
+    EXPECT_OK(gradus_frame_size(frame, &width, &height));
+    EXPECT_OK(gradus_pass_info(pass, nullptr, &channels));
+    std::vector<float> pixels(size_t(width) * height * channels);
+    EXPECT_OK(gradus_frame_read_pass(frame, pass, pixels.data(), pixels.size()));
+    return pixels;
+  }
+  static void expect_equal(GradusFrame a, GradusFrame b) {
+    for (const uint32_t p : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y,
+                             GRADUS_PASS_VARIANCE, GRADUS_PASS_NORMAL, GRADUS_PASS_DIFFUSE_DIRECT}) {
+      EXPECT_EQ(pass(a, p), pass(b, p)) << "pass " << p;
+    }
+  }
+  GradusDevice device = 0;
+  GradusScene scene = 0;
+};
+
+TEST_P(L1_Determinism, SameBitsForAnyNumberOfThreads) {
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  GradusSettings s = settings(8);
+  s.threads = 1;
+  const GradusFrame first = render(s);
+  const std::vector<float> image = pass(first, GRADUS_PASS_NOISY_IMAGE);
+  EXPECT_GT(*std::max_element(image.begin(), image.end()), 0.1f);
+  for (const uint32_t threads : {2u, 3u, 7u}) {
+    s.threads = threads;
+    const GradusFrame other = render(s);
+    expect_equal(first, other);
+    EXPECT_OK(gradus_frame_release(other));
+  }
+  EXPECT_OK(gradus_frame_release(first));
+}
+
+TEST_P(L1_Determinism, L3_ResumeHasTheBitsOfOneRender) {
+  const GradusFrame whole = render(settings(64)), part = render(settings(16)), resumed = render(settings(64), part);
+  expect_equal(whole, resumed);
+  for (const GradusFrame frame : {whole, part, resumed}) EXPECT_OK(gradus_frame_release(frame));
+}
+
+TEST_P(L1_Determinism, L3_BorderHasTheBitsOfTheFullFrame) {
+  GradusSettings s = settings(8);
+  const GradusFrame full = render(s);
+  const uint32_t region[4] = {40, 20, 60, 45};
+  std::copy(region, region + 4, s.region);
+  const GradusFrame part = render(s);
+  const std::vector<float> a = pass(full, GRADUS_PASS_NOISY_IMAGE), b = pass(part, GRADUS_PASS_NOISY_IMAGE);
+  const std::vector<float> ca = pass(full, GRADUS_PASS_COMBINED), cb = pass(part, GRADUS_PASS_COMBINED);
+  for (uint32_t y = region[1]; y < region[3]; ++y) {
+    for (uint32_t x = region[0]; x < region[2]; ++x) {
+      for (uint32_t c = 0; c < 4; ++c) {
+        const size_t i = 4 * (size_t(y) * 70 + x) + c, k = 4 * (size_t(y - region[1]) * 20 + (x - region[0])) + c;
+        ASSERT_EQ(a[i], b[k]);
+        ASSERT_NEAR(ca[i], cb[k], 1e-3f * std::max(1.0f, ca[i]));
+      }
+    }
+  }
+  EXPECT_OK(gradus_frame_release(full));
+  EXPECT_OK(gradus_frame_release(part));
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, L1_Determinism, ::testing::Values(GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT));
+
+}  // namespace
+}  // namespace gradus
