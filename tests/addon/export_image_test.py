@@ -137,7 +137,17 @@ def test_alpha_and_data(scene: bpy.types.Scene, tmp_path: Path, mode: str, code:
 def test_changed_file_is_another_content(scene: bpy.types.Scene, tmp_path: Path) -> None:
     path = _save(tmp_path / "picture.png")
     block = bpy.data.images.load(str(path))
-    before = images.content(_state(block))
-    assert images.content(_state(block)) == before
+
+    def identities() -> tuple:
+        return images.content(_state(block)), images.signature(block, None, 1, bpy.path.abspath)
+
+    before = identities()
+    assert identities() == before
     path.write_bytes(path.read_bytes() + b"\0")
-    assert images.content(_state(block)) != before
+    assert all(now != then for now, then in zip(identities(), before, strict=True))
+    block.pack()
+    packed = identities()
+    block.colorspace_settings.name = "Non-Color"
+    assert all(now != then for now, then in zip(identities(), packed, strict=True))
+    block.pixels[0] = 0.5
+    assert images.signature(block, None, 1, bpy.path.abspath) is None, "painted: only the pixels say what it is"

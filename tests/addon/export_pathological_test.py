@@ -133,6 +133,26 @@ def test_e7_names(scene: bpy.types.Scene) -> None:
     assert set(recording.export(scene)[0].instances["names"]) == set(names)
 
 
+def test_what_failed_is_set_again(scene: bpy.types.Scene) -> None:
+    from gradus.export import Exporter
+
+    class Failing(recording.Recording):
+        def scene_set_instances(self, scene_handle: int, reference: object) -> None:
+            if self.calls.count("instances") == 0:
+                self.calls.append("instances")
+                raise RuntimeError("refused")
+            super().scene_set_instances(scene_handle, reference)
+
+    recording.add_camera()
+    recording.add(recording.grid(1))
+    recorded = Failing()
+    exporter = Exporter(recorded, 1)
+    with pytest.raises(RuntimeError, match="refused"):
+        exporter.sync(bpy.context.evaluated_depsgraph_get())
+    exporter.sync(bpy.context.evaluated_depsgraph_get())
+    assert recorded.calls.count("mesh") == 2 and recorded.instances["count"] == 1
+
+
 def test_k2_cancel_is_polled(scene: bpy.types.Scene) -> None:
     from gradus.export import Cancelled
 

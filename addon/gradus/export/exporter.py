@@ -48,7 +48,12 @@ class Exporter:
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
             table.begin()
-        run.run()
+        try:
+            run.run()
+        except Exception:
+            for _, table in tables:
+                table.distrust()
+            raise
         self._ids.sweep()
         for kind, table in tables:
             for key in table.sweep():
@@ -156,11 +161,7 @@ class _Sync:
         key = self._mesh_keys.key(arrays.content_hash())
         if self._mesh_keys.changed(key, True):
             struct, _keep = mesh.fill_mesh(arrays)
-            try:
-                self._target.set_mesh(key, struct)
-            except Exception:
-                self._mesh_keys.forget(key)
-                raise
+            self._target.set_mesh(key, struct)
         return key
 
     def _set_instances(self, collected: Collected, mesh_of: dict[int, int], moments: list[motion.Moment]) -> None:

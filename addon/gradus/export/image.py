@@ -164,6 +164,20 @@ def _tiles(image: Any, user: Any, frame: int, abspath: Any) -> tuple[list[TileSt
     return [tile], is_float
 
 
+def signature(image: Any, user: Any, frame: int, abspath: Any) -> tuple[Any, ...] | None:
+    """What identifies the content of files and packed data without reading them; None where Blender's pixels count."""
+    if image.is_dirty or image.source not in {"FILE", "SEQUENCE", "TILED"}:
+        return None
+    path = abspath(image.filepath, library=image.library) if image.filepath else ""
+    if image.source == "SEQUENCE" and user is not None:
+        path = sequence_path(path, user_frame(user, frame))
+    numbers = tuple(tile.number for tile in image.tiles) if image.source == "TILED" else (0,)
+    stamps = tuple(_stamp(tile_path(path, number)) for number in numbers)
+    packed = tuple((item.packed_file.as_pointer(), item.packed_file.size) for item in image.packed_files)
+    settings = image.colorspace_settings
+    return (image.name, path, numbers, stamps, packed, image.alpha_mode, settings.is_data, settings.name)
+
+
 def image_state(image: Any, user: Any, frame: int, abspath: Any) -> ImageState:
     """What the library needs of an image. user: the node's ImageUser or None; abspath: bpy.path.abspath."""
     tiles, is_float = _tiles(image, user, frame, abspath)

@@ -41,9 +41,9 @@ class KeyTable:
         self._contents[key] = content
         return True
 
-    def forget(self, key: int) -> None:
-        """Drops the memory of a key's content, so that it is set anew: after a failed call."""
-        self._contents.pop(key, None)
+    def distrust(self) -> None:
+        """After a failed call: everything is set anew by the next sync."""
+        self._contents = dict.fromkeys(self._contents)
 
     def sweep(self) -> list[int]:
         """Ends a sync: drops all tokens that were not used, and returns the keys that the native side holds in vain."""

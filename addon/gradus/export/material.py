@@ -26,10 +26,13 @@ class Resources:
         """The key of an image at the rendered frame; sets it if it is new or has changed."""
         if image is None:
             return 0
-        state = images.image_state(image, image_user, self.frame, self._abspath)
-        file = state.tiles[0].path if image.source == "SEQUENCE" and state.tiles else ""
+        signature = images.signature(image, image_user, self.frame, self._abspath)
+        file = signature[1] if signature is not None and image.source == "SEQUENCE" else ""
         key = self._keys.key((image.as_pointer(), file))
-        if self._keys.changed(key, images.content(state)):
+        if signature is not None and not self._keys.changed(key, signature):
+            return key
+        state = images.image_state(image, image_user, self.frame, self._abspath)
+        if signature is not None or self._keys.changed(key, images.content(state)):
             struct, _keep = images.fill_image(state)
             self._target.set_image(key, struct)
         return key
