@@ -170,8 +170,9 @@ void Closures::normalise() {
   }
 }
 
-void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold) {
+void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold, const Vec3& smooth_normal) {
   geometric_normal_ = geometric_normal;
+  smooth_normal_ = smooth_normal;
   entry_count_.fill(0);
   min_alpha_.fill(0.0f);
   max_alpha_.fill(0.0f);

@@ -97,7 +97,9 @@ class Closures {
   // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by roughness_threshold
   // (alpha), drops black ones, fills sampling weights. Can be called again for another wo (a shifted path), and must be: all that
   // follows takes the wo of the last finish().
-  void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold);
+  // smooth_normal: interpolated, on the side of wo, without bumps; diffuse lobes with another normal darken softly where it turns away.
+  // 0: none.
+  void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold, const Vec3& smooth_normal = Vec3(0.0f));
 
   int count() const { return count_; }
   const Lobe& lobe(int i) const { return lobes_[i]; }
@@ -160,6 +162,7 @@ class Closures {
   std::array<float, kScatterClasses> max_alpha_{};
   std::array<bool, kScatterClasses> has_smooth_{};
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
+  Vec3 smooth_normal_ = Vec3(0.0f);
 };
 
 }  // namespace gradus

@@ -6,6 +6,7 @@
 #include "bsdf/closures.h"
 #include "bsdf/frame.h"
 #include "bsdf/lobe.h"
+#include "bsdf/shading_normal.h"
 
 namespace gradus {
 namespace {
@@ -50,6 +51,9 @@ BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3
   }
   BsdfEval eval = functions_of(source).evaluate(source, frame.to_local(wo), local, entry.sides);
   eval.pdf *= entry.probability;
+  if (source.type == LobeType::Diffuse && smooth_normal_ != Vec3(0.0f) && smooth_normal_ != source.normal) {
+    eval.value *= bump_shadowing(smooth_normal_, source.normal, wi);
+  }
   return eval;
 }
 

@@ -30,4 +30,15 @@ inline Vec3 keep_reflection_above(const Vec3& normal, const Vec3& geometric_norm
   return glm::normalize(std::sin(phi) * x + std::cos(phi) * geometric_normal);
 }
 
+// Factor for diffuse reflection towards wi by a bump with `normal` on a surface with smooth_normal: bumps that face light which the
+// surface turns away from would otherwise end in a hard edge. Smith masking by facets as wide as the bump is tilted (Estevez, Lecocq,
+// Stein 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem", Ray Tracing Gems ch. 12); as in Blender 4.
+inline float bump_shadowing(const Vec3& smooth_normal, const Vec3& normal, const Vec3& wi) {
+  const float cos_d = std::clamp(std::abs(glm::dot(smooth_normal, normal)), 1e-3f, 1.0f);
+  const float cos_i = std::clamp(std::abs(glm::dot(smooth_normal, wi)), 1e-6f, 1.0f);
+  const float alpha2 = std::clamp(0.125f * (1.0f - cos_d * cos_d) / (cos_d * cos_d), 0.0f, 1.0f);
+  const float tan2_i = (1.0f - cos_i * cos_i) / (cos_i * cos_i);
+  return 2.0f / (1.0f + std::sqrt(1.0f + alpha2 * tan2_i));
+}
+
 }  // namespace gradus

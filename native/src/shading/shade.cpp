@@ -34,7 +34,7 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
   result->fallback = material.uses_fallback;
   const ShadeContext context = surface_context(snapshot, point, wo, ray);
   run_program(material.surface, context, result);
-  result->closures.finish(wo, context.geometric_normal, roughness_threshold);
+  result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
 }
 
 Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {

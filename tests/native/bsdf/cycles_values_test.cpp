@@ -203,5 +203,25 @@ TEST(A9_CyclesClosures, ValuesAgree) {
   }
 }
 
+// White Lambert with the normal tilted by (0.4, 0.2, 0), light from the side.
+TEST(A9_CyclesClosures, BumpsDarkenSoftly) {
+  const struct {
+    int x;
+    float value;
+  } measured[] = {{20, 0.0f}, {23, 0.0517f}, {29, 0.1517f}, {41, 0.2356f}, {56, 0.2917f}};
+  const Vec3 wo(0, 0, 1);
+  for (const auto& m : measured) {
+    const float x = (static_cast<float>(m.x) + 0.5f) / 32.0f - 1.0f;
+    const float y = 0.5f / 32.0f;
+    const Vec3 normal(x, y, std::sqrt(1.0f - x * x - y * y));
+    Closures closures;
+    Lobe lobe = make_lobe(LobeType::Diffuse);
+    lobe.normal = glm::normalize(normal + Vec3(0.4f, 0.2f, 0.0f));
+    *closures.add() = lobe;
+    closures.finish(wo, normal, 0.1f, normal);
+    EXPECT_NEAR(closures.evaluate(ScatterClass::Diffuse, wo, glm::normalize(kSuns[2])).value.x, m.value, 2e-4f) << m.x;
+  }
+}
+
 }  // namespace
 }  // namespace gradus::testing
