@@ -1,0 +1,243 @@
+// Operations against their definitions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "shading/perlin.h"
+#include "shading/program_builder.h"
+#include "shading/rotation.h"
+
+namespace gradus::test {
+namespace {
+
+void expect_near(const Rgb& a, const Rgb& b, float tolerance = 1e-5f) {
+  for (int i = 0; i < 3; i++) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
+}
+
+float math_of(uint32_t mode, float a, float b = 0.0f, float c = 0.0f) { return evaluate(GRADUS_OP_MATH, {a, b, c}, mode).x; }
+
+TEST(NodeMath, ClosedForms) {
+  const float a = 1.7f, b = -0.6f, c = 0.3f;
+  const struct {
+    uint32_t mode;
+    float expected;
+  } cases[] = {
+      {GRADUS_MATH_ADD, a + b},
+      {GRADUS_MATH_SUBTRACT, a - b},
+      {GRADUS_MATH_MULTIPLY, a * b},
+      {GRADUS_MATH_DIVIDE, a / b},
+      {GRADUS_MATH_MULTIPLY_ADD, a * b + c},
+      {GRADUS_MATH_POWER, std::pow(a, b)},
+      {GRADUS_MATH_SQRT, std::sqrt(a)},
+      {GRADUS_MATH_INVERSE_SQRT, 1.0f / std::sqrt(a)},
+      {GRADUS_MATH_EXPONENT, std::exp(a)},
+      {GRADUS_MATH_MINIMUM, b},
+      {GRADUS_MATH_MAXIMUM, a},
+      {GRADUS_MATH_LESS_THAN, 0.0f},
+      {GRADUS_MATH_GREATER_THAN, 1.0f},
+      {GRADUS_MATH_SIGN, 1.0f},
+      {GRADUS_MATH_ROUND, 2.0f},
+      {GRADUS_MATH_FLOOR, 1.0f},
+      {GRADUS_MATH_CEIL, 2.0f},
+      {GRADUS_MATH_TRUNC, 1.0f},
+      {GRADUS_MATH_FRACT, 0.7f},
+      {GRADUS_MATH_MODULO, std::fmod(a, b)},
+      {GRADUS_MATH_FLOORED_MODULO, a - std::floor(a / b) * b},
+      {GRADUS_MATH_SNAP, std::floor(a / b) * b},
+      {GRADUS_MATH_ARCTAN2, std::atan2(a, b)},
+      {GRADUS_MATH_SINE, std::sin(a)},
+      {GRADUS_MATH_TANH, std::tanh(a)},
+      {GRADUS_MATH_RADIANS, a * kPi / 180.0f},
+  };
+  for (const auto& item : cases) EXPECT_NEAR(math_of(item.mode, a, b, c), item.expected, 1e-5f) << "mode " << item.mode;
+}
+
+TEST(NodeMath, DefinedWhereTheFunctionIsNot) {
+  EXPECT_EQ(math_of(GRADUS_MATH_DIVIDE, 1.0f, 0.0f), 0.0f);
+  EXPECT_EQ(math_of(GRADUS_MATH_POWER, -2.0f, 0.5f), 0.0f);
+  EXPECT_EQ(math_of(GRADUS_MATH_POWER, -2.0f, 2.0f), 4.0f);
+  EXPECT_EQ(math_of(GRADUS_MATH_LOGARITHM, -1.0f, 2.0f), 0.0f);
+  EXPECT_EQ(math_of(GRADUS_MATH_SQRT, -1.0f), 0.0f);
+  EXPECT_EQ(math_of(GRADUS_MATH_INVERSE_SQRT, 0.0f), 0.0f);
+  EXPECT_EQ(math_of(GRADUS_MATH_MODULO, 1.0f, 0.0f), 0.0f);
+  EXPECT_NEAR(math_of(GRADUS_MATH_ARCSINE, 3.0f), kPi / 2.0f, 1e-6f);
+  EXPECT_NEAR(math_of(GRADUS_MATH_WRAP, 5.25f, 3.0f, 1.0f), 1.25f, 1e-6f);
+  EXPECT_NEAR(math_of(GRADUS_MATH_PINGPONG, 1.3f, 1.0f), 0.7f, 1e-6f);
+  EXPECT_EQ(math_of(GRADUS_MATH_ADD | 64, 3.0f, 4.0f), 1.0f);
+}
+
+TEST(NodeVectorMath, ClosedForms) {
+  const Vec3 a(1, 2, 3), b(-2, 0.5f, 4);
+  const auto of = [&](uint32_t mode, uint32_t output) { return evaluate(GRADUS_OP_VECTOR_MATH, {a, b, 0.0f, 2.0f}, mode, {}, output); };
+  expect_near(of(GRADUS_VECTOR_CROSS_PRODUCT, 0), glm::cross(a, b));
+  expect_near(of(GRADUS_VECTOR_PROJECT, 0), b * (glm::dot(a, b) / glm::dot(b, b)));
+  expect_near(of(GRADUS_VECTOR_REFLECT, 0), glm::reflect(a, glm::normalize(b)));
+  expect_near(of(GRADUS_VECTOR_SCALE, 0), a * 2.0f);
+  expect_near(of(GRADUS_VECTOR_DOT_PRODUCT, 1), Vec3(glm::dot(a, b)));
+  expect_near(of(GRADUS_VECTOR_DISTANCE, 1), Vec3(glm::distance(a, b)));
+  expect_near(of(GRADUS_VECTOR_LENGTH, 1), Vec3(glm::length(a)));
+  expect_near(evaluate(GRADUS_OP_VECTOR_MATH, {0.0f}, GRADUS_VECTOR_NORMALIZE), Vec3(0.0f));
+}
+
+TEST(NodeMapping, PointAndTextureAreInverse) {
+  const Vec3 v(0.3f, -1.1f, 2.0f), location(1, 2, 3), rotation(0.4f, 0.5f, 0.6f), scale(2.0f, 0.5f, 1.5f);
+  const Vec3 there = evaluate(GRADUS_OP_MAPPING, {v, location, rotation, scale}, GRADUS_MAPPING_POINT);
+  expect_near(there, euler_matrix(rotation) * (v * scale) + location);
+  expect_near(evaluate(GRADUS_OP_MAPPING, {there, location, rotation, scale}, GRADUS_MAPPING_TEXTURE), v);
+}
+
+TEST(NodeMapping, EulerTurnsAboutXThenYThenZ) {
+  const Mat3 quarter_x = euler_matrix(Vec3(kPi / 2, 0, 0)), quarter_z = euler_matrix(Vec3(0, 0, kPi / 2));
+  expect_near(quarter_x * Vec3(0, 1, 0), Vec3(0, 0, 1));
+  expect_near(quarter_z * Vec3(1, 0, 0), Vec3(0, 1, 0));
+  expect_near(euler_matrix(Vec3(kPi / 2, 0, kPi / 2)) * Vec3(0, 1, 0), quarter_z * (quarter_x * Vec3(0, 1, 0)));
+}
+
+TEST(NodeMapRange, LinearSteppedAndClamped) {
+  const auto of = [](float x, uint32_t mode) { return evaluate(GRADUS_OP_MAP_RANGE, {x, 1.0f, 3.0f, 10.0f, 20.0f, 4.0f}, mode).x; };
+  EXPECT_NEAR(of(1.5f, GRADUS_MAP_RANGE_LINEAR), 12.5f, 1e-5f);
+  EXPECT_NEAR(of(4.0f, GRADUS_MAP_RANGE_LINEAR), 25.0f, 1e-5f);
+  EXPECT_NEAR(of(4.0f, GRADUS_MAP_RANGE_LINEAR | 8), 20.0f, 1e-5f);
+  EXPECT_NEAR(of(2.0f, GRADUS_MAP_RANGE_SMOOTHSTEP), 15.0f, 1e-5f);
+  EXPECT_NEAR(of(2.0f, GRADUS_MAP_RANGE_STEPPED), 15.0f, 1e-5f);
+}
+
+TEST(NodeColor, ModelsInvertEachOther) {
+  for (const Vec3& c : {Vec3(0.2f, 0.7f, 0.4f), Vec3(1, 0, 0), Vec3(0.5f), Vec3(0.9f, 0.1f, 0.8f)}) {
+    for (const uint32_t model : {GRADUS_COLOR_HSV, GRADUS_COLOR_HSL}) {
+      ProgramBuilder b;
+      const int parts = b.add(GRADUS_OP_SEPARATE, {c}, model);
+      const int whole = b.add(GRADUS_OP_COMBINE, {In::from(parts, 0), In::from(parts, 1), In::from(parts, 2)}, model);
+      const int emission = b.add(GRADUS_OP_EMISSION, {In::from(whole), In(1.0f)});
+      expect_near(run(b.compile(emission)->surface).emission, c);
+    }
+  }
+}
+
+TEST(NodeColor, BlendModes) {
+  const Vec3 a(0.2f, 0.5f, 0.8f), b(0.6f, 0.3f, 0.9f);
+  const float t = 0.4f;
+  const auto of = [&](uint32_t mode) { return evaluate(GRADUS_OP_MIX_COLOR, {t, a, b}, mode); };
+  expect_near(of(GRADUS_BLEND_MIX), glm::mix(a, b, t));
+  expect_near(of(GRADUS_BLEND_MULTIPLY), glm::mix(a, a * b, t));
+  expect_near(of(GRADUS_BLEND_SCREEN), Vec3(1.0f) - (Vec3(1.0f - t) + (Vec3(1.0f) - b) * t) * (Vec3(1.0f) - a));
+  expect_near(of(GRADUS_BLEND_DIFFERENCE), glm::mix(a, glm::abs(a - b), t));
+  expect_near(of(GRADUS_BLEND_DIVIDE), glm::mix(a, a / b, t));
+  expect_near(of(GRADUS_BLEND_LINEAR_LIGHT), a + (b * 2.0f - 1.0f) * t);
+  expect_near(evaluate(GRADUS_OP_MIX_COLOR, {1.0f, Vec3(2.0f), Vec3(3.0f)}, GRADUS_BLEND_ADD | 32), Vec3(1.0f));
+}
+
+TEST(NodeColor, BlackbodyIsNeutralNearDaylightAndRedBelow) {
+  const Rgb daylight = evaluate(GRADUS_OP_BLACKBODY, {6500.0f}), candle = evaluate(GRADUS_OP_BLACKBODY, {2000.0f});
+  EXPECT_NEAR(luminance(daylight), 1.0f, 0.01f);
+  expect_near(daylight, Rgb(1.043f, 0.984f, 1.035f), 0.03f);  // measured with Blender
+  EXPECT_GT(candle.x, 2.0f);
+  EXPECT_LT(candle.z, 0.1f);
+}
+
+TEST(NodeTables, RampInterpolatesOrNot) {
+  const std::vector<float> table = {0, 0, 0, 1, 1, 0.5f, 0, 0, 2, 1, 1, 1};
+  expect_near(evaluate(GRADUS_OP_RAMP, {0.25f}, 0, table), Rgb(0.5f, 0.25f, 0.0f));
+  expect_near(evaluate(GRADUS_OP_RAMP, {0.6f}, 1, table), Rgb(1.0f, 0.5f, 0.0f));
+  expect_near(evaluate(GRADUS_OP_RAMP, {7.0f}, 0, table), Rgb(2.0f, 1.0f, 1.0f));
+  expect_near(evaluate(GRADUS_OP_RAMP, {0.25f}, 0, table, 1), Rgb(0.5f));
+}
+
+TEST(NodeTables, CurvesExtrapolateOrNot) {
+  const auto of = [](float x, float extrapolate) {
+    return evaluate(GRADUS_OP_CURVES, {1.0f, x}, GRADUS_CURVES_FLOAT, {-1.0f, 1.0f, extrapolate, 0.0f, 1.0f, 4.0f}).x;
+  };
+  EXPECT_NEAR(of(-0.5f, 0.0f), 0.5f, 1e-5f);
+  EXPECT_NEAR(of(0.5f, 0.0f), 2.5f, 1e-5f);
+  EXPECT_NEAR(of(3.0f, 0.0f), 4.0f, 1e-5f);
+  EXPECT_NEAR(of(2.0f, 1.0f), 7.0f, 1e-5f);
+  EXPECT_NEAR(of(-2.0f, 1.0f), -1.0f, 1e-5f);
+}
+
+// Gradient noise vanishes on the lattice, is continuous across it, and has mean 0.
+TEST(NodeNoise, Properties) {
+  for (int i = -3; i <= 3; i++) {
+    const auto x = static_cast<float>(i);
+    EXPECT_NEAR(signed_noise(x), 0.0f, 1e-6f);
+    EXPECT_NEAR(signed_noise(Vec3(x, 2.0f, -1.0f)), 0.0f, 1e-6f);
+    EXPECT_NEAR(signed_noise(Vec3(x - 1e-4f, 0.3f, 0.7f)), signed_noise(Vec3(x + 1e-4f, 0.3f, 0.7f)), 2e-3f);
+    EXPECT_NEAR(signed_noise(Vec4(x - 1e-4f, 0.3f, 0.7f, 0.2f)), signed_noise(Vec4(x + 1e-4f, 0.3f, 0.7f, 0.2f)), 2e-3f);
+  }
+  double sum = 0.0;
+  for (int i = 0; i < 20000; i++) sum += signed_noise(Vec3(0.37f, 0.73f, 0.51f) * static_cast<float>(i));
+  EXPECT_NEAR(sum / 20000.0, 0.0, 0.01);
+}
+
+TEST(NodePatterns, CheckerAndGradient) {
+  const Vec3 red(1, 0, 0), blue(0, 0, 1);
+  expect_near(evaluate(GRADUS_OP_CHECKER, {Vec3(0.5f), red, blue, 1.0f}), blue);
+  expect_near(evaluate(GRADUS_OP_CHECKER, {Vec3(1.5f, 0.5f, 0.5f), red, blue, 1.0f}), red);
+  expect_near(evaluate(GRADUS_OP_GRADIENT, {Vec3(0.5f, 0.0f, 0.0f)}, GRADUS_GRADIENT_SPHERICAL), Rgb(0.499999f));
+  expect_near(evaluate(GRADUS_OP_GRADIENT, {Vec3(-1.0f, 0.0f, 0.0f)}, GRADUS_GRADIENT_LINEAR), Rgb(0.0f));
+}
+
+TEST(NodeRay, FresnelAtNormalIncidenceAndFromInside) {
+  ShadeContext c;
+  expect_near(evaluate(GRADUS_OP_FRESNEL, {1.5f, 0.0f}, 0, {}, 0, c), Rgb(0.04f), 1e-6f);
+  c.wo = glm::normalize(Vec3(1.0f, 0.0f, 0.5f));  // beyond the critical angle of glass
+  c.backfacing = true;
+  expect_near(evaluate(GRADUS_OP_FRESNEL, {1.5f, 0.0f}, 0, {}, 0, c), Rgb(1.0f));
+}
+
+TEST(NodeRay, LightPathReadsTheRay) {
+  ShadeContext c;
+  c.ray.flags = kRayShadow | kRayTransmission;
+  c.ray.length = 2.5f;
+  c.ray.depth = 3;
+  const auto of = [&](uint32_t mode) { return evaluate(GRADUS_OP_LIGHT_PATH, {}, mode, {}, 0, c).x; };
+  EXPECT_EQ(of(GRADUS_LIGHT_PATH_CAMERA), 0.0f);
+  EXPECT_EQ(of(GRADUS_LIGHT_PATH_SHADOW), 1.0f);
+  EXPECT_EQ(of(GRADUS_LIGHT_PATH_TRANSMISSION), 1.0f);
+  EXPECT_EQ(of(GRADUS_LIGHT_PATH_LENGTH), 2.5f);
+  EXPECT_EQ(of(GRADUS_LIGHT_PATH_DEPTH), 3.0f);
+}
+
+// Normals face the viewer inside a program, and point outwards in lobes with two sides.
+TEST(NodeClosures, GlassNormalsPointOutwards) {
+  ProgramBuilder b;
+  const auto m = b.compile(b.add(GRADUS_OP_GLASS, {Vec3(1.0f), 0.0f, 1.5f}));
+  ShadeContext c;
+  c.backfacing = true;
+  const ShadeResult r = run(m->surface, c);
+  ASSERT_EQ(r.closures.count(), 1);
+  expect_near(r.closures.lobe(0).normal, Vec3(0, 0, -1));
+}
+
+TEST(NodeClosures, MetalLeavesNothingForDiffuse) {
+  ProgramBuilder b;
+  std::vector<In> inputs(21, In(0.0f));
+  inputs[0] = In(Vec3(0.8f, 0.4f, 0.2f));
+  inputs[1] = In(1.0f);
+  inputs[2] = In(0.3f);
+  inputs[3] = In(1.5f);
+  inputs[6] = In(1.0f);
+  const ShadeResult r = run(b.compile(b.add(GRADUS_OP_PRINCIPLED, inputs))->surface);
+  ASSERT_EQ(r.closures.count(), 1);
+  EXPECT_EQ(r.closures.lobe(0).fresnel, FresnelType::PrincipledMetal);
+}
+
+TEST(NodeClosures, EmissionUnderCoatIsTheSameAlone) {
+  ProgramBuilder b;
+  std::vector<In> inputs(21, In(0.0f));
+  inputs[0] = In(0.5f);
+  inputs[10] = In(0.8f);
+  inputs[11] = In(0.2f);
+  inputs[12] = In(1.5f);
+  inputs[13] = In(Vec3(0.4f, 0.9f, 0.7f));
+  inputs[17] = In(Vec3(3.0f, 2.0f, 1.0f));
+  const auto m = b.compile(b.add(GRADUS_OP_PRINCIPLED, inputs));
+  ShadeContext c;
+  c.wo = glm::normalize(Vec3(0.5f, 0.2f, 0.6f));
+  const Rgb whole = run(m->surface, c).emission, alone = run(m->emission, c).emission;
+  expect_near(whole, alone);
+  EXPECT_LT(alone.x, 3.0f * 0.8f);
+  EXPECT_TRUE(m->depends_on_ray);
+}
+
+}  // namespace
+}  // namespace gradus::test
