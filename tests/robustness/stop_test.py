@@ -67,7 +67,7 @@ def test_k1_sigint_ends_the_render_within_a_second(tmp_path: Path) -> None:
     """Moments spread over export, build, sampling and reconstruction of a frame that would take minutes."""
     seconds = []
     for index in range(20 if FULL else 4):
-        process, _ = start(tmp_path, "1280, 720", 100000, 8 if index % 2 else 2, 1)
+        process, _ = start(tmp_path, "1280, 720", 100000, 7 if index % 2 else 2, 1)
         time.sleep(0.02 + index * (0.15 if FULL else 0.4))
         code, elapsed, output = end(process, signal.SIGINT)
         assert code == 1, output
