@@ -29,9 +29,7 @@ def test_f7_the_frame_before(tmp_path: Path) -> None:
     with pytest.raises(Failure, match="empty"):
         files.before_frame(render, 3, 1)
     files.after_frame(render, 7)
-    with pytest.raises(Failure, match="not written"):
-        files.before_frame(render, 8, 1)
-    files.before_frame(render, 9, 1)
+    files.before_frame(render, 8, 1)  # moved away by a script
 
 
 def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:

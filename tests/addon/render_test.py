@@ -280,3 +280,15 @@ def test_a_saved_scene_renders_to_the_same_picture(cube: Any, render: Render, tm
     library.render_release(handle.value)
     library.scene_release(scene.value)
     assert np.array_equal(np.frombuffer(pixels, np.float32).reshape(expected.shape), expected)
+
+
+def test_i9_the_file_says_how_it_was_made(cube: bpy.types.Scene, tmp_path: Path) -> None:
+    import OpenImageIO as oiio
+
+    path = tmp_path / "meta.exr"
+    images.use_exr(cube, path)
+    bpy.ops.render.render(write_still=True)
+    spec = oiio.ImageInput.open(str(path)).spec()
+    assert spec.getattribute("gradus.integrator") == "path"
+    assert spec.getattribute("gradus.samples") == "2.0"
+    assert str(spec.getattribute("gradus.version")).startswith("0.1.0")
