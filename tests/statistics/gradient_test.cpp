@@ -21,6 +21,12 @@ class Scenarios : public testing::TestWithParam<Scenario> {
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.seed = seed;
     settings.independent_sampler = independent ? 1 : 0;
+    if (GetParam() == Scenario::RoughMetal) {  // any filter, and the same point of the lens for base and offset
+      settings.pixel_filter = GRADUS_FILTER_BLACKMAN_HARRIS;
+      settings.filter_width = 2.5f;
+      scene_.camera_desc.aperture_radius = 0.1f;
+      scene_.camera_desc.focus_distance = 3.0f;
+    }
     settings.film_transparent = GetParam() == Scenario::World ? 1 : 0;  // alpha is a channel with gradients of its own
     return scene_.context(settings);
   }
@@ -71,7 +77,7 @@ class DifferenceStatistics {
     for (size_t i = 0; i < sum_.size(); ++i) {
       const double mean = sum_[i] / count_;
       const double variance = (squares_[i] - count_ * mean * mean) / (count_ - 1) / count_;
-      if (variance > 0.0) {
+      if (variance > 1e-12) {  // else certain, but for rounding
         total += mean;
         total_variance += variance;
         sum_t2 += mean * mean / variance;
@@ -114,6 +120,55 @@ TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
       counters.shifts_attempted, counters.shifts_reconnected, counters.shifts_half_vector, counters.shifts_replayed, counters.fail_missed,
       counters.fail_occluded, counters.fail_class, counters.fail_total_reflection, counters.fail_side, counters.fail_density,
       counters.fail_jacobian);
+}
+
+// Contract 1.5: neighbours with different counts, some with none, over two batches.
+TEST_P(Scenarios, B7_UnequalCounts) {
+  DifferenceStatistics dx;
+  DifferenceStatistics dy;
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    const IntegratorContext c = context(500 + seed);
+    Frame frame = test::make_test_frame(c.settings, true);
+    const auto integrator = make_gradient_integrator(c);
+    const std::atomic<bool> stop{false};
+    for (uint32_t batch = 0; batch < 2; ++batch) {
+      std::vector<uint32_t> counts(static_cast<size_t>(frame.region.area()));
+      for (size_t i = 0; i < counts.size(); ++i) {
+        counts[i] = batch == 0 ? 8 + 8 * (i % 3) : (i / 3 % 2 == 0 ? 0 : 32);
+      }
+      WorkUnit unit{frame.region, 64 * batch, 0, &counts};
+      integrator->sample(unit, &frame, &frame.counters, stop);
+    }
+    const GradientImages images = read_images(frame, 0, false);
+    dx.add(images, true);
+    dy.add(images, false);
+  }
+  dx.check("dx");
+  dy.check("dy");
+}
+
+// L3: split into batches and tiles, in any order: the same bits.
+TEST_P(Scenarios, L3_BatchesAndTilesDoNotMatter) {
+  const IntegratorContext c = context(3, false);
+  const auto integrator = make_gradient_integrator(c);
+  Frame whole = test::make_test_frame(c.settings, true);
+  Frame parts = test::make_test_frame(c.settings, true);
+  test::sample_frame(*integrator, 0, 8, &whole);
+  const std::atomic<bool> stop{false};
+  for (uint32_t first : {0u, 2u}) {
+    const uint32_t count = first == 0 ? 2 : 6;
+    for (int32_t y = static_cast<int32_t>(kHeight); y > 0; y -= 5) {
+      for (int32_t x = 0; x < static_cast<int32_t>(kWidth); x += 4) {
+        WorkUnit unit{Region{x, y - 5, x + 4, y}, first, count, nullptr};
+        integrator->sample(unit, &parts, &parts.counters, stop);
+      }
+    }
+  }
+  for (int half = 0; half < kHalves; ++half) {
+    EXPECT_EQ(whole.components[0].primal[half], parts.components[0].primal[half]);
+    EXPECT_EQ(whole.components[0].gradient[half], parts.components[0].gradient[half]);
+    EXPECT_EQ(whole.pair_count[half], parts.pair_count[half]);
+  }
 }
 
 std::vector<Scenario> all_scenarios() {

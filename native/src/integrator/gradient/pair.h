@@ -17,10 +17,12 @@ struct PairCount {
   bool present() const { return own > 0.0f && other > 0.0f; }
   float norm() const { return 0.5f * (own + other); }
 
+  // Written by the quotient of the counts: equal counts give the same bits in batches of any size.
   Radiance paired(const Radiance& base, const Radiance& offset, float r) const {
-    return (r * offset - base) * (norm() / (own + other * r));
+    const float q = other / own;
+    return (r * offset - base) * (0.5f * (1.0f + q) / (1.0f + q * r));
   }
-  Radiance unpaired(const Radiance& base) const { return base * (-norm() / own); }
+  Radiance unpaired(const Radiance& base) const { return base * (-0.5f * (1.0f + other / own)); }
 };
 
 }  // namespace gradus
