@@ -28,7 +28,6 @@ class Setting:
     precision: int = 3
     choices: tuple[tuple[str, str, str, int], ...] = ()  # identifier, label, meaning, native value
     native: bool = True
-    unit: str = "NONE"
 
     def value_of(self, identifier: str) -> int:
         """Native value of an enum identifier; KeyError if there is none."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import byref
+from pathlib import Path
 
 import bpy
 import pytest
@@ -125,3 +126,17 @@ def test_region_rounds_as_blender_does() -> None:
 def test_groups_name_planes_of_the_table() -> None:
     planes = {info.plane for info in passes.TABLE}
     assert all(set(group) <= planes for group in passes.GROUPS.values())
+
+
+def test_the_manual_lists_every_setting_with_its_default() -> None:
+    rows = {}
+    for line in (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.split("|")]
+        if len(cells) > 3 and cells[1].startswith("`"):
+            rows |= dict(zip((name.strip("` ") for name in cells[1].split(",")), cells[2].split(","), strict=False))
+    words = {True: "on", False: "off", "": "empty"}
+    for setting in settings.SETTINGS:
+        assert setting.name in rows, setting.name
+        default = words[setting.default] if setting.kind in (settings.BOOL, settings.FOLDER) else f"{setting.default}"
+        manual = rows[setting.name].strip() or "0"
+        assert manual == default or float(manual) == float(setting.default), setting.name
