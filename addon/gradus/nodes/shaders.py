@@ -48,7 +48,7 @@ def glossy(view: NodeView) -> Value:
 @translator("ShaderNodeBsdfGlass")
 def glass(view: NodeView) -> Value:
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
-    return view.add_closure(Op.GLASS, inputs, distribution_mode(view))
+    return view.add_closure(Op.GLASS, inputs, distribution_mode(view) | (2 if view.version < (4, 0, 0) else 0))
 
 
 @translator("ShaderNodeBsdfRefraction")

@@ -19,11 +19,11 @@
 #define GRADUS_NODES_H
 
 /* Closures. color is a weight for all of them.
- *   DIFFUSE       color, roughness (Oren-Nayar), normal
+ *   DIFFUSE       color, roughness (Oren-Nayar), normal                                 mode: 1 = energy conserving
  *   TRANSLUCENT   color, normal
  *   GLOSSY        color, roughness, anisotropy, rotation (turns), normal, tangent       mode: GradusDistribution
  *   REFRACTION    color, roughness, ior, normal
- *   GLASS         color, roughness, ior, normal                                         mode: GradusDistribution
+ *   GLASS         color, roughness, ior, normal                                         mode: GradusDistribution, + 2: as before 4.0
  *   SHEEN         color, roughness, normal                                              roughness 0: the grazing term of Velvet's kin
  *   TRANSPARENT   color
  *   HOLDOUT       -

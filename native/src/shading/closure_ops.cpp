@@ -52,7 +52,24 @@ void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult*
   lobe->ior = std::max(args.f(2), 1e-5f);
 }
 
+// Before Blender 4.0 Fresnel at the shading normal, not at the microfacets, chose between the sides.
+void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  const Vec3 normal = facing_normal(c, args.v(3));
+  const Rgb weight = args.weight * non_negative(args.v(0));
+  const float ior = std::max(args.f(2), 1e-5f), roughness = saturate(args.f(1));
+  const float reflected = dielectric_reflectance(glm::dot(c.wo, normal), c.backfacing ? 1.0f / ior : ior);
+  if (Lobe* lobe = add_lobe(result, LobeType::GgxReflection, LightPass::Glossy, weight * reflected, normal)) {
+    lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+  }
+  if (Lobe* lobe = add_lobe(result, LobeType::GgxRefraction, LightPass::Transmission, weight * (1.0f - reflected),
+                            c.backfacing ? -normal : normal)) {
+    lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+    lobe->ior = ior;
+  }
+}
+
 void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if ((args.mode & 2) && !(args.mode & GRADUS_DISTRIBUTION_MULTIPLE) && args.f(1) > 0.0f) return add_legacy_glass(args, c, result);
   Lobe* lobe =
       add_lobe(result, LobeType::GgxGlass, LightPass::Transmission, args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
