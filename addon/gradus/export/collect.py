@@ -18,7 +18,7 @@ from .visibility import ALL_RAYS, visibility
 InstanceKey = tuple[int, ...]
 
 
-@dataclass
+@dataclass(slots=True)
 class Entry:
     """One instance of a geometry, or a lamp."""
 
@@ -64,42 +64,44 @@ def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
     return tuple(materials)
 
 
+@dataclass(slots=True)
+class _Facts:
+    """What all instances that one instancer makes of one object share."""
+
+    key: InstanceKey
+    visibility: int
+    name: str
+    pass_index: int
+    color: tuple[float, ...]
+
+
 class _Parts:
-    """Facts of an object that hold for all of its instances."""
+    """Facts of objects, each looked up once: most of an export of many instances is this loop."""
 
     def __init__(self, view_layer: Any) -> None:
         self._view_layer = view_layer
         self._override = view_layer.material_override
-        self._visibility: dict[tuple[int, int], int] = {}
+        self._facts: dict[tuple[int, int], _Facts] = {}
         self._materials: dict[tuple[int, int], tuple[Any, ...]] = {}
-        self._random: dict[int, int] = {}
-        self._parents: set[int] = set()
         self.has_node_instances = False
 
-    def note_instancer(self, parent: Any, pointer: int) -> None:
-        """Remembers whether some instances come from geometry nodes."""
-        if pointer not in self._parents:
-            self._parents.add(pointer)
-            self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
+    def facts(self, obj: Any, owner: Any, parent: Any) -> _Facts:
+        place = (owner.as_pointer(), parent.as_pointer() if parent is not None else 0)
+        found = self._facts.get(place)
+        if found is None:
+            # Originals: a new depsgraph, as each frame of an animation may have, has other evaluated addresses.
+            key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
+            bits = visibility(obj, parent, self._view_layer)
+            found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color))
+            if parent is not None:
+                self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
+        return found
 
-    def visibility(self, obj: Any, parent: Any, key: InstanceKey) -> int:
-        bits = self._visibility.get(key[:2])
-        if bits is None:
-            bits = self._visibility[key[:2]] = visibility(obj, parent, self._view_layer)
-        return bits
-
-    def materials(self, obj: Any, data: Any, key: InstanceKey) -> tuple[Any, ...]:
-        place = (key[0], data.as_pointer())
+    def materials(self, obj: Any, data: Any, place: tuple[int, int]) -> tuple[Any, ...]:
         found = self._materials.get(place)
         if found is None:
             found = self._materials[place] = slot_materials(obj, data, self._override)
         return found
-
-    def random_id(self, obj: Any, key: InstanceKey) -> int:
-        value = self._random.get(key[0])
-        if value is None:
-            value = self._random[key[0]] = name_hash(obj.name)
-        return value
 
 
 def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
@@ -119,10 +121,11 @@ def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
         if not instance.show_self:
             continue
         kind = obj.type
-        if kind == "LIGHT" or (kind == "MESH" and surfaces):
-            entry = _entry(index, instance, obj, parts)
+        is_light = kind == "LIGHT"
+        if is_light or (kind == "MESH" and surfaces):
+            entry = _entry(index, instance, obj, is_light, parts)
             if entry is not None:
-                (collected.lights if kind == "LIGHT" else collected.surfaces).append(entry)
+                (collected.lights if is_light else collected.surfaces).append(entry)
         elif kind in {"CURVES", "POINTCLOUD", "VOLUME"}:
             collected.skipped.append((obj.name, kind))
     collected.matrices = _matrices(instances, parts.has_node_instances)
@@ -144,37 +147,25 @@ def _matrices(instances: Any, one_by_one: bool) -> array:
     return values
 
 
-def _entry(index: int, instance: Any, obj: Any, parts: _Parts) -> Entry | None:
+def _entry(index: int, instance: Any, obj: Any, is_light: bool, parts: _Parts) -> Entry | None:
     copies = instance.is_instance
-    parent = instance.parent if copies else None
     owner = instance.instance_object if copies else obj
-    # Originals: a new depsgraph, as each frame of an animation may have, has other evaluated addresses.
-    key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
-    if copies:
-        key += tuple(instance.persistent_id)
-        if parent is not None:
-            parts.note_instancer(parent, key[1])
-    bits = parts.visibility(obj, parent, key)
+    facts = parts.facts(obj, owner, instance.parent if copies else None)
     data = obj.data
-    if bits & ALL_RAYS == 0 or data is None or _is_portal(data):
+    if facts.visibility & ALL_RAYS == 0 or data is None or (is_light and _is_portal(data)):
         return None
-    entry = Entry(
-        index,
-        key,
-        owner,
-        data,
-        data.as_pointer(),
-        owner.name,
-        bits,
-        instance.random_id & 0xFFFFFFFF if copies else parts.random_id(obj, key),
-        obj.pass_index,
-        tuple(obj.color),
-    )
+    place = data.as_pointer()
+    if copies:
+        key = facts.key + tuple(instance.persistent_id)
+        random_id = instance.random_id & 0xFFFFFFFF
+    else:
+        key, random_id = facts.key, name_hash(facts.name)
+    entry = Entry(index, key, owner, data, place, facts.name, facts.visibility, random_id, facts.pass_index, facts.color)
     if copies:
         entry.generated = tuple(instance.orco)
         entry.uv = tuple(instance.uv)
-    if obj.type != "LIGHT":
-        entry.materials = parts.materials(obj, data, key)
+    if not is_light:
+        entry.materials = parts.materials(obj, data, (facts.key[0], place))
     return entry
 
 
