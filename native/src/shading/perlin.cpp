@@ -20,12 +20,6 @@ float gradient(uint32_t hash, float x, float y) {
   const float u = first ? x : y, v = 2.0f * (first ? y : x);
   return flip(u, hash & 1u) + flip(v, hash & 2u);
 }
-float gradient(uint32_t hash, float x, float y, float z) {
-  const uint32_t h = hash & 15u;
-  const float u = h < 8u ? x : y;
-  const float v = h < 4u ? y : (h == 12u || h == 14u ? x : z);
-  return flip(u, h & 1u) + flip(v, h & 2u);
-}
 float gradient(uint32_t hash, float x, float y, float z, float w) {
   const uint32_t h = hash & 31u;
   const float u = h < 24u ? x : y, v = h < 16u ? y : z, s = h < 8u ? z : w;
@@ -48,20 +42,42 @@ float wrapped(float x) {
   return std::fabs(x) < 1e5f ? x : std::fmod(x, 1e5f) + (std::fabs(x) >= 1e6f ? 0.5f : 0.0f);
 }
 
+// Eight lanes, one per corner of a cell: bit 0 of the lane is the step along x, bit 1 along y, bit 2 along z.
+using Lanes = uint32_t __attribute__((vector_size(32)));
+using FloatLanes = float __attribute__((vector_size(32)));
+
+constexpr Lanes kStepX = {0, 1, 0, 1, 0, 1, 0, 1}, kStepY = {0, 0, 1, 1, 0, 0, 1, 1}, kStepZ = {0, 0, 0, 0, 1, 1, 1, 1};
+constexpr FloatLanes kOffsetX = {0, 1, 0, 1, 0, 1, 0, 1}, kOffsetY = {0, 0, 1, 1, 0, 0, 1, 1}, kOffsetZ = {0, 0, 0, 0, 1, 1, 1, 1};
+
+Lanes rotate(Lanes v, int k) { return (v << k) | (v >> (32 - k)); }
+
+// lattice_hash(x, y, z) in every lane.
+Lanes hash_lanes(Lanes x, Lanes y, Lanes z) {
+  const uint32_t start = detail::jenkins_start(3);
+  Lanes a = x + start, b = y + start, c = z + start;
+  c = (c ^ b) - rotate(b, 14);
+  a = (a ^ c) - rotate(c, 11);
+  b = (b ^ a) - rotate(a, 25);
+  c = (c ^ b) - rotate(b, 16);
+  a = (a ^ c) - rotate(c, 4);
+  b = (b ^ a) - rotate(a, 14);
+  return (c ^ b) - rotate(b, 24);
+}
+
+// Changes the sign where bit 0 of `condition` is set.
+FloatLanes flip_lanes(FloatLanes v, Lanes condition) { return (FloatLanes)((Lanes)v ^ (condition << 31)); }
+
 float perlin3(const Cell& x, const Cell& y, const Cell& z) {
-  const float u = fade(x.offset), v = fade(y.offset);
-  float planes[2];
-  for (uint32_t k = 0; k < 2; k++) {
-    const uint32_t iz = z.index + k;
-    const float dz = z.offset - static_cast<float>(k);
-    const float x0 = x.offset, x1 = x.offset - 1.0f, y0 = y.offset, y1 = y.offset - 1.0f;
-    const float low =
-        mix(gradient(lattice_hash(x.index, y.index, iz), x0, y0, dz), gradient(lattice_hash(x.index + 1, y.index, iz), x1, y0, dz), u);
-    const float high = mix(gradient(lattice_hash(x.index, y.index + 1, iz), x0, y1, dz),
-                           gradient(lattice_hash(x.index + 1, y.index + 1, iz), x1, y1, dz), u);
-    planes[k] = mix(low, high, v);
-  }
-  return mix(planes[0], planes[1], fade(z.offset));
+  const Lanes h = hash_lanes(kStepX + x.index, kStepY + y.index, kStepZ + z.index) & 15u;
+  const FloatLanes dx = x.offset - kOffsetX, dy = y.offset - kOffsetY, dz = z.offset - kOffsetZ;
+  const FloatLanes u = h < 8u ? dx : dy;
+  const FloatLanes t = (h == 12u) | (h == 14u) ? dx : dz;
+  const FloatLanes v = h < 4u ? dy : t;
+  const FloatLanes g = flip_lanes(u, h & 1u) + flip_lanes(v, (h >> 1) & 1u);
+  const float fx = fade(x.offset), fy = fade(y.offset);
+  const float low = mix(mix(g[0], g[1], fx), mix(g[2], g[3], fx), fy);
+  const float high = mix(mix(g[4], g[5], fx), mix(g[6], g[7], fx), fy);
+  return mix(low, high, fade(z.offset));
 }
 
 float perlin4(const Cell& x, const Cell& y, const Cell& z, const Cell& w) {

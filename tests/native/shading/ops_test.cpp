@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "shading/lattice_hash.h"
 #include "shading/perlin.h"
 #include "shading/program_builder.h"
 #include "shading/rotation.h"
@@ -166,6 +167,29 @@ TEST(NodeNoise, Properties) {
   double sum = 0.0;
   for (int i = 0; i < 20000; i++) sum += signed_noise(Vec3(0.37f, 0.73f, 0.51f) * static_cast<float>(i));
   EXPECT_NEAR(sum / 20000.0, 0.0, 0.01);
+}
+
+// Eight lanes against the definition, corner by corner.
+TEST(NodeNoise, LanesEqualTheDefinition) {
+  const auto fade = [](float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); };
+  const auto corner = [](const Vec3& cell, const Vec3& d) {
+    const auto at = [&](int k) { return static_cast<uint32_t>(static_cast<int32_t>(cell[k])); };
+    const uint32_t h = lattice_hash(at(0), at(1), at(2)) & 15u;
+    const float u = h < 8u ? d.x : d.y, v = h < 4u ? d.y : (h == 12u || h == 14u ? d.x : d.z);
+    return (h & 1u ? -u : u) + (h & 2u ? -v : v);
+  };
+  for (int i = 0; i < 500; i++) {
+    const Vec3 p = Vec3(0.731f, -1.377f, 0.519f) * static_cast<float>(i - 250);
+    const Vec3 cell = glm::floor(p), d = p - cell;
+    float expected = 0.0f;
+    for (int k = 0; k < 8; k++) {
+      const Vec3 step(static_cast<float>(k & 1), static_cast<float>(k >> 1 & 1), static_cast<float>(k >> 2));
+      float weight = 1.0f;
+      for (int axis = 0; axis < 3; axis++) weight *= step[axis] > 0.0f ? fade(d[axis]) : 1.0f - fade(d[axis]);
+      expected += weight * corner(cell + step, d - step);
+    }
+    EXPECT_NEAR(signed_noise(p), 0.982f * expected, 1e-5f) << i;
+  }
 }
 
 TEST(NodePatterns, CheckerAndGradient) {
