@@ -39,7 +39,11 @@ def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
     """Also called by the interface at any time: cheap, and without the library."""
     if scene is None or view_layer is None:
         return
-    for info in active_passes(scene, view_layer, options.current()):
+    try:
+        overrides = options.current()
+    except options.OptionError:
+        overrides = options.Overrides()  # update() reports it, once
+    for info in active_passes(scene, view_layer, overrides):
         engine.register_pass(scene, view_layer, info.blender_name(VERSION), info.channels, info.ids, info.kind)
 
 
