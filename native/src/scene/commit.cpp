@@ -119,11 +119,12 @@ std::vector<Lamp> place_lamps(const Scene::State& state, const MaterialIndex& in
   return lamps;
 }
 
-void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps, const CommitMonitor& monitor, Snapshot* snapshot) {
+void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps, const CommitMonitor& monitor, Scene::State* state,
+                  Snapshot* snapshot) {
   const auto lamp_scene = std::make_shared<const LampScene>(device, lamps);
   SceneFeatures& features = snapshot->features;
   features.has_lamps_with_extent = std::any_of(lamps.begin(), lamps.end(), [](const Lamp& lamp) { return !lamp.dirac(); });
-  auto table = build_emitters(*snapshot, std::move(lamps), monitor);
+  auto table = build_emitters(*snapshot, std::move(lamps), &state->world_map, monitor);
   table->lamps_with_extent = features.has_lamps_with_extent ? lamp_scene : nullptr;
   features.has_emitters = !table->lamps.empty() || !table->triangles.empty() || !table->world.black();
   snapshot->emitters = std::move(table);
@@ -173,7 +174,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     build_geometry(device_, chosen, monitor.step(0.25f, 0.8f), state_.get(), snapshot.get());
     place_camera(*state_, snapshot.get());
     place_world(*state_, materials, snapshot.get());
-    build_lights(device_, place_lamps(*state_, materials, snapshot.get()), monitor, snapshot.get());
+    build_lights(device_, place_lamps(*state_, materials, snapshot.get()), monitor, state_.get(), snapshot.get());
     find_specular(snapshot.get());
   };
   // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.

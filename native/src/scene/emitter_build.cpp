@@ -1,4 +1,4 @@
-// The emitters of a commit: lamps, emissive triangles with their power, the world's map, the tree.
+// The emitters of a commit: lamps, emissive triangles with their power, the tree.
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +8,7 @@
 #include "scene/mesh.h"
 #include "scene/scene_state.h"
 #include "scene/snapshot.h"
+#include "scene/world_map.h"
 #include "shading/material.h"
 #include "shading/shade.h"
 
@@ -129,20 +130,10 @@ void sort_lamps(EmitterTable* table) {
   }
 }
 
-void build_world(const Snapshot& snapshot, const CommitMonitor& monitor, Environment* world) {
-  if (snapshot.world_material == UINT32_MAX || snapshot.world.importance == 0) return;
-  const auto& material = snapshot.materials[snapshot.world_material];
-  if (!material || !material->emits) return;
-  RayState state;
-  state.flags = 0;
-  const auto radiance = [&](const Vec3& direction) { return shade_world(snapshot, direction, state); };
-  world->build(radiance, snapshot.world.importance == 2 ? snapshot.world.map_size : 0, [&] { return monitor.go_on(); });
-  monitor.check();
-}
-
 }  // namespace
 
-std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, const CommitMonitor& monitor) {
+std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, WorldMap* world,
+                                             const CommitMonitor& monitor) {
   auto table = std::make_shared<EmitterTable>();
   table->lamps = std::move(lamps);
   sort_lamps(table.get());
@@ -151,7 +142,7 @@ std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vect
   table->first_triangle = std::move(found.first);
   table->tree.build(all_bounds(snapshot, *table, monitor), [&] { return monitor.go_on(); });
   monitor.check();
-  build_world(snapshot, monitor, &table->world);
+  table->world = build_world(snapshot, world, monitor);
   return table;
 }
 

@@ -12,6 +12,7 @@ namespace gradus {
 
 class LampScene;  // scene/lamp_scene.h
 class CommitMonitor;
+struct WorldMap;  // scene/world_map.h
 
 struct EmissiveTriangle {
   uint32_t instance = 0;
@@ -43,7 +44,9 @@ struct EmitterTable {
   uint32_t find_triangle(uint32_t instance, uint32_t triangle) const;
 };
 
-// The snapshot is complete but for its emitters. lamps_with_extent is left to the caller. Throws Error CANCELLED.
-std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, const CommitMonitor& monitor);
+// The snapshot is complete but for its emitters. lamps_with_extent is left to the caller. world: what the commit before left, which this
+// one brings up to date. Throws Error CANCELLED.
+std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, WorldMap* world,
+                                             const CommitMonitor& monitor);
 
 }  // namespace gradus

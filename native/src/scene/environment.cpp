@@ -10,8 +10,6 @@ namespace gradus {
 
 namespace {
 
-constexpr uint32_t kProbeWidth = 64;
-constexpr uint32_t kAutomaticWidth = 1024;
 constexpr uint32_t kMinWidth = 16, kMaxWidth = 4096;
 
 Vec3 to_direction(const Vec2& p) {
@@ -25,10 +23,17 @@ Vec2 to_map(const Vec3& d) {
   return {(phi < 0.0f ? phi + 2.0f * kPi : phi) / (2.0f * kPi), std::acos(std::clamp(d.z, -1.0f, 1.0f)) / kPi};
 }
 
-// Mean channel of the radiance in each cell, from 2×2 points, so that a small sun is not missed between cell centres. Negative and
-// non-finite radiance counts as none. Returns false when stopped.
-bool measure(const Environment::Radiance& radiance, uint32_t width, const std::function<bool()>& go_on, std::vector<float>* out) {
+// Negative and non-finite radiance counts as none.
+float measure_at(const Environment::Radiance& radiance, const Vec2& p) {
+  const float value = mean_component(glm::max(radiance(to_direction(p)), Rgb(0.0f)));
+  return is_finite(value) ? std::min(value, 1e15f) : 0.0f;
+}
+
+// Mean channel of the radiance in each cell. Returns false when stopped.
+bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const std::function<bool()>& go_on,
+             std::vector<float>* out) {
   const uint32_t height = width / 2;
+  const float step = 1.0f / float(points);
   out->assign(size_t(width) * height, 0.0f);
   std::atomic<bool> stopped{false};
   tbb::parallel_for(0u, height, [&](uint32_t y) {
@@ -38,12 +43,11 @@ bool measure(const Environment::Radiance& radiance, uint32_t width, const std::f
     }
     for (uint32_t x = 0; x < width; ++x) {
       float sum = 0.0f;
-      for (int k = 0; k < 4; ++k) {
-        const Vec2 p((float(x) + 0.25f + 0.5f * float(k & 1)) / float(width), (float(y) + 0.25f + 0.5f * float(k >> 1)) / float(height));
-        const float value = mean_component(glm::max(radiance(to_direction(p)), Rgb(0.0f)));
-        sum += is_finite(value) ? std::min(value, 1e15f) : 0.0f;
+      for (uint32_t k = 0; k < points * points; ++k) {
+        const Vec2 within = step * (Vec2(float(k % points), float(k / points)) + 0.5f);
+        sum += measure_at(radiance, (Vec2(float(x), float(y)) + within) / Vec2(float(width), float(height)));
       }
-      (*out)[size_t(y) * width + x] = 0.25f * sum;
+      (*out)[size_t(y) * width + x] = step * step * sum;
     }
   });
   return !stopped;
@@ -86,34 +90,33 @@ bool is_constant(const std::vector<float>& values) {
 
 }  // namespace
 
-void Environment::build(const Radiance& radiance, uint32_t map_width, const std::function<bool()>& go_on) {
-  map_ = Distribution2D();
-  mean_ = 0.0f;
+Environment Environment::uniform(float mean) {
+  Environment world;
+  world.mean_ = is_finite(mean) ? std::max(mean, 0.0f) : 0.0f;
+  return world;
+}
+
+void Environment::build(const Radiance& radiance, const Resolution& resolution, const std::function<bool()>& go_on) {
+  *this = Environment();
+  const uint32_t width = std::clamp(resolution.width, kMinWidth, kMaxWidth) & ~1u;
   std::vector<float> values;
-  if (!measure(radiance, kProbeWidth, go_on, &values)) return;
-  const bool constant = is_constant(values);
-  uint32_t width = kProbeWidth;
-  if (!constant || map_width != 0) {
-    width = std::clamp(map_width == 0 ? kAutomaticWidth : map_width, kMinWidth, kMaxWidth) & ~1u;
-    if (!measure(radiance, width, go_on, &values)) return;
-  }
+  if (!measure(radiance, width, std::max(resolution.points, 1u), go_on, &values)) return;
   mean_ = mean_over_sphere(values, width);
-  // A constant world is sampled uniformly; the fine map decides, where it was made.
-  if (mean_ > 0.0f && !is_constant(values)) map_ = Distribution2D(width, width / 2, weights(values, width, mean_));
+  if (mean_ > 0.0f && !is_constant(values)) map_ = std::make_shared<Distribution2D>(width, width / 2, weights(values, width, mean_));
 }
 
 Vec3 Environment::sample(const Vec2& u) const {
-  if (!map_.empty()) return to_direction(map_.sample(u));
+  if (map_) return to_direction(map_->sample(u));
   const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
   return {r * std::cos(2.0f * kPi * u.y), r * std::sin(2.0f * kPi * u.y), z};
 }
 
 float Environment::density(const Vec3& direction) const {
   if (black()) return 0.0f;
-  if (map_.empty()) return 0.25f * kInvPi;
+  if (!map_) return 0.25f * kInvPi;
   const float sine = std::sqrt(std::max(0.0f, 1.0f - direction.z * direction.z));
   if (sine <= 0.0f) return 0.0f;
-  return map_.density(to_map(direction)) / (2.0f * kPi * kPi * sine);
+  return map_->density(to_map(direction)) / (2.0f * kPi * kPi * sine);
 }
 
 }  // namespace gradus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "base/types.h"
 #include "scene/distribution.h"
@@ -13,18 +14,27 @@ class Environment {
   // Radiance from a direction that points away from the scene.
   using Radiance = std::function<Rgb(const Vec3&)>;
 
-  // map_width: 0 = automatic (a uniform distribution where the world is constant). go_on is polled. black(): there is nothing to sample.
-  void build(const Radiance& radiance, uint32_t map_width, const std::function<bool()>& go_on);
+  struct Resolution {
+    uint32_t width = 256;  // of the map; its height is half of it
+    uint32_t points = 2;   // radiance is measured at points² places in each cell
+  };
+
+  // A world that shines alike from everywhere; mean: of the channels of its radiance.
+  static Environment uniform(float mean);
+  // go_on is polled. Without a map where the radiance turns out to be constant. black(): there is nothing to sample.
+  void build(const Radiance& radiance, const Resolution& resolution, const std::function<bool()>& go_on);
   bool black() const { return mean_ <= 0.0f; }
   // Mean over the sphere of the mean channel.
   float mean() const { return mean_; }
+  // Null: directions are chosen uniformly. Copies share it.
+  const Distribution2D* map() const { return map_.get(); }
 
   Vec3 sample(const Vec2& u) const;
   // Solid angle density.
   float density(const Vec3& direction) const;
 
  private:
-  Distribution2D map_;  // x: longitude, y: colatitude from +Z
+  std::shared_ptr<const Distribution2D> map_;  // x: longitude, y: colatitude from +Z
   float mean_ = 0.0f;
 };
 

@@ -14,6 +14,7 @@
 #include "scene/material_source.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
+#include "scene/world_map.h"
 
 namespace gradus {
 
@@ -58,6 +59,7 @@ struct Scene::State {
   std::shared_ptr<const Accelerator> accelerator;
   uint64_t geometry_key = 0;  // of `accelerator`
   MeshSceneCache mesh_scenes;
+  WorldMap world_map;
 };
 
 // Progress of a commit: tells the caller, and whether to go on. Called from Embree's threads, too.

@@ -1,0 +1,76 @@
+#include "scene/world_map.h"
+
+#include <algorithm>
+
+#include "scene/image_store.h"
+#include "scene/scene_state.h"
+#include "scene/snapshot.h"
+#include "shading/material.h"
+#include "shading/shade.h"
+
+namespace gradus {
+
+namespace {
+
+constexpr uint32_t kManual = 2;          // GradusWorld::importance
+constexpr uint32_t kWidest = 1024;       // Cycles follows larger images, too; the density then only gains below half a degree
+constexpr uint32_t kWidthOfNodes = 256;  // worlds of nodes alone are smooth, or have edges that no map can follow
+
+std::vector<uint32_t> image_indices(const Program& program, const ImageStore& images) {
+  std::vector<uint32_t> found;
+  for (const Instruction& i : program.code)
+    if ((i.op == GRADUS_OP_IMAGE || i.op == GRADUS_OP_ENVIRONMENT) && i.resource < images.size()) found.push_back(i.resource);
+  return found;
+}
+
+WorldMap describe(const Snapshot& snapshot) {
+  WorldMap map;
+  if (snapshot.world_material == UINT32_MAX || snapshot.world.importance == 0) return map;
+  const auto& material = snapshot.materials[snapshot.world_material];
+  if (!material || !material->emits) return map;
+  map.material = material;
+  map.importance = snapshot.world.importance;
+  map.map_size = map.importance == kManual ? snapshot.world.map_size : 0;
+  for (const uint32_t i : image_indices(material->emission, *snapshot.images)) map.images.push_back(snapshot.images->image(i));
+  return map;
+}
+
+bool same_world(const WorldMap& a, const WorldMap& b) {
+  return a.material == b.material && a.images == b.images && a.importance == b.importance && a.map_size == b.map_size;
+}
+
+// One point in each cell sees every texel of an image that is no wider than the map: look-ups are interpolated. Otherwise 2×2, so that a
+// small sun is not missed between cell centres.
+Environment::Resolution resolution(const Snapshot& snapshot, const WorldMap& map) {
+  uint32_t widest = 0;
+  for (const uint32_t i : image_indices(map.material->emission, *snapshot.images)) widest = std::max(widest, snapshot.images->width(i));
+  Environment::Resolution result;
+  result.width = map.map_size > 0 ? map.map_size : widest > 0 ? std::min(widest, kWidest) : kWidthOfNodes;
+  result.points = widest > 0 && widest <= result.width ? 1 : 2;
+  return result;
+}
+
+Environment measure_world(const Snapshot& snapshot, const WorldMap& map, const CommitMonitor& monitor) {
+  if (!map.material) return {};
+  if (map.material->emission_is_constant) return Environment::uniform(mean_component(glm::max(map.material->constant_emission, Rgb(0.0f))));
+  RayState state;
+  state.flags = 0;
+  Environment world;
+  const auto radiance = [&](const Vec3& direction) { return shade_world(snapshot, direction, state); };
+  world.build(radiance, resolution(snapshot, map), [&] { return monitor.go_on(); });
+  monitor.check();
+  return world;
+}
+
+}  // namespace
+
+Environment build_world(const Snapshot& snapshot, WorldMap* map, const CommitMonitor& monitor) {
+  WorldMap wanted = describe(snapshot);
+  if (same_world(*map, wanted)) return map->environment;
+  *map = {};
+  wanted.environment = measure_world(snapshot, wanted, monitor);
+  *map = std::move(wanted);
+  return map->environment;
+}
+
+}  // namespace gradus
