@@ -30,11 +30,6 @@ bool choose_class(const Closures& closures, float u, ScatterClass* chosen) {
   return found;
 }
 
-// Cycles' rule: from the second bounce on, by the square root of the largest channel, which matches a display's curve roughly.
-float survival_probability(const Rgb& throughput, int depth) {
-  return depth < 2 ? 1.0f : std::min(1.0f, std::sqrt(std::max(0.0f, max_component(throughput))));
-}
-
 // A limit of n bounces lets a path see what its n + 1st bounce hits emit, as next-event estimation at that vertex does.
 bool reaches_limit(const GradusSettings& settings, const PathState& state) {
   const RayState& r = state.ray.state;
@@ -69,6 +64,18 @@ void follow(const PathContext&, const SurfacePoint& from, const Vec3& direction,
   }
 }
 
+float survive(const Sampler& sampler, PathState* state) {
+  if (state->depth < 2) {
+    return 1.0f;
+  }
+  const float probability = std::min(1.0f, std::sqrt(std::max(0.0f, max_component(state->throughput))));
+  if (probability < 1.0f && !(sampler.get1(vertex_block(state->depth, dimension::kRoulette)) < probability)) {
+    return 0.0f;
+  }
+  state->throughput /= probability;
+  return probability;
+}
+
 bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& vertex, PathState* state, ScatterEvent* event) {
   const Closures& closures = vertex.shade.closures;
   const Vec2 u = sampler.get2(vertex_block(state->depth, dimension::kLobe));
@@ -85,12 +92,6 @@ bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& v
   }
   event->dirac_rank = sample.dirac ? dirac_rank(closures, event->scatter_class, sample.lobe) : 0;
   event->factor = sample.value / event->pdf;
-  const Rgb throughput = state->throughput * event->factor;
-  event->survival = survival_probability(throughput, state->depth + 1);
-  if (event->survival < 1.0f && !(sampler.get1(vertex_block(state->depth, dimension::kRoulette)) < event->survival)) {
-    return false;
-  }
-  event->factor /= event->survival;
   state->throughput *= event->factor;
   ++state->depth;
   follow(context, vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac, &state->ray);

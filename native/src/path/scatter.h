@@ -18,15 +18,19 @@ struct ScatterEvent {
   ScatterClass scatter_class = ScatterClass::Diffuse;
   BsdfSample sample;
   float pdf = 0.0f;        // P(class)·p(direction | class); for Dirac events of the choice alone
-  float survival = 1.0f;   // of Russian roulette
   int dirac_rank = 0;      // the sampled Dirac lobe's number among those of its class
-  Rgb factor = Rgb(0.0f);  // value / (pdf·survival): what the throughput was multiplied with
+  Rgb factor = Rgb(0.0f);  // value / pdf: what the throughput was multiplied with
 };
 
 // GradusVisibility bit of the bounce.
 uint32_t bounce_visibility(LightPass pass, bool transmitted);
 
-// Samples the next direction. False: absorbed, or ended by roulette. Otherwise state->ray, throughput and depth are those of the new
+// Russian roulette at a vertex, after its emission was seen and before it is lit: what a ray finds does not suffer from the roulette's
+// variance. Cycles' rule: from the third vertex on, by the square root of the largest channel, which matches a display's curve roughly.
+// 0: the path ends; otherwise the probability, by which the throughput was divided.
+float survive(const Sampler& sampler, PathState* state);
+
+// Samples the next direction. False: absorbed. Otherwise state->ray, throughput and depth are those of the new
 // segment.
 bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& vertex, PathState* state, ScatterEvent* event);
 

@@ -32,6 +32,7 @@ struct NoObserver {
   void emission(const RaySource&, const Contribution&, const Vertex&) {}
   void seen() {}  // all that the segment shows has been told
   void transparent(float) {}
+  void survived(float) {}
   void light(const Vertex&, const LightSample&, ScatterClass, const Contribution&) {}
   void scatter(const Vertex&, const ScatterEvent&) {}
 };
@@ -71,6 +72,11 @@ class PathTracer {
     if (!goes_on || state_.emission_only) {
       return false;
     }
+    const float survival = survive(sampler, &state_);
+    if (!(survival > 0.0f)) {
+      return false;
+    }
+    observer_.survived(survival);
     add_light(sampler, *vertex);
     const int depth = state_.depth;
     if (!scatter(context_, sampler, *vertex, &state_, &s_.event)) {

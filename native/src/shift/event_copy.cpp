@@ -19,7 +19,7 @@ ShiftedEvent weigh(const ScatterEvent& event, const Vec3& wi, const Rgb& value, 
   }
   shifted.wi = wi;
   shifted.pdf = pdf;
-  shifted.factor = value / (pdf * event.survival);
+  shifted.factor = value / pdf;
   shifted.ratio = jacobian * pdf / event.pdf;
   if (!(shifted.ratio > 0.0f) || !is_finite(shifted.ratio)) {
     return failed(ShiftFailure::Jacobian);

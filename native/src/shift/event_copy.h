@@ -10,7 +10,7 @@ namespace gradus {
 // The event at the offset vertex.
 struct ShiftedEvent {
   Vec3 wi = Vec3(0.0f);
-  Rgb factor = Rgb(0.0f);  // value / (pdf·survival), survival being the base's
+  Rgb factor = Rgb(0.0f);  // value / pdf
   float pdf = 0.0f;        // P(class)·p(direction | class)
   float ratio = 0.0f;      // the event's factor of r: J·pdf'/pdf
   ShiftFailure failure = ShiftFailure::None;

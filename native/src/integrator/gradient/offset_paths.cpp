@@ -108,4 +108,15 @@ void OffsetPaths::passed(const Segment& segment) {
   }
 }
 
+// Roulette is the base's decision; both contributions are divided by its probability and r leaves it out.
+void OffsetPaths::survived(float probability) {
+  const float factor = 1.0f / probability;
+  for (OffsetPath& o : offsets_) {
+    o.state.throughput *= factor;
+    if (o.stage == OffsetStage::Pending) {
+      o.link.throughput *= factor;  // a connection that emission already asked for
+    }
+  }
+}
+
 }  // namespace gradus

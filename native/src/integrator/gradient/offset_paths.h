@@ -24,6 +24,7 @@ class OffsetPaths {
   void emission(const RaySource& source, const Contribution& c, const Vertex& vertex);
   void transparent(float value) { seen_.w -= value; }
   void seen();
+  void survived(float probability);
   void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void scatter(const Vertex& vertex, const ScatterEvent& event);
 
