@@ -107,7 +107,9 @@ uint64_t PathScene::material(const Surface& surface) {
   Program program;
   const int32_t result = build_surface(surface, &program);
   const std::string name = text_of(surface);
-  scene.scene.set_material(key, program.desc(result, name.c_str(), static_cast<int32_t>(key)));
+  GradusMaterial desc = program.desc(result, name.c_str(), static_cast<int32_t>(key));
+  desc.sample_as_light = surface.sampled_as_light ? 1 : 0;
+  scene.scene.set_material(key, desc);
   return key;
 }
 

@@ -19,6 +19,7 @@ struct Surface {
   float ior = 1.5f;
   Rgb emission = Rgb(0.0f);
   float transparent = 0.0f;
+  bool sampled_as_light = true;
 };
 
 class PathScene {

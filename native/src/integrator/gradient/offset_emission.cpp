@@ -86,6 +86,18 @@ void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint&
   pair(k, c, value, o.ratio * event.ratio * (joint(base) ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
 }
 
+// An emitter that the shared path found; weight: of the segment up to it. Straight after the first shared vertex the offset scattered with
+// a density of its own, so its weight against light sampling, whose density both share, is its own too.
+void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, bool joint) {
+  const OffsetPath& o = offsets_[k];
+  if (!(o.shared_pdf > 0.0f && c.pdf_light > 0.0f)) {
+    pair(k, c, o.state.throughput * weight * c.tail, o.ratio);
+    return;
+  }
+  const Rgb value = o.state.throughput * weight * c.light * bsdf_weight(c.pdf_light, o.shared_pdf);
+  pair(k, c, value, o.ratio * (joint ? all_techniques(c, c.pdf_light, o.shared_pdf) : 1.0f));
+}
+
 void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
   seen_ += Radiance(c.clamped, 0.0f);
   for (int k = 0; k < kOffsets; ++k) {
@@ -96,7 +108,7 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
     if (o.stage == OffsetStage::Dead) {
       alone(k, c);
     } else if (o.stage == OffsetStage::Linked) {
-      pair(k, c, o.state.throughput * lamp.weight * c.tail, o.ratio);
+      found_linked(k, c, lamp.weight, joint(view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex))));
     } else if (o.stage == OffsetStage::Pending) {
       const EmitterView base = view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex));
       const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
@@ -116,7 +128,9 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
     if (o.stage == OffsetStage::Dead) {
       alone(k, c);
     } else if (o.stage == OffsetStage::Linked) {
-      pair(k, c, o.state.throughput * c.tail, o.ratio);
+      EmitterView view;
+      view.visibility = context_.scene.world.visibility;
+      found_linked(k, c, Rgb(1.0f), joint(view));
     } else if (o.stage == OffsetStage::Pending) {
       // The same direction, so the same radiance.
       EmitterView base;
@@ -143,7 +157,7 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
     if (o.stage == OffsetStage::Dead) {
       alone(k, c);
     } else if (o.stage == OffsetStage::Linked) {
-      pair(k, c, o.state.throughput * c.tail, o.ratio);
+      found_linked(k, c, Rgb(1.0f), joint_);
     } else if (o.stage == OffsetStage::Pending) {
       if (!o.link.open || is_black(o.linked->shade.emission)) {
         alone(k, c);

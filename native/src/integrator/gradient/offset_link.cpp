@@ -74,6 +74,7 @@ void OffsetPaths::scatter(const Vertex& vertex, const ScatterEvent& event) {
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Linked) {
       o.state.throughput *= event.factor;
+      o.shared_pdf = 0.0f;
     }
     pending |= o.stage == OffsetStage::Pending;
   }
@@ -105,6 +106,7 @@ void OffsetPaths::scatter(const Vertex& vertex, const ScatterEvent& event) {
     ++counters_.shifts_reconnected;
     o.state.throughput = o.link.throughput * shared.factor;
     o.ratio = o.link.ratio * shared.ratio;
+    o.shared_pdf = shared.pdf;
     o.stage = OffsetStage::Linked;
   }
 }

@@ -48,6 +48,7 @@ struct OffsetPath {
   ScatterEvent event;       // density and kind of the event that began it
   bool from_camera = true;  // there was no such event
   bool fresh = false;       // it traced its own ray for the base's current segment
+  float shared_pdf = 0.0f;  // Linked: its density of the event that it linked by, until the next one; then 0: the base's is its own
   OffsetLink link;
   OffsetLight light;
   // Own vertices, the current one first; and the base's vertex as seen from here.

@@ -51,6 +51,7 @@ class OffsetPaths {
   void light_all(const LightSample& sample);
   void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
+  void found_linked(int k, const Contribution& c, const Rgb& weight, bool joint);
   void copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,
                     float probability);
   bool joint(const EmitterView& view) const;
