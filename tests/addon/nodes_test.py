@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 
@@ -168,6 +169,27 @@ def test_e5_unknown_texture_is_grey_and_sky_is_not_black() -> None:
     material = new_material()
     show(material, material.node_tree.nodes.new("ShaderNodeTexSky").outputs[0])
     assert min(translate(material).inputs[0][2][:3]) > 0.01
+
+
+def test_e5_sky_is_as_bright_as_above_the_horizon() -> None:
+    """Cycles' mean over the upper hemisphere, sun at 30 degrees; that of the whole sphere, sun at any height, lit 1.6 times too much."""
+    measured = {
+        "PREETHAM": (0.457, 0.565, 0.864),
+        "HOSEK_WILKIE": (0.060, 0.092, 0.133),
+        "NISHITA": (3.188, 3.752, 4.575),
+        "SINGLE_SCATTERING": (3.117, 3.706, 4.563),
+        "MULTIPLE_SCATTERING": (3.752, 5.684, 8.551),
+    }
+    material = new_material()
+    node = material.node_tree.nodes.new("ShaderNodeTexSky")
+    show(material, node.outputs[0])
+    node.turbidity, node.sun_disc, node.sun_elevation = 2.2, False, math.radians(30.0)
+    node.sun_direction = (math.cos(math.radians(30.0)), 0.0, 0.5)
+    for kind in (item.identifier for item in node.bl_rna.properties["sky_type"].enum_items):
+        node.sky_type = kind
+        assert translate(material).inputs[0][2][:3] == pytest.approx(measured[kind], rel=0.04)
+    node.sky_type, node.turbidity = "HOSEK_WILKIE", 8.0
+    assert translate(material).inputs[0][2][:3] == pytest.approx((0.158, 0.159, 0.159), rel=0.15)
 
 
 def test_e5_unknown_value_node_passes_through() -> None:
