@@ -1,24 +1,26 @@
-"""A9: agreement with Cycles. Renders scenes with plain path tracing and with Cycles and compares 8x8 block means.
+"""A9: agreement with Cycles. Compares 8x8 block means of the converged images of plain path tracing and of Cycles.
 
     agreement.py [--scenes a,b] [--samples 1024] [--width 160]
 
-A block agrees when its means differ by at most 2 %, or by less than the noise of both (3 standard errors, from independent parts). A scene
-agrees when 95 % of its blocks do. Pictures of the difference go to out/agreement/. Exit code 1 if a scene that should agree does not.
+The images are the benchmark's references (bench.py), with their variances. A block agrees when its means differ by at most 2 %, or by less
+than the noise of both (3 standard errors; pixels are independent). A scene agrees when 95 % of its blocks do. The figures go to
+docs/benchmark/agreement.json, pictures of the difference to out/agreement/. Exit code 1 if a scene differs without a named reason.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 
 import numpy as np
-from bench import Worker
+from bench import Worker, reference, version_of_build
 from scenes import ROOT, Scene, select
 
 BLOCK = 8
-PARTS = 8
 TOLERANCE = 0.02
 SHARE = 0.95
+RESULTS = ROOT / "docs" / "benchmark" / "agreement.json"
 
 # Scenes that are known to differ, each with its reason.
 NAMED_DIFFERENCES: dict[str, str] = {}
@@ -30,29 +32,26 @@ def blocks(image: np.ndarray) -> np.ndarray:
     return cut.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3).mean(axis=(1, 3))
 
 
-def block_means(worker: Worker, mode: str, samples: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean image, block means and their variance."""
-    parts = [worker.render(mode, samples // PARTS, 2000 + i)[0] for i in range(PARTS)]
-    of_blocks = np.stack([blocks(p) for p in parts])
-    return np.mean(parts, axis=0), of_blocks.mean(axis=0), of_blocks.var(axis=0, ddof=1) / PARTS
-
-
-def compare(scene: Scene, width: int, samples: int) -> float:
-    """Share of blocks that agree."""
-    worker = Worker(scene, width, width * 9 // 16)
+def compare(scene: Scene, width: int, samples: int) -> tuple[float, float]:
+    """Share of blocks that agree, and the ratio of the means."""
+    size = (width, width * 9 // 16)
+    worker = Worker(scene, *size)
     try:
-        ours, a, variance_a = block_means(worker, "path", samples)
-        theirs, b, variance_b = block_means(worker, "cycles", samples)
+        version = version_of_build()
+        ours, variance_ours = reference(worker, scene, "path", size, samples, version)
+        theirs, variance_theirs = reference(worker, scene, "cycles", size, samples, version)
     finally:
         worker.close()
+    a, b = blocks(ours), blocks(theirs)
+    variance = blocks(variance_ours + variance_theirs) / BLOCK**2
     scale = np.maximum(b.mean(axis=2, keepdims=True), 1e-3)  # of the block's gray, so that dark channels do not decide
     difference = np.abs(a - b)
-    good = (difference <= TOLERANCE * scale) | (difference <= 3.0 * np.sqrt(variance_a + variance_b))
+    good = (difference <= TOLERANCE * scale) | (difference <= 3.0 * np.sqrt(variance))
     share = float(good.all(axis=2).mean())
     ratio = float(a.mean() / max(b.mean(), 1e-9))
     print(f"{scene.name:18} blocks that agree {100 * share:5.1f} %   mean ratio {ratio:.4f}", flush=True)
     save_strip(scene.name, ours, theirs)
-    return share
+    return share, ratio
 
 
 def save_strip(name: str, ours: np.ndarray, theirs: np.ndarray) -> None:
@@ -75,15 +74,23 @@ def main() -> None:
     failed = []
     for scene in select(arguments.scenes):
         try:
-            agrees = compare(scene, arguments.width, arguments.samples) >= SHARE
+            share, ratio = compare(scene, arguments.width, arguments.samples)
         except RuntimeError as error:
             print(f"FAILED {scene.name}: {error}")
-            agrees = False
-        if not agrees:
-            print(f"  {scene.name}: {NAMED_DIFFERENCES.get(scene.name, 'differs without a named reason')}")
-            if scene.name not in NAMED_DIFFERENCES:
-                failed.append(scene.name)
+            failed.append(scene.name)
+            continue
+        reason = "" if share >= SHARE else NAMED_DIFFERENCES.get(scene.name, "")
+        if share < SHARE and not reason:
+            print(f"  {scene.name}: differs without a named reason")
+            failed.append(scene.name)
+        store(scene.name, {"share": round(share, 4), "ratio": round(ratio, 4), "reason": reason, "samples": arguments.samples})
     sys.exit(1 if failed else 0)
+
+
+def store(name: str, row: dict) -> None:
+    rows = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    rows[name] = row
+    RESULTS.write_text(json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Error against CPU time: plain path tracing, gradient-domain modes and Cycles from the same .blend files.
 
-    bench.py [--scenes a,b] [--minutes 60] [--quick]
+    bench.py [--scenes a,b] [--minutes 60] [--quick] [--references-only]
 
-Every run is appended to docs/benchmark/results.jsonl with the version that made it, so that a benchmark can be interrupted and resumed;
+Besides the modes, each scene has a few runs with four bounces, for the CPU time per sample alone (no error is measured there). Every run is appended to docs/benchmark/results.jsonl with the version that made it, so that a benchmark can be interrupted and resumed;
 what is there already for this version is not run again. References (each engine against its own converged image, variance of the reference
 subtracted) are cached in the user's cache folder. Report: report.py.
 """
@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,9 @@ from scenes import QUICK, ROOT, Scene, select
 
 RESULTS = ROOT / "docs" / "benchmark" / "results.jsonl"
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "gradus" / "references"
-MODES = ("path", "gradient-l2", "gradient-l1", "cycles", "cycles-denoised")
+MODES = ("path", "gradient-l2", "gradient-l1", "cycles", "cycles-denoised", "cycles-default")
+SPEED_MODES = ("path", "gradient-none", "cycles")
+SPEED_SAMPLES, SPEED_BOUNCES = (4, 36), 4
 SEEDS = 5
 REFERENCE_PARTS = 8  # independent renders whose mean is the reference and whose spread is its variance
 
@@ -41,9 +44,11 @@ class Worker:
         )  # fmt: skip
         self._folder = tempfile.TemporaryDirectory()
 
-    def render(self, mode: str, samples: int, seed: int) -> tuple[np.ndarray, dict]:
+    def render(self, mode: str, samples: int, seed: int, bounces: int | None = None) -> tuple[np.ndarray, dict]:
         out = Path(self._folder.name) / "image.npy"
         job = {"mode": mode, "samples": samples, "seed": seed, "out": str(out)}
+        if bounces is not None:
+            job["bounces"] = bounces
         assert self._process.stdin and self._process.stdout
         self._process.stdin.write(json.dumps(job) + "\n")
         self._process.stdin.flush()
@@ -84,47 +89,79 @@ def reference(
 
 
 def version_of_build() -> str:
-    commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
-    return commit or "unknown"
+    """The last commit that touched what is measured: committing results does not make them old."""
+    command = ["git", "-C", str(ROOT), "log", "-1", "--format=%h", "--", "native", "addon"]
+    return subprocess.run(command, capture_output=True, text=True).stdout.strip() or "unknown"
 
 
-def done_runs(version: str) -> set[tuple]:
+@dataclass(frozen=True)
+class Job:
+    seed: int
+    samples: int
+    mode: str
+    bounces: int | None = None  # None: as the file says
+
+
+def jobs_of(arguments: argparse.Namespace) -> list[Job]:
+    """Interleaved: a seed runs through all counts and modes before the next one begins."""
+    jobs = []
+    for seed in range(arguments.seeds):
+        jobs += [Job(seed, samples, mode) for samples in arguments.samples for mode in arguments.modes]
+        jobs += [Job(seed, samples, mode, SPEED_BOUNCES) for samples in SPEED_SAMPLES for mode in SPEED_MODES]
+    return jobs
+
+
+def done_jobs(scene: Scene, width: int, version: str) -> set[Job]:
     if not RESULTS.exists():
         return set()
     rows = [json.loads(line) for line in RESULTS.read_text().splitlines()]
-    return {(r["scene"], r["mode"], r["samples"], r["seed"], r["width"]) for r in rows if r["version"] == version}
+    rows = [r for r in rows if (r["scene"], r["width"], r["version"]) == (scene.name, width, version)]
+    return {Job(r["seed"], r["samples"], r["mode"], r.get("bounces")) for r in rows}
 
 
 def bench_scene(scene: Scene, arguments: argparse.Namespace, version: str, deadline: float) -> None:
     size = (arguments.width, arguments.width * 9 // 16)
-    done = done_runs(version)
-    jobs = [(seed, samples, mode) for seed in range(arguments.seeds) for samples in arguments.samples for mode in arguments.modes]
-    jobs = [j for j in jobs if (scene.name, j[2], j[1], j[0], size[0]) not in done]
+    done = done_jobs(scene, size[0], version)
+    jobs = [job for job in jobs_of(arguments) if job not in done]
     if not jobs:
         return
     worker = Worker(scene, *size)
     try:
         references = {e: reference(worker, scene, e, size, arguments.reference, version) for e in ("path", "cycles")}
-        for mode in arguments.modes:  # not counted: first use loads libraries
+        if arguments.references_only:
+            return
+        for mode in {job.mode for job in jobs}:  # not counted: first use loads libraries
             worker.render(mode, 1, 999)
-        for seed, samples, mode in jobs:
+        for job in jobs:
             if time.monotonic() > deadline:
                 return
-            image, timing = worker.render(mode, samples, seed)
-            mean, variance = references["cycles" if mode.startswith("cycles") else "path"]
+            image, timing = worker.render(job.mode, job.samples, job.seed, job.bounces)
             row = {
-                "scene": scene.name, "mode": mode, "samples": samples, "seed": seed, "width": size[0], "height": size[1],
-                "cpu": round(timing["cpu"], 4), "wall": round(timing["wall"], 4),
-                "relmse": rel_mse(image, mean, variance), "relmse_trimmed": rel_mse_trimmed(image, mean, variance),
-                "smape": smape(image, mean), "reference_samples": arguments.reference, "version": version, "machine": platform.machine(),
+                "scene": scene.name, "mode": job.mode, "samples": job.samples, "seed": job.seed, "width": size[0], "height": size[1],
+                "cpu": round(timing["cpu"], 4), "wall": round(timing["wall"], 4), "version": version, "machine": platform.machine(),
             }  # fmt: skip
+            if job.bounces is not None:
+                row["bounces"] = job.bounces
+            else:
+                row |= errors(image, *references["cycles" if job.mode.startswith("cycles") else "path"])
+                row["reference_samples"] = arguments.reference
+                if job.seed == 0 and scene.own:
+                    save_picture(image, f"{scene.name}-{job.mode}-{job.samples}")
             with RESULTS.open("a") as file:
                 file.write(json.dumps(row) + "\n")
-            print(f"{scene.name:18} {mode:16} {samples:5} spp seed {seed}: {row['cpu']:8.2f} CPU-s  relMSE {row['relmse']:.5f}", flush=True)
-            if seed == 0 and scene.own:
-                save_picture(image, f"{scene.name}-{mode}-{samples}")
+            print(f"{scene.name:18} {job.mode:16} {job.samples:5} spp seed {job.seed}: {row['cpu']:8.2f} CPU-s", flush=True)
+        if scene.own:
+            save_picture(references["path"][0], f"{scene.name}-reference")
     finally:
         worker.close()
+
+
+def errors(image: np.ndarray, mean: np.ndarray, variance: np.ndarray) -> dict[str, float]:
+    return {
+        "relmse": rel_mse(image, mean, variance),
+        "relmse_trimmed": rel_mse_trimmed(image, mean, variance),
+        "smape": smape(image, mean),
+    }
 
 
 def save_picture(image: np.ndarray, name: str) -> None:
@@ -137,6 +174,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="")
     parser.add_argument("--minutes", type=float, default=600.0)
+    parser.add_argument("--references-only", action="store_true", help="compute what is not timed, and stop")
     parser.add_argument("--quick", action="store_true", help="two scenes in under five minutes")
     parser.add_argument("--width", type=int, default=320)
     parser.add_argument("--seeds", type=int, default=SEEDS)

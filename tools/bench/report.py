@@ -6,6 +6,7 @@ import json
 from collections import defaultdict
 
 import matplotlib
+import matplotlib.image
 import numpy as np
 from metrics import equal_time_ratio, slope
 from scenes import ROOT, SCENES
@@ -14,24 +15,32 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 FOLDER = ROOT / "docs" / "benchmark"
+PICTURES = ROOT / "out" / "bench"
 NAMES = {
     "path": "Gradus PT",
     "gradient-l2": "Gradus G-PT + L2",
     "gradient-l1": "Gradus G-PT + L1",
     "cycles": "Cycles",
     "cycles-denoised": "Cycles + denoiser",
+    "cycles-default": "Cycles, its defaults",
 }
+STRIP = ("path", "gradient-l2", "gradient-l1", "cycles", "cycles-denoised", "reference")
+STRIP_SAMPLES = 16
 
 
 def load() -> dict[str, dict[str, dict[int, list[dict]]]]:
-    """scene -> mode -> samples -> rows of the newest version that has that scene and mode, largest width."""
+    """scene -> mode -> samples -> rows of the newest version that has that scene and mode; the modes of the speed runs end in "@4"."""
     rows = [json.loads(line) for line in (FOLDER / "results.jsonl").read_text().splitlines()]
-    newest: dict[tuple[str, str], str] = {(r["scene"], r["mode"]): r["version"] for r in rows}  # the file is in order of time
+    newest: dict[tuple[str, str], tuple] = {(r["scene"], mode_of(r)): (r["version"], r["width"]) for r in rows}  # in order of time
     table: dict = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
     for row in rows:
-        if newest[row["scene"], row["mode"]] == row["version"]:
-            table[row["scene"]][row["mode"]][row["samples"]].append(row)
+        if newest[row["scene"], mode_of(row)] == (row["version"], row["width"]):
+            table[row["scene"]][mode_of(row)][row["samples"]].append(row)
     return table
+
+
+def mode_of(row: dict) -> str:
+    return f"{row['mode']}@{row['bounces']}" if "bounces" in row else row["mode"]
 
 
 def curve(by_samples: dict[int, list[dict]], measure: str = "relmse") -> list[tuple[float, float]]:
@@ -78,35 +87,76 @@ def ratio(modes: dict, a: str, b: str) -> float | None:
     return equal_time_ratio(curve(modes[a]), curve(modes[b])) if a in modes and b in modes else None
 
 
+def strip(scene: str) -> str | None:
+    """One row of pictures at equal samples, each engine beside its peers; None where the pictures are not here."""
+    files = [PICTURES / f"{scene}-{mode}.npy" for mode in (m if m == "reference" else f"{m}-{STRIP_SAMPLES}" for m in STRIP)]
+    if not all(f.exists() for f in files):
+        return None
+    images = [np.load(f) for f in files]
+    white = float(np.percentile(images[-1], 98.0))
+    shown = [np.clip(image / max(white, 1e-6), 0.0, 1.0) ** (1.0 / 2.2) for image in images]
+    gap = np.ones((shown[0].shape[0], 2, 3))
+    row = np.concatenate([part for image in shown for part in (image, gap)][:-1], axis=1)
+    name = f"{scene}-strip.png"
+    matplotlib.image.imsave(FOLDER / name, row)
+    return name
+
+
+def summary(table: dict, order: list[str]) -> list[str]:
+    text = ["## Error at equal CPU time", "", "| scene | R of L2 | R of L1 | R of Cycles | slope PT | slope L2 |", "|---|---|---|---|---|---|"]
+    for scene in order:
+        modes = table[scene]
+        slopes = [number(slope(curve(modes[m])) if m in modes else None) for m in ("path", "gradient-l2")]
+        ratios = [number(ratio(modes, m, "path")) for m in ("gradient-l2", "gradient-l1", "cycles")]
+        text.append(f"| {scene} | {' | '.join(ratios + slopes)} |")
+    return text
+
+
+def speed(table: dict, order: list[str]) -> list[str]:
+    text = ["", "## CPU time of a sample with four bounces", ""]
+    text += ["| scene | PT, µs | Cycles, µs | PT / Cycles | gradients: G-PT / PT |", "|---|---|---|---|---|"]
+    for scene in order:
+        path, gradient, cycles = (sample_cost(table[scene][f"{m}@4"]) for m in ("path", "gradient-none", "cycles"))
+        against_cycles = path / cycles if path and cycles else None
+        overhead = gradient / path if gradient and path else None
+        text.append(f"| {scene} | {number(path)} | {number(cycles)} | {number(against_cycles)} | {number(overhead)} |")
+    return text
+
+
+def details(scene: str, modes: dict) -> list[str]:
+    text = ["", f"## {scene}", "", f"![error against CPU time]({plot(scene, modes)})", ""]
+    if picture := strip(scene):
+        text += [f"![{', '.join(NAMES.get(m, m) for m in STRIP)}]({picture})", ""]
+        text += [f"*{STRIP_SAMPLES} samples, from left to right: {', '.join(NAMES.get(m, m) for m in STRIP)}.*", ""]
+    text += ["| mode | spp | seeds | CPU-s | wall s | relMSE | lowest–highest | relMSE-t | SMAPE |", "|---|---|---|---|---|---|---|---|---|"]
+    for mode in NAMES:
+        for samples, rows in sorted(modes.get(mode, {}).items()):
+            errors = [r["relmse"] for r in rows]
+            median = {k: float(np.median([r[k] for r in rows])) for k in ("cpu", "wall", "relmse", "relmse_trimmed", "smape")}
+            text.append(
+                f"| {NAMES[mode]} | {samples} | {len(rows)} | {median['cpu']:.2f} | {median['wall']:.2f} | {median['relmse']:.5f} "
+                f"| {min(errors):.5f}–{max(errors):.5f} | {median['relmse_trimmed']:.5f} | {median['smape']:.4f} |"
+            )
+    return text
+
+
+def agreement() -> list[str]:
+    """What agreement.py measured, if it was run."""
+    file = FOLDER / "agreement.json"
+    if not file.exists():
+        return []
+    text = ["", "## Agreement with Cycles (A9)", "", "| scene | blocks that agree | ratio of means | named difference |", "|---|---|---|---|"]
+    for name, row in json.loads(file.read_text()).items():
+        text.append(f"| {name} | {100 * row['share']:.1f} % | {row['ratio']:.4f} | {row['reason']} |")
+    return text
+
+
 def main() -> None:
     table = load()
-    text = [(FOLDER / "preface.md").read_text().rstrip(), "", "## Summary", ""]
-    text += ["| scene | R of L2 | R of L1 | slope PT | slope L2 | µs per sample PT | Cycles | PT/Cycles | shifts: G-PT/PT |"]
-    text += ["|---|---|---|---|---|---|---|---|---|"]
     order = [s.name for s in SCENES if s.name in table]
+    text = [(FOLDER / "preface.md").read_text().rstrip(), ""] + summary(table, order) + speed(table, order) + agreement()
     for scene in order:
-        modes = table[scene]
-        cost = {m: sample_cost(modes[m]) if m in modes else None for m in NAMES}
-        against_cycles = cost["path"] / cost["cycles"] if cost["path"] and cost["cycles"] else None
-        overhead = cost["gradient-l2"] / cost["path"] if cost["gradient-l2"] and cost["path"] else None
-        text.append(
-            f"| {scene} | {number(ratio(modes, 'gradient-l2', 'path'))} | {number(ratio(modes, 'gradient-l1', 'path'))} "
-            f"| {number(slope(curve(modes['path'])) if 'path' in modes else None)} "
-            f"| {number(slope(curve(modes['gradient-l2'])) if 'gradient-l2' in modes else None)} "
-            f"| {number(cost['path'])} | {number(cost['cycles'])} | {number(against_cycles)} | {number(overhead)} |"
-        )
-    for scene in order:
-        modes = table[scene]
-        text += ["", f"## {scene}", "", f"![error against CPU time]({plot(scene, modes)})", ""]
-        text += ["| mode | spp | seeds | CPU-s | relMSE | lowest–highest | relMSE-t | SMAPE |", "|---|---|---|---|---|---|---|---|"]
-        for mode in NAMES:
-            for samples, rows in sorted(modes.get(mode, {}).items()):
-                errors = [r["relmse"] for r in rows]
-                median = {k: float(np.median([r[k] for r in rows])) for k in ("cpu", "relmse", "relmse_trimmed", "smape")}
-                text.append(
-                    f"| {NAMES[mode]} | {samples} | {len(rows)} | {median['cpu']:.2f} | {median['relmse']:.5f} "
-                    f"| {min(errors):.5f}–{max(errors):.5f} | {median['relmse_trimmed']:.5f} | {median['smape']:.4f} |"
-                )
+        text += details(scene, table[scene])
     (FOLDER / "README.md").write_text("\n".join(text) + "\n")
     print(FOLDER / "README.md")
 

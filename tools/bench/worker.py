@@ -1,7 +1,8 @@
 """Renders jobs of the benchmark inside the Python module bpy: one process per scene, so that modes interleave in one run.
 
 Reads one JSON job per line from standard input, answers with one JSON line prefixed by RESULT:
-  {"mode": "gradient-l2", "samples": 16, "seed": 3, "out": "x.npy"}  ->  {"cpu": 1.2, "wall": 0.7, "stats": {...}}
+  {"mode": "gradient-l2", "samples": 16, "seed": 3, "out": "x.npy"}  ->  {"cpu": 1.2, "wall": 0.7}
+A job with "bounces" replaces all bounce limits of the file.
 The image is stored as float32 (height, width, 3), top row first. CPU seconds are those of the whole process during the operator:
 export, build, sampling, reconstruction, and writing a small file.
 """
@@ -29,6 +30,10 @@ GRADUS_MODES = {
     "gradient-l2": ("GRADIENT", "L2"),
     "gradient-l1": ("GRADIENT", "L1"),
 }
+CYCLES_DEFAULTS = (
+    "use_adaptive_sampling", "adaptive_threshold", "use_guiding", "use_light_tree", "blur_glossy", "sample_clamp_direct",
+    "sample_clamp_indirect", "pixel_filter_type", "filter_width",
+)  # fmt: skip
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces")
 
 
@@ -53,10 +58,12 @@ def set_cycles(scene: bpy.types.Scene, job: dict) -> None:
     cycles.use_denoising = job["mode"] == "cycles-denoised"
     if cycles.use_denoising:
         cycles.denoiser, cycles.denoising_prefilter, cycles.denoising_input_passes = "OPENIMAGEDENOISE", "ACCURATE", "RGB_ALBEDO_NORMAL"
-    cycles.use_adaptive_sampling = cycles.use_guiding = False
-    cycles.use_light_tree = True
-    cycles.blur_glossy = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-    cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 1.5
+    for name in CYCLES_DEFAULTS:
+        cycles.property_unset(name)
+    if job["mode"] != "cycles-default":
+        cycles.use_adaptive_sampling = cycles.use_guiding = False
+        cycles.blur_glossy = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    set_bounces(cycles, scene.cycles, job)
 
 
 def set_gradus(scene: bpy.types.Scene, job: dict) -> None:
@@ -64,8 +71,17 @@ def set_gradus(scene: bpy.types.Scene, job: dict) -> None:
     scene.render.engine = "GRADUS"
     settings.samples, settings.seed, settings.noise_threshold = job["samples"], job["seed"], 0.0
     settings.integrator, settings.reconstruction = GRADUS_MODES[job["mode"]]
+    set_bounces(settings, scene.cycles, job)
+
+
+def set_bounces(target: bpy.types.PropertyGroup, cycles: bpy.types.PropertyGroup, job: dict) -> None:
+    """The limits of the file, or the job's one limit for all kinds."""
     for name in BOUNCES:
-        setattr(settings, name, getattr(scene.cycles, name))
+        stored = FILE_BOUNCES.setdefault(name, getattr(cycles, name))
+        setattr(target, name, job.get("bounces", stored))
+
+
+FILE_BOUNCES: dict[str, int] = {}  # as the file has them, before the first job
 
 
 def render(job: dict, folder: Path) -> dict:
