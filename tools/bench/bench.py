@@ -2,9 +2,10 @@
 
     bench.py [--scenes a,b] [--minutes 60] [--quick] [--references-only]
 
-Besides the modes, each scene has a few runs with four bounces, for the CPU time per sample alone (no error is measured there). Every run is appended to docs/benchmark/results.jsonl with the version that made it, so that a benchmark can be interrupted and resumed;
-what is there already for this version is not run again. References (each engine against its own converged image, variance of the reference
-subtracted) are cached in the user's cache folder. Report: report.py.
+Besides the modes, each scene has a few runs with four bounces, for the CPU time per sample alone (no error is measured there).
+Every run is appended to docs/benchmark/results.jsonl with the version that made it, so that a benchmark can be interrupted and resumed;
+what is there already for this version is not run again. References (each engine against its own converged image, variance of the
+reference subtracted) are cached in the user's cache folder. Report: report.py.
 """
 
 from __future__ import annotations

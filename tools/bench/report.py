@@ -83,6 +83,10 @@ def number(value: float | None, form: str = ".2f") -> str:
     return "–" if value is None else format(value, form)
 
 
+def header(*columns: str) -> list[str]:
+    return [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
+
+
 def ratio(modes: dict, a: str, b: str) -> float | None:
     return equal_time_ratio(curve(modes[a]), curve(modes[b])) if a in modes and b in modes else None
 
@@ -103,7 +107,7 @@ def strip(scene: str) -> str | None:
 
 
 def summary(table: dict, order: list[str]) -> list[str]:
-    text = ["## Error at equal CPU time", "", "| scene | R of L2 | R of L1 | R of Cycles | slope PT | slope L2 |", "|---|---|---|---|---|---|"]
+    text = ["## Error at equal CPU time", ""] + header("scene", "R of L2", "R of L1", "R of Cycles", "slope PT", "slope L2")
     for scene in order:
         modes = table[scene]
         slopes = [number(slope(curve(modes[m])) if m in modes else None) for m in ("path", "gradient-l2")]
@@ -114,7 +118,7 @@ def summary(table: dict, order: list[str]) -> list[str]:
 
 def speed(table: dict, order: list[str]) -> list[str]:
     text = ["", "## CPU time of a sample with four bounces", ""]
-    text += ["| scene | PT, µs | Cycles, µs | PT / Cycles | gradients: G-PT / PT |", "|---|---|---|---|---|"]
+    text += header("scene", "PT, µs", "Cycles, µs", "PT / Cycles", "gradients: G-PT / PT")
     for scene in order:
         path, gradient, cycles = (sample_cost(table[scene][f"{m}@4"]) for m in ("path", "gradient-none", "cycles"))
         against_cycles = path / cycles if path and cycles else None
@@ -128,7 +132,7 @@ def details(scene: str, modes: dict) -> list[str]:
     if picture := strip(scene):
         text += [f"![{', '.join(NAMES.get(m, m) for m in STRIP)}]({picture})", ""]
         text += [f"*{STRIP_SAMPLES} samples, from left to right: {', '.join(NAMES.get(m, m) for m in STRIP)}.*", ""]
-    text += ["| mode | spp | seeds | CPU-s | wall s | relMSE | lowest–highest | relMSE-t | SMAPE |", "|---|---|---|---|---|---|---|---|---|"]
+    text += header("mode", "spp", "seeds", "CPU-s", "wall s", "relMSE", "lowest–highest", "relMSE-t", "SMAPE")
     for mode in NAMES:
         for samples, rows in sorted(modes.get(mode, {}).items()):
             errors = [r["relmse"] for r in rows]
@@ -145,7 +149,7 @@ def agreement() -> list[str]:
     file = FOLDER / "agreement.json"
     if not file.exists():
         return []
-    text = ["", "## Agreement with Cycles (A9)", "", "| scene | blocks that agree | ratio of means | named difference |", "|---|---|---|---|"]
+    text = ["", "## Agreement with Cycles (A9)", ""] + header("scene", "blocks that agree", "ratio of means", "named difference")
     for name, row in json.loads(file.read_text()).items():
         text.append(f"| {name} | {100 * row['share']:.1f} % | {row['ratio']:.4f} | {row['reason']} |")
     return text
