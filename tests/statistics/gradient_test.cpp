@@ -147,6 +147,30 @@ TEST_P(Scenarios, B7_UnequalCounts) {
   dy.check("dy");
 }
 
+// A cancel between tiles leaves pairs whose ends took different numbers of samples; their gradients kept the norm of whole batches and
+// came out too small.
+TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
+  DifferenceStatistics dx;
+  DifferenceStatistics dy;
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    const IntegratorContext c = context(700 + seed);
+    Frame frame = test::make_test_frame(c.settings, true);
+    const auto integrator = make_gradient_integrator(c);
+    const std::atomic<bool> stop{false};
+    test::sample_frame(*integrator, 0, 16, &frame);
+    for (int32_t y = 0; y < static_cast<int32_t>(kHeight); ++y) {
+      for (int32_t x = y % 2; x < static_cast<int32_t>(kWidth); x += 2) {  // every other pixel, so that every pair is cut
+        integrator->sample(WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, &frame, &frame.counters, stop);
+      }
+    }
+    const GradientImages images = read_images(frame, 0, false);
+    dx.add(images, true);
+    dy.add(images, false);
+  }
+  dx.check("dx");
+  dy.check("dy");
+}
+
 // L3: split into batches and tiles, in any order: the same bits.
 TEST_P(Scenarios, L3_BatchesAndTilesDoNotMatter) {
   const IntegratorContext c = context(3, false);

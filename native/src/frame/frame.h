@@ -2,7 +2,9 @@
 //
 // A pixel p keeps the gradient samples of its own four offsets (towards +x, +y, -x, -y), so that nothing is written across pixels and
 // the result does not depend on tiles or threads; dx and dy are merged when read:
-//   dx(p) = [ sum(p, +x) - sum(p + x, -x) ] / pair count      (contract 1.5: normalised by the counts of the pair, batch by batch)
+//   dx(p) = sum(p, +x) / pair_count(p, +x) - sum(p + x, -x) / pair_count(p + x, -x)
+// Each end of a pair is normalised by the samples that it has taken itself, so that a batch that was cut short in between (a cancel) gives
+// no gradient that is too small (contract 1.5: the weights are those of the batch's counts, and batches are combined by these).
 #pragma once
 
 #include <array>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "frame/sample_ranges.h"
 #include "gradus/gradus.h"
 
 namespace gradus {
@@ -72,12 +75,15 @@ class Frame {
   bool gradients;
   std::vector<ComponentPlanes> components;
   std::array<std::vector<uint32_t>, kHalves> count;  // samples of each pixel and half
-  // Pair normalisation, sum over batches of (m_p + m_q)/2, for the pairs p→right and p→up, per half.
-  std::array<std::array<std::vector<float>, 2>, kHalves> pair_count;
+  // What the gradient sums of a pixel's own samples are divided by: the sum over these of (m_p + m_q)/(2 m_p), m the counts of the batch;
+  // after whole batches the sum over batches of (m_p + m_q)/2, the same at both ends of a pair.
+  std::array<std::array<std::vector<float>, kOffsets>, kHalves> pair_count;
   std::vector<PassPlane> passes;
   std::vector<float> fallback;  // samples that met a replaced node; empty unless asked for
   Counters counters;
 
+  // Sample numbers that were taken; of some pixels fewer, where tiles stopped early or the render was cancelled.
+  SampleRanges samples;
   // Keys of what was sampled (contract 7.2) and settings that reading needs.
   GradusSettings settings{};
   uint64_t scene_key = 0;

@@ -29,7 +29,8 @@ std::vector<float> read_primal(const Frame& frame, const ComponentPlanes& planes
   return image;
 }
 
-// Differences towards `offset` (kRight or kUp): own samples of the pair with +, the neighbour's of the way back with −.
+// Differences towards `offset` (kRight or kUp): own samples of the pair with +, the neighbour's of the way back with −. A pair with
+// samples at one end alone is absent.
 std::vector<float> read_difference(const Frame& frame, const ComponentPlanes& planes, Offset offset, HalfRange halves) {
   const Region& region = frame.region;
   std::vector<float> image(static_cast<size_t>(region.area()) * frame.channels, 0.0f);
@@ -42,14 +43,16 @@ std::vector<float> read_difference(const Frame& frame, const ComponentPlanes& pl
       }
       const size_t i = frame.index(x, y);
       const size_t n = frame.index(nx, ny);
-      Radiance sum(0.0f);
-      float count = 0.0f;
+      Radiance own(0.0f), other(0.0f);
+      float own_count = 0.0f, other_count = 0.0f;
       for (int h = halves.first; h < halves.last; ++h) {
-        sum += planes.gradient[h][offset][i] - planes.gradient[h][offset + 2][n];
-        count += frame.pair_count[h][offset][i];
+        own += planes.gradient[h][offset][i];
+        own_count += frame.pair_count[h][offset][i];
+        other += planes.gradient[h][offset + 2][n];
+        other_count += frame.pair_count[h][offset + 2][n];
       }
-      for (int c = 0; c < frame.channels && count > 0.0f; ++c) {
-        image[i * frame.channels + c] = sum[c] / count;
+      for (int c = 0; c < frame.channels && own_count > 0.0f && other_count > 0.0f; ++c) {
+        image[i * frame.channels + c] = own[c] / own_count - other[c] / other_count;
       }
     }
   }

@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 constexpr int kMaxSide = 1 << 16;
 constexpr int kBlockRows = 16;  // of the ZIP compression: blocks are written whole
 constexpr const char* kAttribute = "gradus";
@@ -47,6 +47,18 @@ Counters counters_from_json(const json& j) {
   return counters;
 }
 
+json ranges_to_json(const SampleRanges& ranges) {
+  json list = json::array();
+  for (const SampleRange& r : ranges.list()) list.push_back({r.begin, r.end});
+  return list;
+}
+
+SampleRanges ranges_from_json(const json& j) {
+  std::vector<SampleRange> list;
+  for (const json& r : j) list.push_back({r.at(0).get<uint32_t>(), r.at(1).get<uint32_t>()});
+  return SampleRanges(std::move(list));
+}
+
 json describe(const Frame& frame) {
   return {{"format", kFormat},
           {"version", gradus_version_text()},
@@ -57,6 +69,7 @@ json describe(const Frame& frame) {
           {"sampling_key", hex(sampling_key(frame.settings))},
           {"scene_key", hex(frame.scene_key)},
           {"settings", settings_to_json(frame.settings)},
+          {"samples", ranges_to_json(frame.samples)},
           {"counters", counters_to_json(frame.counters)}};
 }
 
@@ -151,6 +164,7 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   frame.frame_number = description.at("frame");
   frame.scene_key = std::stoull(description.at("scene_key").get<std::string>(), nullptr, 16);
   frame.counters = counters_from_json(description.at("counters"));
+  frame.samples = ranges_from_json(description.at("samples"));
   frame.passes = make_pass_planes(settings.passes, size_t(region.area()));
   if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame.fallback.assign(size_t(region.area()), 0.0f);
   return frame;

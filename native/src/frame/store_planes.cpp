@@ -7,7 +7,6 @@ namespace {
 
 constexpr const char* kHalfNames[kHalves] = {"A", "B"};
 constexpr const char* kOffsetNames[kOffsets] = {"right", "up", "left", "down"};
-constexpr const char* kAxisNames[2] = {"right", "up"};
 constexpr const char* kColorNames[4] = {"R", "G", "B", "A"};
 constexpr const char* kVectorNames[4] = {"X", "Y", "Z", "W"};
 
@@ -52,7 +51,7 @@ std::vector<StoredPlane> stored_planes(Frame* frame) {
       for (int o = 0; o < kOffsets; ++o) list.radiance(name + "." + kOffsetNames[o], &frame->components[c].gradient[half][o]);
     }
     list.counts("count." + h, &frame->count[half]);
-    for (int axis = 0; axis < 2; ++axis) list.floats("pairs." + h + "." + kAxisNames[axis], &frame->pair_count[half][axis]);
+    for (int o = 0; o < kOffsets; ++o) list.floats("pairs." + h + "." + kOffsetNames[o], &frame->pair_count[half][o]);
   }
   for (PassPlane& plane : frame->passes) {
     for (uint32_t c = 0; c < plane.channels; ++c) {

@@ -124,7 +124,7 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
 uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings) {
   // Per half: the primal, and in a gradient render four offsets; then counts, and pair counts.
   uint64_t bytes = kHalves * sizeof(Radiance) * (plan.gradients ? 1 + kOffsets : 1);
-  bytes += kHalves * (sizeof(uint32_t) + (plan.gradients ? 2 * sizeof(float) : 0));
+  bytes += kHalves * (sizeof(uint32_t) + (plan.gradients ? kOffsets * sizeof(float) : 0));
   bytes += pass_bytes_per_pixel(settings.passes);
   if (wants(settings.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
   // Images read for the solver, its work planes, the result.

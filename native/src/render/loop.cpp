@@ -125,6 +125,7 @@ void RenderLoop::sample() {
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end, noise); begin = end) {
+    frame_->samples.add({input_.settings.first_sample + begin, input_.settings.first_sample + end});
     const std::vector<uint32_t> map = noise.any_done() ? noise.count_map(end - begin) : std::vector<uint32_t>();
     run_batch(begin, end, map.empty() ? nullptr : &map);
     if (cancel()) break;

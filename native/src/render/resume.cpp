@@ -1,5 +1,6 @@
 #include "render/resume.h"
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -35,11 +36,6 @@ bool same_planes(const Frame& a, const Frame& b) {
   return true;
 }
 
-bool overlap(const GradusSettings& a, const GradusSettings& b) {
-  const uint64_t end_a = uint64_t(a.first_sample) + a.samples, end_b = uint64_t(b.first_sample) + b.samples;
-  return a.first_sample < end_b && b.first_sample < end_a;
-}
-
 }  // namespace
 
 uint32_t resumed_samples(const Frame& frame) {
@@ -59,6 +55,8 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
   if (!same(frame.region, plan.sampled) || frame.settings.first_sample != settings.first_sample) {
     throw invalid_argument("the frame has another region or first sample");
   }
+  const std::string gap = frame.samples.first_gap(settings.first_sample);
+  if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
   if (frame.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
   if (resumed_samples(frame) > settings.samples) throw invalid_argument("the frame has more samples than are asked for");
 }
@@ -71,7 +69,7 @@ void merge_frames(Frame* frame, const Frame& other) {
       frame->components.size() != other.components.size() || !same_planes(*frame, other)) {
     throw invalid_argument("the frames differ in size or planes");
   }
-  if (overlap(frame->settings, other.settings)) throw invalid_argument("the frames share samples: first_sample must differ");
+  if (frame->samples.overlap(other.samples)) throw invalid_argument("the frames share samples: first_sample must differ");
   const bool other_is_first = other.settings.first_sample < frame->settings.first_sample;
   for (int half = 0; half < kHalves; ++half) {
     for (size_t c = 0; c < frame->components.size(); ++c) {
@@ -79,7 +77,7 @@ void merge_frames(Frame* frame, const Frame& other) {
       for (int o = 0; o < kOffsets; ++o) add(&frame->components[c].gradient[half][o], other.components[c].gradient[half][o]);
     }
     add(&frame->count[half], other.count[half]);
-    for (int axis = 0; axis < 2; ++axis) add(&frame->pair_count[half][axis], other.pair_count[half][axis]);
+    for (int o = 0; o < kOffsets; ++o) add(&frame->pair_count[half][o], other.pair_count[half][o]);
   }
   for (size_t i = 0; i < frame->passes.size(); ++i) {
     if (frame->passes[i].first_sample_only && other_is_first) frame->passes[i] = other.passes[i];
@@ -87,9 +85,9 @@ void merge_frames(Frame* frame, const Frame& other) {
   }
   add(&frame->fallback, other.fallback);
   frame->counters.add(other.counters);
-  // Ranges with a hole between them count as one: only their sum matters from now on.
+  for (const SampleRange& range : other.samples.list()) frame->samples.add(range);
   if (other_is_first) frame->settings.first_sample = other.settings.first_sample;
-  frame->settings.samples += other.settings.samples;
+  frame->settings.samples = uint32_t(std::min<uint64_t>(frame->samples.total(), UINT32_MAX));
 }
 
 }  // namespace gradus

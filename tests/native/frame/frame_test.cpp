@@ -26,19 +26,22 @@ TEST(B6_Gate, NonFiniteSamplesStayOutAndAreCounted) {
   }
 }
 
-// Differences come from the pair's own samples and the way back, over their common count.
-TEST(Frame, MergesPairsByTheirCount) {
+// Differences come from the pair's own samples and the way back, each over its count.
+TEST(Frame, MergesPairsByTheirCounts) {
   Frame frame = small_frame();
   const size_t p = frame.index(1, 1);
   const size_t q = frame.index(2, 1);
   frame.components[0].gradient[0][kRight][p] = Radiance(6.0f);
   frame.components[0].gradient[0][kLeft][q] = Radiance(-2.0f);
-  frame.pair_count[0][0][p] = 4.0f;
+  frame.pair_count[0][kRight][p] = 4.0f;
+  frame.pair_count[0][kLeft][q] = 1.0f;
   const GradientImages images = read_images(frame, 0, true);
-  EXPECT_FLOAT_EQ(images.dx[3 * p], 2.0f);
-  EXPECT_FLOAT_EQ(images.dx_half[0][3 * p], 2.0f);
+  EXPECT_FLOAT_EQ(images.dx[3 * p], 3.5f);
+  EXPECT_FLOAT_EQ(images.dx_half[0][3 * p], 3.5f);
   EXPECT_EQ(images.dx_half[1][3 * p], 0.0f);
   EXPECT_EQ(images.dx[3 * q], 0.0f);
+  frame.pair_count[0][kLeft][q] = 0.0f;  // seen from one end alone: absent
+  EXPECT_EQ(read_images(frame, 0, false).dx[3 * p], 0.0f);
 }
 
 TEST(Frame, LastColumnAndRowHaveNoDifference) {

@@ -48,6 +48,8 @@ TEST_F(F6_Store, RoundTripIsExact) {
   const auto back = load_frame(path());
   EXPECT_TRUE(same_samples(*frame, *back));
   EXPECT_EQ(frame->fallback, back->fallback);
+  EXPECT_EQ(frame->samples, back->samples);
+  EXPECT_EQ(back->samples.list(), (std::vector<SampleRange>{{0, 8}}));
   EXPECT_EQ(back->scene_key, frame->scene_key);
   EXPECT_EQ(back->frame_number, -7);
   EXPECT_EQ(back->counters.rays_primary, frame->counters.rays_primary);

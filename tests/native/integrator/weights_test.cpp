@@ -30,7 +30,7 @@ Densities random_densities(std::mt19937* random) {
 // PairCount works on C = f/(sum of densities); `own` is the base's count.
 double weight(const PairCount& pair, float r, double share) {
   const Radiance with_base = pair.paired(Radiance(1.0f), Radiance(0.0f), r);
-  return -double(with_base.x) * pair.own / pair.norm() * share;
+  return -double(with_base.x) / pair.weight() * share;
 }
 
 TEST(B8_Weights, TechniquesAndDirectionsSumToOne) {
@@ -47,14 +47,14 @@ TEST(B8_Weights, TechniquesAndDirectionsSumToOne) {
     const double there = weight(forward, r, bsdf_share) + weight(forward, r, 1.0 - bsdf_share);
     // The same coefficient from base paths y: the shifted-back contribution, C(x)·(1/r), at density y.
     const Radiance shifted = backward.paired(Radiance(0.0f), Radiance(1.0f), 1.0f / r);
-    const double back = double(shifted.x) * backward.own / backward.norm() * r;
+    const double back = double(shifted.x) / backward.weight() * r;
     EXPECT_NEAR(there + back, 1.0, 2e-6);
   }
 }
 
 TEST(B8_Weights, FailedShiftCountsTheBaseAlone) {
   const PairCount pair{3.0f, 2.0f};
-  EXPECT_FLOAT_EQ(pair.unpaired(Radiance(1.0f)).x * pair.own / pair.norm(), -1.0f);
+  EXPECT_FLOAT_EQ(pair.unpaired(Radiance(1.0f)).x / pair.weight(), -1.0f);
 }
 
 // Swapping base and offset negates the gradient that is estimated: the samples of both ends are opposite.

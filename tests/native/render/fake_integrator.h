@@ -80,7 +80,7 @@ struct FakeIntegrator final : Integrator {
       if (!frame->region.contains(nx, ny) || count_at(unit, *frame, nx, ny) == 0) continue;
       const float d = 0.5f * (fake_truth(nx, ny) - fake_truth(x, y));
       frame->components[0].gradient[half][o][i] += Radiance(d, 0.5f * d, 2.0f * d, 0.0f);
-      if (o == kRight || o == kUp) frame->pair_count[half][o][i] += 1.0f;
+      frame->pair_count[half][o][i] += 1.0f;
     }
   }
 };

@@ -95,6 +95,39 @@ TEST(L3_Merge, AddsTheSamplesOfTwoRanges) {
   EXPECT_THROW(merge_frames(&again, *whole), Error);  // the same samples
 }
 
+std::shared_ptr<const Frame> rendered_range(uint32_t first, uint32_t count) {
+  GradusSettings settings = small_settings(40, 30, count);
+  settings.first_sample = first;
+  return rendered(settings);
+}
+
+// Only the sum of the sample counts was kept: samples 32 to 47 went in twice.
+TEST(L3_Merge, RangesWithAHoleStayApart) {
+  Frame merged = *rendered_range(0, 16);
+  merge_frames(&merged, *rendered_range(32, 16));
+  EXPECT_EQ(merged.samples.list(), (std::vector<SampleRange>{{0, 16}, {32, 48}}));
+  EXPECT_THROW(merge_frames(&merged, *rendered_range(40, 8)), Error);
+  EXPECT_EQ(failure_of(small_settings(40, 30, 64), std::make_shared<const Frame>(merged)),
+            "the frame lacks samples 16 to 31: render and merge these first");
+  merge_frames(&merged, *rendered_range(16, 16));
+  EXPECT_EQ(merged.samples.list(), (std::vector<SampleRange>{{0, 48}}));
+  const auto resumed = rendered(small_settings(40, 30, 64), std::make_shared<const Frame>(merged));
+  EXPECT_EQ(resumed->count, rendered_range(0, 64)->count);
+  EXPECT_EQ(resumed->samples.list(), (std::vector<SampleRange>{{0, 64}}));
+}
+
+// A time limit ends a frame before the samples that were asked for: what counts is what it has.
+TEST(L3_Merge, AFrameThatEndedEarlyLeavesItsOtherSamplesFree) {
+  GradusSettings settings = small_settings(40, 30, 1u << 20);
+  settings.time_limit = 0.02f;
+  Frame early = *rendered(settings);
+  const uint32_t end = early.samples.list().front().end;
+  ASSERT_LT(end, 1u << 20);
+  settings.first_sample = end;
+  EXPECT_NO_THROW(merge_frames(&early, *rendered(settings)));
+  EXPECT_EQ(early.samples.list().size(), 1u);
+}
+
 TEST(L3_Border, SamplesOfARegionAreThoseOfTheFullFrame) {
   GradusSettings settings = small_settings(160, 120, 8);
   const auto full = start(settings);

@@ -32,20 +32,6 @@ std::array<PairCount, kOffsets> pair_counts(const WorkUnit& unit, const Frame& f
   return pairs;
 }
 
-// Normalisation of the pairs that this batch adds to, for the pixels of the tile.
-void add_pair_counts(const WorkUnit& unit, Frame* frame) {
-  for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
-    for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
-      for (int half = 0; half < kHalves; ++half) {
-        const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, x, y, half);
-        for (int axis = 0; axis < 2; ++axis) {
-          frame->pair_count[half][axis][frame->index(x, y)] += pairs[axis].present() ? pairs[axis].norm() : 0.0f;
-        }
-      }
-    }
-  }
-}
-
 class GradientIntegrator final : public Integrator {
  public:
   explicit GradientIntegrator(const IntegratorContext& context)
@@ -53,10 +39,10 @@ class GradientIntegrator final : public Integrator {
 
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto worker = std::make_unique<Worker>(path_, frame, counters);
-    add_pair_counts(unit, frame);
     for_each_sample(path_, unit, *frame, stop, [&](const PixelSample& s) {
       worker->recorder.begin_sample(s.pixel, s.number == path_.settings.first_sample);
-      worker->offsets.start(pair_counts(unit, *frame, s.x, s.y, s.half));
+      const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, s.x, s.y, s.half);
+      worker->offsets.start(pairs);
       add_primal(worker->tracer.trace(s.sampler, s.film), s, frame, counters);
       for (int k = 0; k < kOffsets; ++k) {
         Radiance gradient = worker->offsets.gradient(k);
@@ -64,6 +50,7 @@ class GradientIntegrator final : public Integrator {
           gradient.w = 0.0f;
         }
         add_gradient(gradient, &frame->components[0].gradient[s.half][k][s.pixel], counters);
+        frame->pair_count[s.half][k][s.pixel] += pairs[k].weight();
       }
     });
   }
