@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from . import file_check
 from .failure import Failure
 
 MARGIN_BYTES = 1 << 20
@@ -34,18 +34,18 @@ def require_space(path: str, needed: int) -> None:
 
 
 def require_whole(path: str) -> None:
-    """Raises Failure if the file of the frame before is empty. One that is gone was moved by a script: that is no fault."""
+    """Raises Failure if the file of the frame before is cut short. One that is gone was moved by a script: that is no fault."""
     try:
-        size = os.path.getsize(path)
+        whole = file_check.is_whole(Path(path))
     except OSError:
         return
-    if size == 0:
-        raise Failure(f"the frame before was not written: {path} is empty")
+    if not whole:
+        raise Failure(f"the frame before was not written as a whole: {path}")
 
 
 @dataclass
 class FrameFiles:
-    """Follows the frames of one animation. `previous`: the file that must not be empty when the next frame starts."""
+    """Follows the frames of one animation. `previous`: the file that must be whole when the next frame starts."""
 
     previous: str = ""
 

@@ -6,8 +6,9 @@ import json
 from pathlib import Path
 from types import SimpleNamespace
 
+import bpy
 import pytest
-from gradus import frame_store, output, stats
+from gradus import file_check, frame_store, output, stats
 from gradus.failure import Failure, user_text
 
 
@@ -22,14 +23,36 @@ def test_f7_the_frame_before(tmp_path: Path) -> None:
     files = output.FrameFiles()
     files.before_frame(render, 1, 1)
     files.after_frame(render, 1)
-    (tmp_path / "1.png").write_bytes(b"x")
+    (tmp_path / "1.png").write_bytes(b"another format")
     files.before_frame(render, 2, 1)
     files.after_frame(render, 2)
     (tmp_path / "2.png").write_bytes(b"")
-    with pytest.raises(Failure, match="empty"):
+    with pytest.raises(Failure, match="not written as a whole"):
         files.before_frame(render, 3, 1)
     files.after_frame(render, 7)
     files.before_frame(render, 8, 1)  # moved away by a script
+
+
+def test_f7_a_frame_cut_short_is_found(tmp_path: Path, scene: bpy.types.Scene) -> None:
+    """Only empty files were found; a full disk cuts them anywhere."""
+    image = bpy.data.images.new("noise", 61, 47, float_buffer=True)
+    image.pixels.foreach_set([(7 * i % 101) / 100 for i in range(61 * 47 * 4)])
+    codecs = ("ZIP", "ZIPS", "PIZ", "RLE", "NONE", "DWAA")
+    formats = [("PNG", None), ("JPEG", None), *(("OPEN_EXR", codec) for codec in codecs), ("OPEN_EXR_MULTILAYER", "ZIP")]
+    for name, codec in formats:
+        scene.render.image_settings.file_format = name
+        if codec:
+            scene.render.image_settings.exr_codec = codec
+        path = tmp_path / f"{name}.{codec}"
+        image.save_render(str(path), scene=scene)
+        data = path.read_bytes()
+        assert file_check.is_whole(path), (name, codec)
+        for length in (0, 5, 20, len(data) // 3, len(data) - 1):
+            path.write_bytes(data[:length])
+            assert not file_check.is_whole(path), (name, codec, length)
+        if codec:
+            path.write_bytes(data[:400] + bytes(len(data) - 400))  # its size was reserved and nothing followed
+            assert not file_check.is_whole(path), (name, codec)
 
 
 def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:

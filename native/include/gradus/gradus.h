@@ -495,8 +495,9 @@ GRADUS_API GradusError gradus_render_frame(GradusRender render, GradusFrame* fra
 
 GRADUS_API GradusError gradus_frame_save(GradusFrame frame, const char* path);
 GRADUS_API GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame* frame);
-/* Adds the samples of `other` (same size, scene and settings key, other sample range) to `frame`. Equal to rendering them together up to
- * float rounding of the sums; bit equality needs gradus_render_resume. */
+/* Adds the samples of `other` (same size, scene and settings key, other sample numbers) to `frame`. Equal to rendering them together up to
+ * float rounding of the sums; bit equality needs gradus_render_resume. Numbers in between may be missing, and be added later; a render
+ * does not go on from such a frame. */
 GRADUS_API GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other);
 /* Size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height);
