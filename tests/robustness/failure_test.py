@@ -109,3 +109,18 @@ def test_i2_a_rerun_completes_the_job(blender: Callable[..., Outcome], tmp_path:
         one, other = (images.read(folder / name) for folder in (broken, whole))
         assert one.keys() == other.keys()
         assert all(np.array_equal(one[key], other[key]) for key in one)
+
+
+@pytest.mark.parametrize("kind", ["PNG", "OPEN_EXR_MULTILAYER"])
+def test_f7_a_frame_cut_short_by_a_full_disk_ends_the_job(blender: Callable[..., Outcome], tmp_path: Path, kind: str) -> None:
+    cut = """
+import os
+def cut(scene, *_):
+    path = scene.render.frame_path(frame=scene.frame_current)
+    os.truncate(path, os.path.getsize(path) // 2)
+bpy.app.handlers.render_write.append(cut)
+"""
+    outcome = animate(blender, tmp_path, cut, range(1, 4), kind=kind)
+    assert outcome.code == 1, outcome.output
+    assert "the frame before was not written as a whole" in outcome.output
+    assert len(files(tmp_path)) == 1
