@@ -1,28 +1,25 @@
-// L1 by iteratively reweighted least squares: minimises Σ α‖x−I‖ + ‖Dx−g‖ with the norm of a pixel's RGB (thesis eq. 5.13 with k = 1).
-// Consistent, not unbiased; darkens slightly at few samples.
+// L1: the minimiser decides about differences, the noisy image about means (twicing). Consistent, not unbiased.
 #pragma once
 
-#include <memory>
-
-#include "reconstruct/multigrid.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/l1_minimiser.h"
+#include "reconstruct/twicing.h"
 
 namespace gradus {
 
 class L1Solver final : public LinearOperator {
  public:
-  // Estimates the weights from the first three channels of `images`, which share them, and freezes them.
-  L1Solver(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
+  // Estimates all weights from the first three channels of `images`, which share them, and freezes them.
+  L1Solver(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report)
+      : minimiser_(images, alpha, cancel, report), twicing_(images, minimiser_.solution(), alpha) {}
 
   void apply(const PoissonPlanes& planes, float* out) const override;
-  // The solution for the channels that the weights come from, at no further cost; `stride` floats from pixel to pixel.
-  void read_solution(float* out, size_t stride) const;
-  int solved_channels() const { return solution_.channels(); }
+  int solved_channels() const { return minimiser_.solution().channels(); }
+  // What apply() gives for one of these channels of the images that the weights come from, at hardly a cost.
+  void read_solution(const PoissonPlanes& planes, int channel, float* out) const;
 
  private:
-  Multigrid multigrid_;  // holds the weights
-  Field solution_;
-  float alpha_;
+  L1Minimiser minimiser_;
+  Twicing twicing_;
 };
 
 }  // namespace gradus

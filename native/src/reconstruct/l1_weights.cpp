@@ -12,11 +12,6 @@ namespace {
 // Enough pixels for a median within a fraction of a percent.
 constexpr size_t kMedianSamples = 1 << 16;
 
-// Floor of the data rows. Noise of the primal is skewed, and its median lies below its mean: with a data term that is quadratic for
-// ordinary noise, and linear for fireflies only, the image darkens half as much (0.3 % instead of 0.6 % on the Cornell box at 64 samples)
-// for a relative error that is 2 to 14 % higher (measured).
-constexpr float kDataFloor = 0.3f;
-
 struct RowNorm {
   float factor;  // 1 / (channels · scale²)
   float floor_squared;
@@ -72,7 +67,7 @@ void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, 
   const int w = x.width(), h = x.height(), channels = x.channels();
 
   const RowNorm norm{1.0f / (static_cast<float>(channels) * scale * scale), floor * floor};
-  const RowNorm data_norm{norm.factor * alpha * alpha, std::max(norm.floor_squared, kDataFloor * kDataFloor)};
+  const RowNorm data_norm{norm.factor * alpha * alpha, norm.floor_squared};
   for_rows(h, [&](int y) {
     float *data = system->data.row(y), *right = system->right.row(y), *up = system->up.row(y);
     for (float* sums : {data, right, up}) std::fill_n(sums, w, 0.0f);

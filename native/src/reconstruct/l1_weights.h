@@ -19,8 +19,7 @@ L1Planes load_planes(const PoissonPlanes& planes, int width, int height, int cha
 float robust_scale(const L1Planes& planes);
 
 // Weights 1/√(e² + floor²) of every row of the system at x, e being the row's residual over the scale: the Huber floor keeps the systems
-// solvable, and less of it makes the result worse (measured); data rows have a higher one of their own. Rows that are not finite get
-// weight 0.
+// solvable, and less of it makes the result worse (measured). Rows that are not finite get weight 0.
 void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor, WeightedSystem* system);
 // W_d I + Dᵀ W_g g
 void right_side(const WeightedSystem& weights, const L1Planes& planes, Field* b);

@@ -5,12 +5,8 @@
 namespace gradus {
 namespace {
 
-// From channel `first` on.
-void apply_to_channels(const LinearOperator& solver, const GradientImages& images, int first, const CancelTest& cancel, float* result) {
-  for (int c = first; c < images.channels && !cancel(); ++c) {
-    const PoissonPlanes planes{images.primal.data() + c, images.dx.data() + c, images.dy.data() + c, size_t(images.channels)};
-    solver.apply(planes, result + c);
-  }
+PoissonPlanes planes_of(const GradientImages& images, int channel) {
+  return {images.primal.data() + channel, images.dx.data() + channel, images.dy.data() + channel, size_t(images.channels)};
 }
 
 }  // namespace
@@ -19,11 +15,17 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
                                SolveReport* report) {
   std::vector<float> result(images.primal.size());
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
-    apply_to_channels(*make_l2(images.width, images.height, alpha), images, 0, cancel, result.data());
+    const std::unique_ptr<LinearOperator> l2 = make_l2(images.width, images.height, alpha);
+    for (int c = 0; c < images.channels && !cancel(); ++c) l2->apply(planes_of(images, c), result.data() + c);
   } else if (reconstruction == GRADUS_RECONSTRUCTION_L1) {
-    const L1Solver solver(images, alpha, cancel, report);
-    solver.read_solution(result.data(), size_t(images.channels));
-    apply_to_channels(solver, images, solver.solved_channels(), cancel, result.data());  // alpha, by the same weights
+    const L1Solver l1(images, alpha, cancel, report);
+    for (int c = 0; c < images.channels && !cancel(); ++c) {
+      if (c < l1.solved_channels()) {
+        l1.read_solution(planes_of(images, c), c, result.data() + c);
+      } else {
+        l1.apply(planes_of(images, c), result.data() + c);  // alpha, by the same weights
+      }
+    }
   } else {
     throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   }

@@ -1,0 +1,96 @@
+#include "reconstruct/twicing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/types.h"
+#include "reconstruct/rows.h"
+
+namespace gradus {
+namespace {
+
+// Least side of the squares that share a bound: some times S's reach, which is 1/α = 5 pixels, and enough pixels for ln n = 7 outliers.
+constexpr int kLeastSide = 32;
+
+int square_count(int length) { return std::max(1, length / kLeastSide); }
+// Where a square begins; the one behind the last begins at `length`.
+int square_begin(int length, int square) { return static_cast<int>(int64_t(length) * square / square_count(length)); }
+
+// ‖I − x₀‖² of a pixel.
+float squared_residual(const GradientImages& images, const Field& estimate, int x, int y) {
+  const float* primal = images.primal.data() + (size_t(y) * images.width + x) * images.channels;
+  float sum = 0.0f;
+  for (int c = 0; c < estimate.channels(); ++c) {
+    const float e = primal[c] - estimate.row(y, c)[x];
+    sum += e * e;
+  }
+  return sum;
+}
+
+}  // namespace
+
+float outlier_bound_squared(std::vector<float>* squares) {
+  const float share = std::log(static_cast<float>(squares->size()));
+  if (!(share > 0.0f)) return kInfinity;
+  const auto most = static_cast<size_t>(std::ceil(share));
+  std::partial_sort(squares->begin(), squares->begin() + ptrdiff_t(most), squares->end(), std::greater<>());
+  // With the k largest beyond the bound, its square is the sum of the others over ln n − k. The least such k, summed from the smallest up.
+  double rest = 0.0, bound = 0.0;
+  for (size_t i = most; i < squares->size(); ++i) rest += (*squares)[i];
+  for (size_t k = most; k-- > 0;) {
+    rest += (*squares)[k];
+    const double candidate = rest / (share - static_cast<float>(k));
+    if ((*squares)[k] <= candidate) bound = candidate;
+  }
+  return static_cast<float>(bound);
+}
+
+Twicing::Twicing(const GradientImages& images, const Field& estimate, float alpha)
+    : weights_(images.width, images.height, 1), dct_(images.width, images.height), data_weight_(alpha * alpha) {
+  const int w = images.width, h = images.height;
+  for_rows(h, [&](int y) {
+    for (int x = 0; x < w; ++x) weights_.row(y)[x] = squared_residual(images, estimate, x, y);
+  });
+  for_rows(
+      square_count(h),
+      [&](int row) {
+        for (int i = 0; i < square_count(w); ++i) {
+          limit_square(square_begin(w, i), square_begin(w, i + 1), square_begin(h, row), square_begin(h, row + 1));
+        }
+      },
+      1);
+}
+
+void Twicing::limit_square(int x0, int x1, int y0, int y1) {
+  std::vector<float> squares;
+  for (int y = y0; y < y1; ++y) {
+    std::copy_if(weights_.row(y) + x0, weights_.row(y) + x1, std::back_inserter(squares), [](float e) { return is_finite(e); });
+  }
+  const float bound = outlier_bound_squared(&squares);
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      float& value = weights_.row(y)[x];
+      value = !is_finite(value) ? 0.0f : value > bound ? std::sqrt(bound / value) : 1.0f;
+    }
+  }
+}
+
+void Twicing::apply(const PoissonPlanes& planes, float* values) const {
+  const int w = weights_.width();
+  const size_t stride = planes.stride, step = size_t(w) * stride;
+  const auto fill = [&](int y, float* row) {
+    const float *weight = weights_.row(y), *primal = planes.primal + size_t(y) * step, *value = values + size_t(y) * step;
+    for (int x = 0; x < w; ++x, primal += stride, value += stride) {
+      row[x] = is_finite(*primal) ? data_weight_ * weight[x] * (*primal - *value) : 0.0f;
+    }
+  };
+  const auto take = [&](int y, const float* row) {
+    float* value = values + size_t(y) * step;
+    for (int x = 0; x < w; ++x, value += stride) *value += row[x];
+  };
+  const std::unique_ptr<float[]> work(new float[size_t(w) * weights_.height()]);
+  dct_.solve(data_weight_, fill, {}, take, work.get());
+}
+
+}  // namespace gradus
