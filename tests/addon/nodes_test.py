@@ -422,6 +422,42 @@ def test_displacement_is_named() -> None:
     assert len(translate(material).warnings) == 1
 
 
+def test_a_surface_around_a_volume_is_clear_and_not_black() -> None:
+    material = new_material("Fog")
+    tree = material.node_tree
+    volume = tree.nodes.new("ShaderNodeVolumePrincipled")
+    tree.links.new(volume.outputs[0], output_of(material).inputs["Volume"])
+    program = translate(material)
+    assert op_names(program) == ["TRANSPARENT"]
+    assert program.inputs[0][2][:3] == (1.0, 1.0, 1.0)
+    assert program.uses_fallback
+    assert program.warnings == ["Fog: volume is not supported yet and is left out"]
+
+
+def test_a_volume_inside_a_surface_leaves_the_surface() -> None:
+    material = new_material("Murky glass")
+    tree = material.node_tree
+    volume, glass = tree.nodes.new("ShaderNodeVolumeAbsorption"), tree.nodes.new("ShaderNodeBsdfGlass")
+    tree.links.new(volume.outputs[0], output_of(material).inputs["Volume"])
+    show(material, glass.outputs[0])
+    program = translate(material)
+    assert op_names(program) == ["GLASS"]
+    assert program.warnings == ["Murky glass: volume is not supported yet and is left out"]
+
+
+def test_the_volume_of_a_world_is_named() -> None:
+    world = bpy.data.worlds.new("Haze")
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = True
+    tree = world.node_tree
+    volume = tree.nodes.new("ShaderNodeVolumeScatter")
+    end = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeOutputWorld")
+    tree.links.new(volume.outputs[0], end.inputs["Volume"])
+    program = translate(world, "WORLD")
+    assert program.warnings == ["Haze: volume is not supported yet and is left out"]
+    assert op_names(program) == ["EMISSION"]
+
+
 def test_operations_are_those_of_the_header() -> None:
     sys.path.insert(0, str(ROOT / "tools" / "nodes"))
     import generate_ops

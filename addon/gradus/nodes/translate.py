@@ -94,7 +94,21 @@ def _walk(program: Program, tree: Any, resources: Any, version: tuple[int, ...],
     value = walker.input(surface, ())
     if value.kind == SHADER and not value.is_constant:
         program.surface = value.node
-    displacement = find_socket(output.inputs, "Displacement")
-    if kind == "SURFACE" and displacement is not None and walker.tree(()).source(displacement):
-        program.warn(f"{program.name}: displacement is not supported yet and is left out")
-        program.uses_fallback = True
+    if _is_fed(walker, output, "Volume"):
+        _leave_out(program, "volume")
+        if kind == "SURFACE" and program.surface < 0:
+            # A surface that only bounds a volume is not seen; without this a box of fog would be a black box.
+            program.surface = program.add(Op.TRANSPARENT, (constant_color((1.0, 1.0, 1.0)),))
+    if kind == "SURFACE" and _is_fed(walker, output, "Displacement"):
+        _leave_out(program, "displacement")
+
+
+def _is_fed(walker: Walker, output: Any, name: str) -> bool:
+    """Whether something is linked to an input of the output node."""
+    socket = find_socket(output.inputs, name)
+    return socket is not None and walker.tree(()).source(socket) is not None
+
+
+def _leave_out(program: Program, what: str) -> None:
+    program.warn(f"{program.name}: {what} is not supported yet and is left out")
+    program.uses_fallback = True
