@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 
 import bpy
 import numpy as np
@@ -67,12 +66,16 @@ def test_scale_of_a_camera_does_not_count(scene: bpy.types.Scene) -> None:
     assert np.allclose(np.linalg.norm(matrix[:3, :3], axis=1), 1.0)
 
 
-def test_spot_light_as_camera(scene: bpy.types.Scene) -> None:
-    data = bpy.data.lights.new("Spot", "SPOT")
-    data.spot_size = 1.0
-    scene.camera = recording.add(data, "Spot")
+@pytest.mark.parametrize("kind", ["SPOT", "EMPTY"])
+def test_what_is_no_camera_looks_as_blender_s_viewport_does(scene: bpy.types.Scene, kind: str) -> None:
+    """They were seen through a sensor of 32 mm, which made everything 12 % too large."""
+    data = None if kind == "EMPTY" else bpy.data.lights.new("Eye", kind)
+    scene.camera = recording.add(data, "Eye")
     left, right, _, _ = recording.export(scene)[0].camera.window
-    assert (right - left) / 2 == pytest.approx(math.tan(0.5))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    width, height = scene.render.resolution_x, scene.render.resolution_y
+    projection = scene.camera.evaluated_get(depsgraph).calc_matrix_camera(depsgraph, x=width, y=height)
+    assert 2 / (right - left) == pytest.approx(projection[0][0])
 
 
 def test_panoramic_camera_is_refused(scene: bpy.types.Scene) -> None:

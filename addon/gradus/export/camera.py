@@ -18,7 +18,7 @@ from .report import ExportError
 _PERSPECTIVE, _ORTHOGRAPHIC = 0, 1
 _MIN_FSTOP = 1e-5
 _DEFAULT_LENS = 35.0  # mm; what Blender takes for objects that are no camera
-_DEFAULT_SENSOR = 32.0  # mm
+_DEFAULT_SENSOR = 36.0  # mm
 _FAR = 1e30
 
 
