@@ -113,6 +113,12 @@ uint64_t PathScene::material(const Surface& surface) {
   return key;
 }
 
+uint64_t PathScene::material(const GradusMaterial& desc) {
+  const uint64_t key = next_key_++;
+  scene.scene.set_material(key, desc);
+  return key;
+}
+
 void PathScene::quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t material, uint32_t visibility) {
   Soup soup;
   soup.triangle(corner, corner + a, corner + a + b);
@@ -203,15 +209,12 @@ Frame make_test_frame(const GradusSettings& settings, bool gradients) {
   return Frame(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, 1, gradients);
 }
 
-namespace {
-
 Surface matte(const Rgb& color) {
   Surface s;
   s.diffuse = color;
   return s;
 }
 
-// An open box with two coloured walls, seen from its open side.
 void add_box(PathScene* scene, const Surface& floor) {
   const uint64_t white = scene->material(matte(Rgb(0.7f)));
   const uint64_t red = scene->material(matte(Rgb(0.7f, 0.2f, 0.1f)));
@@ -224,7 +227,7 @@ void add_box(PathScene* scene, const Surface& floor) {
   scene->camera(Vec3(0, 0, 3.2f), Vec3(0, 0, 0), 0.9f);
 }
 
-void add_ceiling_light(PathScene* scene, float strength, float size = 0.6f) {
+void add_ceiling_light(PathScene* scene, float strength, float size) {
   Surface light;
   light.emission = Rgb(strength);
   scene->quad(Vec3(-0.5f * size, 0.98f, -0.5f * size), Vec3(size, 0, 0), Vec3(0, 0, size), scene->material(light));
@@ -243,6 +246,8 @@ Surface glass(float roughness) {
   s.glass_roughness = roughness;
   return s;
 }
+
+namespace {
 
 GradusLight point_lamp(const Vec3& position, float radius, float intensity) {
   GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(position), Rgb(intensity));
@@ -268,7 +273,7 @@ void build(Scenario scenario, PathScene* scene) {
   add_box(scene, floor);
   switch (scenario) {
     case Scenario::DiffuseArea:
-      add_ceiling_light(scene, 8.0f);
+      add_ceiling_light(scene, 8.0f, 0.6f);
       scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
       break;
     case Scenario::PointAndSun: {
@@ -286,15 +291,15 @@ void build(Scenario scenario, PathScene* scene) {
       scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
       break;
     case Scenario::GlossyFloor:
-      add_ceiling_light(scene, 8.0f);
+      add_ceiling_light(scene, 8.0f, 0.6f);
       scene->light(point_lamp(Vec3(-0.4f, 0.3f, 0.3f), 0.0f, 0.2f));
       break;
     case Scenario::RoughMetal:
-      add_ceiling_light(scene, 8.0f);
+      add_ceiling_light(scene, 8.0f, 0.6f);
       scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glossy(0.5f)), 10, true);
       break;
     case Scenario::Mirror:
-      add_ceiling_light(scene, 8.0f);
+      add_ceiling_light(scene, 8.0f, 0.6f);
       scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glossy(0.0f)), 10, true);
       break;
     case Scenario::Glass:
@@ -306,7 +311,7 @@ void build(Scenario scenario, PathScene* scene) {
       scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glass(0.25f)), 10, true);
       break;
     case Scenario::Transparent: {
-      add_ceiling_light(scene, 8.0f);
+      add_ceiling_light(scene, 8.0f, 0.6f);
       Surface veil = matte(Rgb(0.5f, 0.4f, 0.3f));
       veil.transparent = 0.5f;
       scene->quad(Vec3(-0.7f, -0.7f, 0.4f), Vec3(1.2f, 0, 0.3f), Vec3(0, 1.1f, -0.2f), scene->material(veil));

@@ -26,12 +26,15 @@ class PathScene {
  public:
   // Key of a material to give to instances.
   uint64_t material(const Surface& surface);
+  uint64_t material(const GradusMaterial& desc);
   // A parallelogram: corner and two edges; its normal is along a × b.
   void quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t material, uint32_t visibility = GRADUS_VISIBLE_ALL);
   // smooth: with normals of the true sphere.
   void ball(const Vec3& centre, float radius, uint64_t material, int rings = 12, bool smooth = false);
   void light(const GradusLight& light) { lights_.push_back(light); }
   void world(const Rgb& radiance);
+  // map_size: width of the map that its light is sampled by.
+  void world(uint64_t material, uint32_t map_size) { scene.world(material, map_size); }
   // At `from`, looking at `at`, y up; field: width of the frame at distance 1 (orthographic: in metres).
   void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
 
@@ -54,6 +57,13 @@ GradusSettings test_settings(uint32_t width, uint32_t height);
 // All pixels with samples [first, first + count).
 void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame);
 Frame make_test_frame(const GradusSettings& settings, bool gradients);
+
+// An open box with two coloured walls, seen from its open side, and a square light below its ceiling.
+void add_box(PathScene* scene, const Surface& floor);
+void add_ceiling_light(PathScene* scene, float strength, float size);
+Surface matte(const Rgb& color);
+Surface glossy(float roughness);
+Surface glass(float roughness);
 
 // Cornell-like scenes, each for one part of the shift.
 enum class Scenario { DiffuseArea, PointAndSun, World, GlossyFloor, RoughMetal, Mirror, Glass, RoughGlass, Transparent, LampsSeen, Count };

@@ -1,0 +1,61 @@
+#include "support/bsdf_only.h"
+
+#include "path/segment.h"
+
+namespace gradus::test {
+
+namespace {
+
+Rgb lamps_between(const Snapshot& scene, const Ray& ray) {
+  Rgb sum(0.0f);
+  LampHit hits[kMaxSightings];
+  const int count = intersect_lamps(scene, ray, hits, kMaxSightings);
+  for (int i = 0; i < count; ++i) sum += view_emitter(scene, hits[i].point, Receiver{ray.origin, Vec3(0.0f), true}).radiance;
+  return sum;
+}
+
+// A direction by all classes; false: absorbed. factor: f·|cos| over its density.
+bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, Vec3* wi, Rgb* factor) {
+  float u = random->get();
+  for (int k = 0; k < kScatterClasses; ++k) {
+    const auto c = static_cast<ScatterClass>(k);
+    const float probability = closures.class_probability(c);
+    if (u < probability) {
+      BsdfSample sample;
+      const float lobe = random->get();
+      if (!closures.sample(c, wo, lobe, random->get2(), &sample) || !(sample.pdf > 0.0f)) return false;
+      *wi = sample.wi;
+      *factor = sample.value / (probability * sample.pdf);
+      return true;
+    }
+    u -= probability;
+  }
+  return false;
+}
+
+}  // namespace
+
+Rgb bsdf_only_sample(const IntegratorContext& context, int x, int y, testing::Random* random) {
+  const Snapshot& scene = *context.snapshot;
+  const Vec2 film = Vec2(float(x), float(y)) + random->get2();
+  Ray ray = context.camera.ray(film, random->get2());
+  Rgb radiance(0.0f), throughput(1.0f);
+  for (uint32_t scatterings = 0;; ++scatterings) {
+    Hit hit;
+    const bool found = scene.intersect(ray, GRADUS_VISIBLE_ALL, &hit);
+    if (found) ray.t_max = hit.t;
+    radiance += throughput * lamps_between(scene, ray);
+    if (!found) return radiance + throughput * shade_world(scene, ray.direction, RayState{});
+    const SurfacePoint point = scene.surface_point(hit);
+    ShadeResult shade;
+    shade_surface(scene, point, -ray.direction, RayState{}, context.settings.roughness_threshold, &shade);
+    radiance += throughput * shade.emission;
+    Vec3 wi;
+    Rgb factor;
+    if (scatterings > context.settings.max_bounces || !scatter(shade.closures, -ray.direction, random, &wi, &factor)) return radiance;
+    throughput *= factor;
+    ray = spawn_ray(point, wi);
+  }
+}
+
+}  // namespace gradus::test

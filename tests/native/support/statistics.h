@@ -1,0 +1,47 @@
+// Statistics of images made of independent samples.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace gradus::test {
+
+// Whether the long counts are asked for (make test-full); otherwise a tenth.
+bool full_run();
+
+// Mean and variance of every value of images that are added.
+class Moments {
+ public:
+  void add(const std::vector<float>& image);
+  int count() const { return count_; }
+  size_t size() const { return sum_.size(); }
+  double mean(size_t i) const { return sum_[i] / count_; }
+  double variance_of_mean(size_t i) const;
+
+ private:
+  int count_ = 0;
+  std::vector<double> sum_, squares_;
+};
+
+// Two-sided p-value of Welch's test that value i has the same mean in both (Welch-Satterthwaite degrees of freedom).
+double welch_p(const Moments& a, const Moments& b, size_t i);
+// P(|T| > |t|) of Student's distribution.
+double student_p(double t, double degrees_of_freedom);
+// P(|Z| > |z|) of the normal distribution.
+double normal_p(double z);
+// p-value of chi² that these p-values are uniform, on 20 bins.
+double uniformity_p(const std::vector<double>& p_values);
+// Level of one of k tests for a level of 1 % of them all (Šidák).
+double sidak(size_t k);
+
+// |Σ d| / Σ|d| of signed differences averaged over 5×5 pixels (OSPRay's test): near 0 for noise, near 1 for bias. d: one value per pixel.
+struct SignRatio {
+  void add(const std::vector<double>& d, int width, int height);
+  double value() const;
+  size_t blocks = 0;
+
+ private:
+  double sum_ = 0.0, absolute_ = 0.0;
+};
+
+}  // namespace gradus::test

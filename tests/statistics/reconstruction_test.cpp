@@ -1,0 +1,202 @@
+// B3: reconstructed images against plain path tracing.
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include "reconstruct/solver.h"
+#include "support/path_scene.h"
+#include "support/statistics.h"
+
+namespace gradus {
+namespace {
+
+using test::Moments;
+using test::PathScene;
+using test::Scenario;
+
+std::vector<Scenario> all_scenarios() {
+  std::vector<Scenario> all;
+  for (int i = 0; i < int(Scenario::Count); ++i) all.push_back(Scenario(i));
+  return all;
+}
+
+Frame render(IntegratorContext context, bool gradient, uint32_t seed, int samples) {
+  context.settings.seed = seed;
+  Frame frame = test::make_test_frame(context.settings, gradient);
+  test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, uint32_t(samples), &frame);
+  return frame;
+}
+
+std::vector<float> reconstructed(const Frame& frame, GradusReconstruction reconstruction) {
+  SolveReport report;
+  return reconstruct(
+      read_images(frame, 0, false), reconstruction, 0.2f, [] { return false; }, &report);
+}
+
+// Mean of the channels.
+std::vector<float> gray(const std::vector<float>& rgb) {
+  std::vector<float> result(rgb.size() / 3);
+  for (size_t i = 0; i < rgb.size(); ++i) result[i / 3] += rgb[i] / 3.0f;
+  return result;
+}
+
+// Means over blocks of side×side pixels, row by row.
+std::vector<float> block_means(const std::vector<float>& image, int width, int height, int side) {
+  std::vector<float> result;
+  for (int y = 0; y + side <= height; y += side) {
+    for (int x = 0; x + side <= width; x += side) {
+      double sum = 0.0;
+      for (int i = 0; i < side * side; ++i) sum += image[size_t(y + i / side) * size_t(width) + size_t(x + i % side)];
+      result.push_back(float(sum / (side * side)));
+    }
+  }
+  return result;
+}
+
+// --- L2
+
+// Blocks of 8×8 that start 32 pixels apart, so that 24 lie between them: 12 of a scene.
+constexpr int kWidth = 104, kHeight = 72, kBlock = 8, kApart = 4;
+
+struct Comparison {
+  Moments path_blocks, l2_blocks, path_pixels, l2_pixels, path_mean, l2_mean;
+};
+
+Comparison compare(Scenario scenario) {
+  PathScene scene;
+  test::build(scenario, &scene);
+  GradusSettings settings = test::test_settings(kWidth, kHeight);
+  settings.max_bounces = 4;
+  const IntegratorContext context = scene.context(settings);
+  const int seeds = test::full_run() ? 64 : 32, samples = test::full_run() ? 5 : 1;
+  std::vector<std::vector<float>> path(static_cast<size_t>(seeds)), l2(path.size());
+  tbb::parallel_for(0, seeds, [&](int k) {
+    path[k] = gray(read_images(render(context, false, uint32_t(k), samples), 0, false).primal);
+    l2[k] = gray(reconstructed(render(context, true, uint32_t(1000 + k), samples), GRADUS_RECONSTRUCTION_L2));
+  });
+  Comparison result;
+  for (size_t k = 0; k < path.size(); ++k) {
+    result.path_pixels.add(path[k]);
+    result.l2_pixels.add(l2[k]);
+    result.path_blocks.add(block_means(path[k], kWidth, kHeight, kBlock));
+    result.l2_blocks.add(block_means(l2[k], kWidth, kHeight, kBlock));
+    const auto mean = [](const std::vector<float>& image) {
+      double sum = 0.0;
+      for (const float v : image) sum += v;
+      return std::vector<float>{float(sum / double(image.size()))};
+    };
+    result.path_mean.add(mean(path[k]));
+    result.l2_mean.add(mean(l2[k]));
+  }
+  return result;
+}
+
+const std::vector<Comparison>& comparisons() {
+  static const std::vector<Comparison> all = [] {
+    std::vector<Comparison> made;
+    for (const Scenario scenario : all_scenarios()) made.push_back(compare(scenario));
+    return made;
+  }();
+  return all;
+}
+
+TEST(B3_L2, WelchTestsOfBlocksAreUniform) {
+  std::vector<double> p_values;
+  constexpr int columns = kWidth / kBlock, rows = kHeight / kBlock;
+  for (const Comparison& c : comparisons()) {
+    for (int row = 0; row < rows; row += kApart) {
+      for (int column = 0; column < columns; column += kApart) {
+        p_values.push_back(test::welch_p(c.path_blocks, c.l2_blocks, size_t(row * columns + column)));
+      }
+    }
+  }
+  ASSERT_GE(p_values.size(), 100u);
+  EXPECT_GT(test::uniformity_p(p_values), 0.01);
+  std::printf("  %zu blocks, uniform with p = %.3f\n", p_values.size(), test::uniformity_p(p_values));
+}
+
+TEST(B3_L2, NoBlockDiffers) {
+  for (size_t s = 0; s < comparisons().size(); ++s) {
+    const Comparison& c = comparisons()[s];
+    const double level = test::sidak(c.path_blocks.size() * comparisons().size());
+    for (size_t i = 0; i < c.path_blocks.size(); ++i) {
+      EXPECT_GT(test::welch_p(c.path_blocks, c.l2_blocks, i), level) << test::name_of(Scenario(s)) << ", block " << i;
+    }
+  }
+}
+
+// The mean of all scenes' relative differences over its standard deviation.
+double pooled_z(double factor) {
+  double sum = 0.0, variance = 0.0;
+  for (const Comparison& c : comparisons()) {
+    const double truth = c.path_mean.mean(0);
+    sum += factor * c.l2_mean.mean(0) / truth - 1.0;
+    variance += (factor * factor * c.l2_mean.variance_of_mean(0) + c.path_mean.variance_of_mean(0)) / (truth * truth);
+  }
+  return sum / std::sqrt(variance);
+}
+
+TEST(B3_L2, MeansAgreeAndOnePercentOfDarkeningIsCaught) {
+  for (size_t s = 0; s < comparisons().size(); ++s) {
+    EXPECT_GT(test::welch_p(comparisons()[s].path_mean, comparisons()[s].l2_mean, 0), 6e-5) << test::name_of(Scenario(s));
+  }
+  EXPECT_LT(std::fabs(pooled_z(1.0)), 4.0);
+  EXPECT_LT(pooled_z(0.99), -4.0);
+}
+
+TEST(B3_L2, DifferencesHaveNoSign) {
+  test::SignRatio ratio;
+  for (const Comparison& c : comparisons()) {
+    std::vector<double> difference(c.path_pixels.size());
+    for (size_t i = 0; i < difference.size(); ++i) difference[i] = (c.l2_pixels.mean(i) - c.path_pixels.mean(i)) / c.path_mean.mean(0);
+    ratio.add(difference, kWidth, kHeight);
+  }
+  EXPECT_GE(ratio.blocks, 1400u);
+  EXPECT_LE(ratio.value(), 0.1);
+}
+
+// --- L1: biased, by no more than this (docs/method.md).
+
+constexpr double kMostMean = 0.005, kMostBlock = 0.03;
+
+class B3_L1 : public testing::TestWithParam<Scenario> {};
+
+// Against the primal of the same renders, which is unbiased and shares most of the noise.
+TEST_P(B3_L1, BiasStaysWithinItsBound) {
+  constexpr int width = 64, height = 48, side = 16, samples = 16;
+  PathScene scene;
+  test::build(GetParam(), &scene);
+  GradusSettings settings = test::test_settings(width, height);
+  settings.max_bounces = 4;
+  const IntegratorContext context = scene.context(settings);
+  const int seeds = test::full_run() ? 64 : 8;
+  std::vector<std::vector<float>> truth(static_cast<size_t>(seeds)), difference(truth.size());
+  tbb::parallel_for(0, seeds, [&](int k) {
+    const Frame frame = render(context, true, uint32_t(k), samples);
+    truth[k] = block_means(gray(read_images(frame, 0, false).primal), width, height, side);
+    difference[k] = block_means(gray(reconstructed(frame, GRADUS_RECONSTRUCTION_L1)), width, height, side);
+    for (size_t i = 0; i < truth[k].size(); ++i) difference[k][i] -= truth[k][i];
+  });
+  Moments truths, differences;
+  for (size_t k = 0; k < truth.size(); ++k) {
+    truths.add(truth[k]);
+    differences.add(difference[k]);
+  }
+  double sum = 0.0, sum_of_differences = 0.0, worst = 0.0;
+  for (size_t i = 0; i < truths.size(); ++i) {
+    sum += truths.mean(i);
+    sum_of_differences += differences.mean(i);
+    const double noise = std::sqrt(differences.variance_of_mean(i));
+    EXPECT_LE(std::fabs(differences.mean(i)), kMostBlock * truths.mean(i) + 4.0 * noise) << "block " << i;
+    worst = std::max(worst, std::fabs(differences.mean(i)) / truths.mean(i));
+  }
+  EXPECT_LE(std::fabs(sum_of_differences), kMostMean * sum);
+  std::printf("  mean %+.3f %%, worst block %.2f %%\n", 100.0 * sum_of_differences / sum, 100.0 * worst);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, B3_L1, testing::ValuesIn(all_scenarios()),
+                         [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
+
+}  // namespace
+}  // namespace gradus

@@ -1,0 +1,267 @@
+// The integrators against a second, independent path tracer: A5 (z-tests of pixels), A6 (global bias), A7 (the error falls with samples).
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include "shading/program_builder.h"
+#include "support/bsdf_only.h"
+#include "support/path_scene.h"
+#include "support/statistics.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+
+// At least 1,400 blocks of 5×5 pixels, or the sign ratio says nothing (tests.md 4); 2e6 samples in full.
+constexpr uint32_t kWidth = 224, kHeight = 160;
+constexpr int kPixels = int(kWidth * kHeight);
+int samples() { return test::full_run() ? 56 : 6; }
+int reference_samples() { return test::full_run() ? 280 : 28; }
+// The z-test takes a few dozen samples for normal: single pixels in full, else squares of 4×4.
+uint32_t cell_side() { return test::full_run() ? 1 : 4; }
+
+// Light sources are large, so that BSDF sampling alone finds them.
+enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, ManyLights, Count };
+const char* const kNames[] = {"Box", "GlassBalls", "RoughMetal", "Textures", "Environment", "ManyLights"};
+
+uint64_t checker(PathScene* scene, uint32_t closure, const Vec3& a, const Vec3& b, float scale) {
+  test::ProgramBuilder p;
+  const int where = p.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
+  const int color = p.add(GRADUS_OP_CHECKER, {test::In::from(where), a, b, scale});
+  std::vector<test::In> inputs{test::In::from(color)};
+  if (closure == GRADUS_OP_EMISSION) inputs.push_back(1.0f);
+  return scene->material(p.desc(p.add(closure, inputs)));
+}
+
+void add_many_lights(PathScene* scene) {
+  for (int i = 0; i < 36; ++i) {
+    test::Surface light;
+    light.emission = Rgb(0.5f + 0.1f * float(i % 7), 1.0f, 2.0f - 0.05f * float(i));
+    const Vec3 corner(-0.9f + 0.3f * float(i % 6), 0.95f, -0.9f + 0.3f * float(i / 6));
+    scene->quad(corner, Vec3(0.2f, 0, 0), Vec3(0, 0, 0.2f), scene->material(light));
+  }
+  GradusLight ball = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(-0.3f, -0.3f, 0.2f)), Rgb(1.0f));
+  ball.radius = 0.25f;
+  scene->light(ball);
+}
+
+void build(Truth truth, PathScene* scene) {
+  test::Surface floor = test::matte(Rgb(0.6f));
+  if (truth == Truth::RoughMetal) {
+    floor.glossy = Rgb(0.3f);
+    floor.glossy_roughness = 0.25f;
+  }
+  test::add_box(scene, floor);
+  if (truth == Truth::Environment) {
+    scene->world(checker(scene, GRADUS_OP_EMISSION, Vec3(2.0f, 1.5f, 1.0f), Vec3(0.1f, 0.2f, 0.4f), 3.0f), 64);
+    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 1.4f);  // sees past the box
+  } else if (truth == Truth::Textures) {
+    const uint64_t light = checker(scene, GRADUS_OP_EMISSION, Vec3(2.0f), Vec3(0.2f, 0.3f, 0.8f), 5.0f);
+    scene->quad(Vec3(-0.8f, 0.98f, -0.8f), Vec3(1.6f, 0, 0), Vec3(0, 0, 1.6f), light);
+    const uint64_t wall = checker(scene, GRADUS_OP_DIFFUSE, Vec3(0.8f), Vec3(0.1f, 0.3f, 0.5f), 7.0f);
+    scene->quad(Vec3(-0.8f, -0.9f, -0.8f), Vec3(1.2f, 0, 0.3f), Vec3(0, 1.3f, 0), wall);
+  } else if (truth == Truth::ManyLights) {
+    add_many_lights(scene);
+  } else {
+    test::add_ceiling_light(scene, 1.5f, 1.6f);
+  }
+  if (truth == Truth::GlassBalls) {
+    scene->ball(Vec3(-0.4f, -0.5f, 0.1f), 0.45f, scene->material(test::glass(0.0f)), 10, true);
+    scene->ball(Vec3(0.45f, -0.5f, 0.2f), 0.45f, scene->material(test::glass(0.3f)), 10, true);
+  } else if (truth == Truth::RoughMetal) {
+    scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(test::glossy(0.5f)), 10, true);
+  } else if (truth != Truth::Textures) {
+    scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(test::matte(Rgb(0.5f))), 6);
+  }
+}
+
+enum class Estimator { Path, Gradient, BsdfOnly };
+
+// Samples of all pixels as images, one by one, spread over the threads by rows.
+template <class SampleRow>
+test::Moments sample_images(int count, const SampleRow& sample_row) {
+  test::Moments moments;
+  std::vector<float> image(size_t(kPixels) * 3);
+  for (int i = 0; i < count; ++i) {
+    tbb::parallel_for(0, int(kHeight), [&](int y) { sample_row(i, y, image.data() + size_t(y) * kWidth * 3); });
+    moments.add(image);
+  }
+  return moments;
+}
+
+test::Moments estimate(const IntegratorContext& context, Estimator estimator) {
+  if (estimator == Estimator::BsdfOnly) {
+    return sample_images(reference_samples(), [&](int i, int y, float* row) {
+      testing::Random random(uint64_t(i) * kHeight + uint64_t(y) + 1);
+      for (int x = 0; x < int(kWidth); ++x) {
+        const Rgb value = test::bsdf_only_sample(context, x, y, &random);
+        for (int c = 0; c < 3; ++c) row[3 * x + c] = value[c];
+      }
+    });
+  }
+  const auto integrator = estimator == Estimator::Gradient ? make_gradient_integrator(context) : make_path_integrator(context);
+  return sample_images(samples(), [&](int i, int y, float* row) {
+    // Rows above and below are in the frame, so that all pairs of pixels are present.
+    Frame frame(kWidth, kHeight, Region{0, y - 1, int32_t(kWidth), y + 2}, 3, 1, estimator == Estimator::Gradient);
+    WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1}, uint32_t(2 * i), 1, nullptr};
+    integrator->sample(unit, &frame, &frame.counters, std::atomic<bool>{false});
+    for (int x = 0; x < int(kWidth); ++x) {
+      for (int c = 0; c < 3; ++c) row[3 * x + c] = frame.components[0].primal[0][frame.index(x, y)][c];
+    }
+  });
+}
+
+// Made once for all tests.
+const test::Moments& moments(Truth truth, Estimator estimator) {
+  static std::map<std::pair<Truth, Estimator>, test::Moments> made;
+  const auto key = std::make_pair(truth, estimator);
+  if (const auto found = made.find(key); found != made.end()) return found->second;
+  PathScene scene;
+  build(truth, &scene);
+  GradusSettings settings = test::test_settings(kWidth, kHeight);
+  settings.max_bounces = 4;
+  settings.seed = 1 + uint32_t(estimator);
+  return made.emplace(key, estimate(scene.context(settings), estimator)).first->second;
+}
+
+using Case = std::tuple<Truth, Estimator>;
+class Truths : public ::testing::TestWithParam<Case> {};
+
+struct CellTest {
+  size_t tests = 0, failed = 0;
+};
+
+// z-tests of cells and channels, with the pixels' variances pooled.
+CellTest test_cells(const test::Moments& image, const test::Moments& truth, double factor) {
+  const uint32_t side = cell_side();
+  const size_t tests = size_t(kWidth / side) * (kHeight / side) * 3;
+  const double level = test::sidak(tests * 2 * size_t(Truth::Count));
+  CellTest result;
+  for (uint32_t cell = 0; cell < tests; ++cell) {
+    const uint32_t channel = cell % 3, column = cell / 3 % (kWidth / side), row = cell / 3 / (kWidth / side);
+    double difference = 0.0, variance = 0.0;
+    for (uint32_t y = row * side; y < (row + 1) * side; ++y) {
+      for (uint32_t x = column * side; x < (column + 1) * side; ++x) {
+        const size_t i = 3 * (size_t(y) * kWidth + x) + channel;
+        difference += factor * image.mean(i) - truth.mean(i);
+        variance += std::max(image.variance_of_mean(i), 1e-4 / image.count()) + truth.variance_of_mean(i);
+      }
+    }
+    ++result.tests;
+    result.failed += test::normal_p(difference / std::sqrt(variance)) < level ? 1 : 0;
+  }
+  return result;
+}
+
+struct Bias {
+  double mean = 0.0, truth = 0.0, deviation = 0.0;  // of the image's mean; standard deviation of the difference
+  double sign_ratio = 0.0;
+  bool passes() const { return std::fabs(mean - truth) <= 4.0 * deviation && sign_ratio <= 0.1; }
+};
+
+Bias measure_bias(const test::Moments& image, const test::Moments& truth, double factor) {
+  Bias bias;
+  double variance = 0.0;
+  std::vector<double> difference(kPixels);
+  for (size_t i = 0; i < image.size(); ++i) {
+    bias.mean += factor * image.mean(i) / double(image.size());
+    bias.truth += truth.mean(i) / double(image.size());
+    variance += factor * factor * image.variance_of_mean(i) + truth.variance_of_mean(i);
+    difference[i / 3] += factor * image.mean(i) - truth.mean(i);
+  }
+  // Channels of a pixel come from the same paths: as if they were fully correlated.
+  bias.deviation = std::sqrt(3.0 * variance) / double(image.size());
+  test::SignRatio ratio;
+  ratio.add(difference, int(kWidth), int(kHeight));
+  bias.sign_ratio = ratio.value();
+  EXPECT_GE(ratio.blocks, 1400u);
+  return bias;
+}
+
+TEST_P(Truths, A5_PixelsAgree) {
+  const auto [truth, estimator] = GetParam();
+  const CellTest result = test_cells(moments(truth, estimator), moments(truth, Estimator::BsdfOnly), 1.0);
+  EXPECT_LE(double(result.failed), 0.0025 * double(result.tests)) << result.failed << " of " << result.tests;
+}
+
+TEST_P(Truths, A6_NoGlobalBias) {
+  const auto [truth, estimator] = GetParam();
+  const Bias bias = measure_bias(moments(truth, estimator), moments(truth, Estimator::BsdfOnly), 1.0);
+  EXPECT_NEAR(bias.mean, bias.truth, 4.0 * bias.deviation);
+  EXPECT_LE(bias.sign_ratio, 0.1);
+  std::printf("  mean %.5f, truth %.5f, 1 sigma %.2f %%, sign ratio %.3f\n", bias.mean, bias.truth, 100.0 * bias.deviation / bias.truth,
+              bias.sign_ratio);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Truths,
+                         ::testing::Combine(::testing::Values(Truth::Box, Truth::GlassBalls, Truth::RoughMetal, Truth::Textures,
+                                                              Truth::Environment, Truth::ManyLights),
+                                            ::testing::Values(Estimator::Path, Estimator::Gradient)),
+                         [](const ::testing::TestParamInfo<Case>& info) {
+                           return std::string(kNames[int(std::get<0>(info.param))]) +
+                                  (std::get<1>(info.param) == Estimator::Path ? "Path" : "Gradient");
+                         });
+
+// The mean of all scenes' relative differences over its standard deviation.
+double pooled_z(Estimator estimator, double factor) {
+  double sum = 0.0, variance = 0.0;
+  for (int i = 0; i < int(Truth::Count); ++i) {
+    const Bias bias = measure_bias(moments(Truth(i), estimator), moments(Truth(i), Estimator::BsdfOnly), factor);
+    sum += bias.mean / bias.truth - 1.0;
+    variance += std::pow(bias.deviation / bias.truth, 2);
+  }
+  return sum / std::sqrt(variance);
+}
+
+// What the tests of noisy pixels forgive. Few samples show it over all scenes together, all of them in each.
+TEST(A6_Bias, OnePercentOfDarkeningIsCaught) {
+  for (const Estimator estimator : {Estimator::Path, Estimator::Gradient}) {
+    EXPECT_LT(std::fabs(pooled_z(estimator, 1.0)), 4.0);
+    EXPECT_LT(pooled_z(estimator, 0.99), -4.0);
+    for (int i = 0; i < int(Truth::Count) && test::full_run(); ++i) {
+      EXPECT_FALSE(measure_bias(moments(Truth(i), estimator), moments(Truth(i), Estimator::BsdfOnly), 0.99).passes()) << kNames[i];
+    }
+  }
+}
+
+// Squared error of n samples, by the spread of independent images about a reference of many more.
+double mean_squared_error(const IntegratorContext& base, int n, int images, const std::vector<double>& reference) {
+  double error = 0.0;
+  for (int k = 0; k < images; ++k) {
+    IntegratorContext context = base;
+    context.settings.seed = uint32_t(1000 * n + k);
+    Frame frame = test::make_test_frame(context.settings, false);
+    test::sample_frame(*make_path_integrator(context), 0, uint32_t(n), &frame);
+    const std::vector<float> image = read_images(frame, 0, false).primal;
+    for (size_t pixel = 0; pixel < image.size() / 3; ++pixel) {
+      const double gray = (reference[3 * pixel] + reference[3 * pixel + 1] + reference[3 * pixel + 2]) / 3.0;
+      for (size_t c = 0; c < 3; ++c) error += std::pow(image[3 * pixel + c] - reference[3 * pixel + c], 2) / (1e-3 + gray * gray);
+    }
+  }
+  return error / images;
+}
+
+// Above the bounds: bias; below: a broken reference.
+TEST(A7_Convergence, FourTimesTheSamplesQuarterTheError) {
+  for (const Truth truth : {Truth::Box, Truth::Environment, Truth::ManyLights}) {
+    PathScene scene;
+    build(truth, &scene);
+    GradusSettings settings = test::test_settings(24, 16);
+    settings.max_bounces = 4;
+    const IntegratorContext context = scene.context(settings);
+    Frame frame = test::make_test_frame(settings, false);
+    test::sample_frame(*make_path_integrator(context), 0, 2048, &frame);
+    const std::vector<float> image = read_images(frame, 0, false).primal;
+    const std::vector<double> reference(image.begin(), image.end());
+    const int images = test::full_run() ? 16 : 4;
+    const double ratio = mean_squared_error(context, 64, images, reference) / mean_squared_error(context, 16, 4 * images, reference);
+    EXPECT_GT(ratio, 0.20) << kNames[int(truth)];
+    EXPECT_LT(ratio, 0.32) << kNames[int(truth)];
+  }
+}
+
+}  // namespace
+}  // namespace gradus
