@@ -269,5 +269,6 @@ def _signature(depsgraph: Any) -> object:
     scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
     values = tuple(getattr(scene.gradus, setting.name) for setting in renderer.settings.SETTINGS)
     objects = hash(tuple(instance.object.original.as_pointer() for instance in depsgraph.object_instances))
-    world = scene.world.original.as_pointer() if scene.world else 0
-    return values, scene.frame_current, scene.render.film_transparent, layer.name, world, objects
+    replaced = (scene.world, layer.material_override, getattr(layer, "world_override", None))
+    blocks = tuple(block.original.as_pointer() if block else 0 for block in replaced)
+    return values, scene.frame_current, scene.render.film_transparent, layer.name, layer.use_sky, layer.use_solid, blocks, objects
