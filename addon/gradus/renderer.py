@@ -121,8 +121,9 @@ class Job:
     def export(self, view: str) -> None:
         if view:
             self.engine.active_view_set(view)
+        vectors = any(info.plane == passes.Pass.VECTOR for info in self.infos)
         with self.clock.phase("export"):
-            report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop)
+            report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop, vectors)
         self.settings.width, self.settings.height = report.width, report.height
         self.warn(report.warnings)
 

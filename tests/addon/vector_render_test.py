@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -132,3 +133,14 @@ def test_c1_topology_change_does_not_crash(vectors: Callable[[], np.ndarray]) ->
 def test_c1_without_motion_blur_or_vector_the_pass_is_absent(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
     recording.add_camera()
     assert "Vector" not in render(scene, **SETTINGS)
+
+
+def test_c1_vectors_asked_for_on_the_command_line_move_too(
+    scene: bpy.types.Scene, render: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The frames around were read only for a view layer that has the pass itself, so that everything seemed to rest."""
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    _key(recording.add(recording.grid(1, 1.5)), "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
+    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-passes", "vector"])
+    found = render(scene, frame=2, **SETTINGS)["Vector"]
+    assert np.allclose(_covered(found), (-4.0, 0.0, -4.0, 0.0), atol=0.01)

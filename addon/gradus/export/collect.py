@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from . import left_out
 from .arrays import read
 from .object_random import name_hash
 from .visibility import ALL_RAYS, visibility
@@ -45,7 +46,7 @@ class Collected:
     matrices: array  # 16 per item of object_instances, column-major
     surfaces: list[Entry] = field(default_factory=list)
     lights: list[Entry] = field(default_factory=list)
-    skipped: list[tuple[str, str]] = field(default_factory=list)  # names and types of objects that cannot be shown yet
+    left_out: list[str] = field(default_factory=list)  # warnings about what cannot be shown yet
 
 
 def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
@@ -78,8 +79,9 @@ class _Facts:
 class _Parts:
     """Facts of objects, each looked up once: most of an export of many instances is this loop."""
 
-    def __init__(self, view_layer: Any) -> None:
+    def __init__(self, view_layer: Any, warnings: list[str]) -> None:
         self._view_layer = view_layer
+        self._warnings = warnings
         self._override = view_layer.material_override
         self._facts: dict[tuple[int, int], _Facts] = {}
         self._materials: dict[tuple[int, int], tuple[Any, ...]] = {}
@@ -93,6 +95,7 @@ class _Parts:
             key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
             bits = visibility(obj, parent, self._view_layer)
             found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color))
+            self._warnings.extend(left_out.of_object(owner, self._view_layer))
             if parent is not None:
                 self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
         return found
@@ -112,7 +115,7 @@ def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
     """
     instances = depsgraph.object_instances
     collected = Collected(array("f"))
-    parts = _Parts(depsgraph.view_layer_eval)
+    parts = _Parts(depsgraph.view_layer_eval, collected.left_out)
     surfaces = depsgraph.view_layer_eval.use_solid
     for index, instance in enumerate(instances):
         if index & 255 == 0:
@@ -126,8 +129,8 @@ def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
             entry = _entry(index, instance, obj, is_light, parts)
             if entry is not None:
                 (collected.lights if is_light else collected.surfaces).append(entry)
-        elif kind in {"CURVES", "POINTCLOUD", "VOLUME"}:
-            collected.skipped.append((obj.name, kind))
+        elif kind in left_out.KINDS:
+            collected.left_out.append(left_out.of_kind(obj.name, kind))
     collected.matrices = _matrices(instances, parts.has_node_instances)
     return collected
 

@@ -10,15 +10,13 @@ from typing import Any
 import bpy
 
 from .. import native
-from . import camera, instances, light, mesh, motion, world
+from . import camera, instances, left_out, light, mesh, motion, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
 from .mesh import MeshArrays
 from .report import ExportError, ExportReport, Poll, Warnings
 from .target import Target
-
-_SKIPPED = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
 
 
 class Exporter:
@@ -38,13 +36,16 @@ class Exporter:
         view: camera.ViewOverride | None = None,
         is_preview: bool = False,
         cancelled: Callable[[], bool] | None = None,
+        vectors: bool | None = None,
     ) -> ExportReport:
         """Sets all that the depsgraph shows at its frame. Raises ExportError (text for the user) and Cancelled.
 
         view: the viewport's, in place of the camera; then and in previews there is no motion.
+        vectors: whether the Vector pass is wanted; None: where the view layer has it.
         """
         start = time.perf_counter()
-        run = _Sync(self, depsgraph, engine, view, is_preview, Poll(cancelled))
+        wants_motion = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors
+        run = _Sync(self, depsgraph, engine, view, wants_motion and view is None and not is_preview, Poll(cancelled))
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
             table.begin()
@@ -69,7 +70,7 @@ class _Sync:
     """The state of one call of Exporter.sync."""
 
     def __init__(
-        self, exporter: Exporter, depsgraph: Any, engine: Any, view: camera.ViewOverride | None, is_preview: bool, poll: Poll
+        self, exporter: Exporter, depsgraph: Any, engine: Any, view: camera.ViewOverride | None, wants_motion: bool, poll: Poll
     ) -> None:
         self._depsgraph = depsgraph
         self._engine = engine
@@ -81,7 +82,7 @@ class _Sync:
         self.warnings = Warnings()
         self._scene = depsgraph.scene_eval
         self.size = self._resolution()
-        self._wants_motion = view is None and not is_preview and depsgraph.view_layer_eval.use_pass_vector
+        self._wants_motion = wants_motion
         resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
         self._deforming: dict[InstanceKey, tuple[int, MeshArrays]] = {}
@@ -98,8 +99,8 @@ class _Sync:
     def run(self) -> None:
         now = self._camera()
         collected = collect(self._depsgraph, self._poll)
-        for name, kind in collected.skipped:
-            self.warnings.add(f"Object '{name}' is left out: {_SKIPPED[kind]} are not rendered yet")
+        for text in (*left_out.of_scene(self._scene, self._depsgraph.view_layer_eval), *collected.left_out):
+            self.warnings.add(text)
         for entry in collected.surfaces:
             entry.material_keys = tuple(self._materials.key(material) for material in entry.materials)
         self._set_world()

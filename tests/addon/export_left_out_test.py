@@ -1,0 +1,59 @@
+"""What is not rendered yet is named: a picture that silently lacks something sends people looking for a fault of theirs."""
+
+from __future__ import annotations
+
+import bpy
+import pytest
+from support import recording
+
+
+def warnings(scene: bpy.types.Scene) -> list[str]:
+    return recording.export(scene)[1].warnings
+
+
+@pytest.fixture
+def plane(scene: bpy.types.Scene) -> bpy.types.Object:
+    recording.add_camera()
+    return recording.add(recording.grid(1), "Plane")
+
+
+def test_nothing_is_left_out_of_an_ordinary_scene(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    recording.add(bpy.data.lights.new("Lamp", "POINT"), "Lamp").is_shadow_catcher = True  # Blender's default for lamps
+    assert warnings(scene) == []
+
+
+def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    modifier = plane.modifiers.new("Fur", "PARTICLE_SYSTEM")
+    settings = modifier.particle_system.settings
+    settings.type, settings.render_type = "HAIR", "PATH"
+    assert warnings(scene) == ["Object 'Plane': hair particles are not rendered yet"]
+    scene.view_layers[0].use_strand = False
+    assert warnings(scene) == []
+    scene.view_layers[0].use_strand = True
+    settings.render_type = "OBJECT"
+    assert warnings(scene) == []
+
+
+def test_a_shadow_catcher_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    plane.is_shadow_catcher = True
+    assert warnings(scene) == ["Object 'Plane' is a shadow catcher and is rendered as an ordinary surface"]
+
+
+def test_motion_blur_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    scene.render.use_motion_blur = True
+    assert warnings(scene) == ["Motion blur is not rendered yet: everything is sharp"]
+    scene.view_layers[0].use_motion_blur = False
+    assert warnings(scene) == []
+
+
+def test_light_linking_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    lamp = recording.add(bpy.data.lights.new("Lamp", "POINT"), "Lamp")
+    if not hasattr(lamp, "light_linking"):
+        pytest.skip("no light linking in this Blender")
+    lamp.light_linking.receiver_collection = bpy.data.collections.new("Lit")
+    assert warnings(scene) == ["Object 'Lamp': light linking is left out, it shines on everything"]
+
+
+def test_kinds_that_are_not_rendered_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    recording.add(bpy.data.volumes.new("Smoke"), "Smoke")
+    assert warnings(scene) == ["Object 'Smoke' is left out: volumes are not rendered yet"]
