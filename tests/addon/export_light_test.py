@@ -94,6 +94,18 @@ def test_constant_emission_is_folded(scene: bpy.types.Scene) -> None:
     assert light.material == 0
 
 
+def test_a_muted_link_to_the_output_does_not_shine(scene: bpy.types.Scene) -> None:
+    """The constant of the node behind it was taken nevertheless."""
+    from gradus.export import light
+
+    data = bpy.data.lights.new("Light", "POINT")
+    data.use_nodes = True
+    data.node_tree.links[0].is_muted = True
+    if not data.node_tree.links[0].is_muted:
+        pytest.skip("links cannot be muted by script here")
+    assert light.constant_emission(data) in (None, (0.0, 0.0, 0.0))
+
+
 def test_linked_emission_becomes_a_program(scene: bpy.types.Scene) -> None:
     recording.add_camera()
     data = bpy.data.lights.new("Light", "POINT")

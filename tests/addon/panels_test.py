@@ -43,7 +43,8 @@ def context(scene: bpy.types.Scene, light: str) -> SimpleNamespace:
             block.use_nodes = True
     data = bpy.data.lights.new("L", light)
     layer = scene.view_layers[0]
-    return SimpleNamespace(scene=scene, view_layer=layer, material=material, world=world, light=data, engine="GRADUS")
+    obj = bpy.data.objects.new("O", bpy.data.meshes.new("O"))
+    return SimpleNamespace(scene=scene, view_layer=layer, material=material, world=world, light=data, object=obj, engine="GRADUS")
 
 
 @pytest.mark.parametrize("light", ["POINT", "SUN", "SPOT", "AREA"])
@@ -65,6 +66,35 @@ def test_panels_show_for_our_engine_only(scene: bpy.types.Scene) -> None:
     for panel in PANELS:
         assert panel.poll(shown)
         assert not panel.poll(SimpleNamespace(**{**vars(shown), "engine": "CYCLES"}))
+
+
+class Names(Layout):
+    """Writes down the properties that are drawn."""
+
+    def __init__(self) -> None:
+        self.drawn: set[str] = set()
+
+    def prop(self, data: Any, name: str, **rest: Any) -> None:
+        super().prop(data, name, **rest)
+        self.drawn.add(name)
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *_, **__: self
+
+
+def test_what_the_export_reads_can_be_set_somewhere(scene: bpy.types.Scene) -> None:
+    """Blender leaves these to each engine's panels; without a panel of ours only a script could change them."""
+    names = Names()
+    for panel in PANELS:
+        for light in ("POINT", "SPOT", "SUN", "AREA"):
+            instance = SimpleNamespace(layout=names, columns=lambda: names, VALUES=getattr(panel, "VALUES", None))
+            panel.draw(instance, context(scene, light))
+    wanted = {"visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow", "is_holdout"}
+    wanted |= {"use_sky", "use_solid", "material_override", "samples", "pass_alpha_threshold", "film_transparent"}
+    wanted |= {"pass_index", "distance", "use_nodes", "spot_size", "spread", "angle"}
+    if bpy.app.version >= (4, 5, 0):
+        wanted |= {"exposure", "normalize", "use_temperature", "use_soft_falloff", "use_shadow", "world_override"}
+    assert wanted <= names.drawn
 
 
 def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:

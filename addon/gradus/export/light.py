@@ -46,11 +46,11 @@ def _scaled(values: tuple[float, ...], factor: float) -> tuple[float, float, flo
     return tuple(value * factor for value in values)
 
 
-def _flags(light: Any, version: tuple[int, ...]) -> int:
+def _flags(light: Any) -> int:
     cycles = getattr(light, "cycles", None)
     flags = 0
-    shadow = getattr(cycles, "cast_shadow", True) if version < (4, 0, 0) else getattr(light, "use_shadow", True)
-    if not shadow:
+    # Cycles kept its own switch until Blender's became that of all engines.
+    if not getattr(cycles, "cast_shadow", light.use_shadow):
         flags |= NO_SHADOW
     if not getattr(cycles, "use_multiple_importance_sampling", True):
         flags |= NO_MIS
@@ -134,7 +134,7 @@ def light_state(light: Any, scale: tuple[float, ...], version: tuple[int, ...]) 
         state = _spot(light, power, version, scale)
     else:
         state = _round(light, power, version)
-    state.flags |= _flags(light, version)
+    state.flags |= _flags(light)
     bounces = getattr(getattr(light, "cycles", None), "max_bounces", None)
     if bounces is not None and bounces < 1024:  # Cycles' default, meant as no limit
         state.max_bounces = max(bounces, 0)
@@ -153,7 +153,7 @@ def constant_emission(light: Any) -> tuple[float, float, float] | None:
     if not surface.is_linked:
         return (0.0, 0.0, 0.0)
     node = surface.links[0].from_node
-    if node.bl_idname != "ShaderNodeEmission" or node.mute or not surface.links[0].is_valid:
+    if node.bl_idname != "ShaderNodeEmission" or node.mute or not surface.links[0].is_valid or surface.links[0].is_muted:
         return None
     if node.inputs["Color"].is_linked or node.inputs["Strength"].is_linked:
         return None

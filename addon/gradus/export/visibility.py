@@ -8,7 +8,7 @@ CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME, SHADOW = 1, 2, 4, 8, 16, 32
 ALL_RAYS = 63
 HOLDOUT, SHADOW_CATCHER = 64, 128
 
-_RAY_SWITCHES = (
+RAY_SWITCHES = (
     ("visible_camera", CAMERA),
     ("visible_diffuse", DIFFUSE),
     ("visible_glossy", GLOSSY),
@@ -16,12 +16,13 @@ _RAY_SWITCHES = (
     ("visible_volume_scatter", VOLUME),
     ("visible_shadow", SHADOW),
 )
+"""Properties of an object, and the kind of ray that each lets see it."""
 
 
 def ray_visibility(obj: Any) -> int:
     """Bits of the kinds of ray that see an object."""
     bits = 0
-    for name, bit in _RAY_SWITCHES:
+    for name, bit in RAY_SWITCHES:
         if getattr(obj, name, True):
             bits |= bit
     return bits

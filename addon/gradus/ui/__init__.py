@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import bpy
 
-from . import pass_panels, presets, render_panels, shading_panels, stock
+from . import layer_panels, object_panels, pass_panels, presets, render_panels, shading_panels, stock
 
 
 def classes() -> tuple[type, ...]:
-    return (*presets.CLASSES, *render_panels.CLASSES, *pass_panels.CLASSES, *shading_panels.CLASSES)
+    modules = (presets, render_panels, pass_panels, layer_panels, object_panels, shading_panels)
+    return tuple(kind for module in modules for kind in module.CLASSES)
 
 
 def register() -> None:

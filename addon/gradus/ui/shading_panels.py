@@ -35,6 +35,25 @@ class GRADUS_MATERIAL_PT_surface(EnginePanel, bpy.types.Panel):
             self.layout.prop(material, "use_nodes", icon="NODETREE")
 
 
+class GRADUS_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
+    bl_label = "Settings"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.material is not None
+
+    def draw(self, context: Any) -> None:
+        layout, material = self.columns(), context.material
+        layout.prop(material, "pass_index")
+        # From 4.2 on the material's own; before, and for sampling always, of Cycles' add-on.
+        for owner in (material, getattr(material, "cycles", None)):
+            for name in ("use_transparent_shadow", "emission_sampling", "sample_as_light"):
+                if hasattr(owner, name):
+                    layout.prop(owner, name)
+
+
 class GRADUS_WORLD_PT_surface(EnginePanel, bpy.types.Panel):
     bl_label = "Surface"
     bl_context = "world"
@@ -68,13 +87,36 @@ class GRADUS_WORLD_PT_mist(EnginePanel, bpy.types.Panel):
             layout.prop(mist, name)
 
 
+class GRADUS_WORLD_PT_settings(EnginePanel, bpy.types.Panel):
+    bl_label = "Settings"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.world is not None
+
+    def draw(self, context: Any) -> None:
+        layout, world = self.columns(), context.world
+        layout.prop(world.light_settings, "distance", text="Ambient Occlusion Distance")
+        visibility, sampling = (getattr(world, name, None) for name in ("cycles_visibility", "cycles"))
+        if sampling is not None:  # these two are of Cycles' add-on
+            layout.prop(sampling, "sampling_method", text="Sampling")
+            if sampling.sampling_method == "MANUAL":
+                layout.prop(sampling, "sample_map_resolution")
+        if visibility is not None:
+            column = layout.column(heading="Ray Visibility")
+            for name in ("camera", "diffuse", "glossy", "transmission"):
+                column.prop(visibility, name)
+
+
 class GRADUS_DATA_PT_light(EnginePanel, bpy.types.Panel):
     bl_label = "Light"
     bl_context = "data"
 
     VALUES = {  # noqa: RUF012
-        "POINT": ("shadow_soft_size",),
-        "SPOT": ("shadow_soft_size", "spot_size", "spot_blend"),
+        "POINT": ("shadow_soft_size", "use_soft_falloff"),
+        "SPOT": ("shadow_soft_size", "use_soft_falloff", "spot_size", "spot_blend"),
         "SUN": ("angle",),
         "AREA": ("shape", "size"),
     }
@@ -87,13 +129,47 @@ class GRADUS_DATA_PT_light(EnginePanel, bpy.types.Panel):
         light = context.light
         self.layout.row().prop(light, "type", expand=True)
         layout = self.columns()
-        for name in ("color", "energy", "exposure", "normalize", *self.VALUES[light.type]):
-            if hasattr(light, name):  # exposure and normalize came with 4.5
+        names = ("use_temperature", "temperature", "color", "energy", "exposure", "normalize", *self.VALUES[light.type])
+        for name in names:
+            if hasattr(light, name):  # temperature, exposure and normalize came with 4.5
                 layout.prop(light, name)
         if light.type == "AREA" and light.shape in ("RECTANGLE", "ELLIPSE"):
             layout.prop(light, "size_y")
         if light.type == "AREA" and hasattr(light, "spread"):
             layout.prop(light, "spread")
+        cycles = getattr(light, "cycles", None)
+        if hasattr(cycles, "cast_shadow"):  # before 4.2
+            layout.prop(cycles, "cast_shadow")
+        else:
+            layout.prop(light, "use_shadow")
+        if hasattr(cycles, "max_bounces"):
+            layout.prop(cycles, "max_bounces")
+            layout.prop(cycles, "use_multiple_importance_sampling")
 
 
-CLASSES = (GRADUS_MATERIAL_PT_surface, GRADUS_WORLD_PT_surface, GRADUS_WORLD_PT_mist, GRADUS_DATA_PT_light)
+class GRADUS_DATA_PT_light_nodes(EnginePanel, bpy.types.Panel):
+    bl_label = "Nodes"
+    bl_context = "data"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.light is not None
+
+    def draw(self, context: Any) -> None:
+        light = context.light
+        self.layout.prop(light, "use_nodes", icon="NODETREE")
+        if light.use_nodes and light.node_tree is not None:
+            self.columns()
+            draw_output(self.layout, light.node_tree, "Surface")
+
+
+CLASSES = (
+    GRADUS_MATERIAL_PT_surface,
+    GRADUS_MATERIAL_PT_settings,
+    GRADUS_WORLD_PT_surface,
+    GRADUS_WORLD_PT_mist,
+    GRADUS_WORLD_PT_settings,
+    GRADUS_DATA_PT_light,
+    GRADUS_DATA_PT_light_nodes,
+)

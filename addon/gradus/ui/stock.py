@@ -16,7 +16,8 @@ MEMBER_OF = "BLENDER_RENDER"
 EXCLUDED = {
     "VIEWLAYER_PT_layer_passes": "an empty shell; ours lists the passes that we have",
     "VIEWLAYER_PT_eevee_next_layer_passes_data": "EEVEE's passes",
-    "VIEWLAYER_PT_filter": "hair and volumes are not rendered yet",
+    "VIEWLAYER_PT_filter": "hair and volumes are not rendered yet; ours has the rest",
+    "VIEWLAYER_PT_override": "ours has the samples of the layer, too",
     "RENDER_PT_freestyle": "needs bl_use_custom_freestyle",
     "VIEWLAYER_PT_freestyle": "needs bl_use_custom_freestyle",
     "VIEWLAYER_PT_freestyle_lineset": "needs bl_use_custom_freestyle",

@@ -1,0 +1,35 @@
+"""Objects: which rays see them. The stock panel Visibility leaves this to the engine."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from ..export.visibility import RAY_SWITCHES
+from .base import EnginePanel
+
+SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "META", "FONT"})
+SHOWN = SURFACES | {"LIGHT", "EMPTY"}  # empties show collections
+
+
+class GRADUS_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.object is not None and context.object.type in SHOWN
+
+    def draw(self, context: Any) -> None:
+        layout, obj = self.columns(), context.object
+        column = layout.column()
+        for name, _ in RAY_SWITCHES:
+            if name != "visible_volume_scatter":
+                column.prop(obj, name, text=name.removeprefix("visible_").capitalize())
+        if obj.type in SURFACES:
+            layout.prop(obj, "is_holdout")
+
+
+CLASSES = (GRADUS_OBJECT_PT_ray_visibility,)
