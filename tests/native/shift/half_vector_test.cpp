@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "shift/reconnection.h"
+#include "support/statistics.h"
 
 namespace gradus {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using DVec3 = glm::dvec3;
 using DirectionMap = std::function<bool(const DVec3&, DVec3*)>;
 
-constexpr int kShifts = 20000;
+const int kShifts = test::full_run() ? 1000000 : 100000;
 
 DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
 
