@@ -47,7 +47,7 @@ RECONSTRUCTIONS = (
     ("L1", "L1", "Least absolute deviations: robust to outliers, without dipoles; biased, it may darken", 4),
 )
 FILTERS = (
-    ("BOX", "Box", "Box of the given width", 0),
+    ("BOX", "Box", "One pixel, whatever the width", 0),
     ("GAUSSIAN", "Gaussian", "Gauss curve of the given width", 1),
     ("BLACKMAN_HARRIS", "Blackman-Harris", "Cycles' default: smooth and compact", 2),
 )
@@ -113,7 +113,7 @@ SETTINGS: tuple[Setting, ...] = (
         100,
     ),
     Setting("pixel_filter", ENUM, "BLACKMAN_HARRIS", "Pixel Filter", "How samples around a pixel count for it", choices=FILTERS),
-    Setting("filter_width", FLOAT, 1.5, "Filter Width", "Width of the pixel filter in pixels", 0.01, 10, 10, 2),
+    Setting("filter_width", FLOAT, 1.5, "Filter Width", "Width of the pixel filter in pixels, as in Cycles", 0.01, 10, 10, 2),
     Setting("film_exposure", FLOAT, 1.0, "Exposure", "Factor on all radiance that is delivered", 0, MAX_FLOAT, 10),
     Setting(
         "roughness_threshold",

@@ -21,6 +21,18 @@ double filter_value(uint32_t type, double v) {
   return 1.0;
 }
 
+// Full support in pixels. Cycles' width means a third of a Gauss curve's support and a half of Blackman-Harris's; its box takes none.
+double support(uint32_t type, float width) {
+  switch (type) {
+    case GRADUS_FILTER_GAUSSIAN:
+      return 3.0 * width;
+    case GRADUS_FILTER_BLACKMAN_HARRIS:
+      return 2.0 * width;
+    default:
+      return 1.0;
+  }
+}
+
 }  // namespace
 
 FilmFilter::FilmFilter(uint32_t type, float width) {
@@ -29,7 +41,7 @@ FilmFilter::FilmFilter(uint32_t type, float width) {
   for (int i = 0; i < fine; ++i) {
     cumulated[i + 1] = cumulated[i] + filter_value(type, (i + 0.5) / fine - 0.5);
   }
-  const double support = type == GRADUS_FILTER_BOX ? 1.0 : width;
+  const double full = support(type, width);
   int j = 0;
   for (int i = 0; i <= kCells; ++i) {
     const double target = cumulated[fine] * i / kCells;
@@ -38,7 +50,7 @@ FilmFilter::FilmFilter(uint32_t type, float width) {
     }
     const double mass = cumulated[j + 1] - cumulated[j];
     const double inside = mass > 0.0 ? std::fmin(1.0, (target - cumulated[j]) / mass) : 0.0;
-    inverse_[i] = static_cast<float>(((j + inside) / fine - 0.5) * support);
+    inverse_[i] = static_cast<float>(((j + inside) / fine - 0.5) * full);
   }
 }
 

@@ -12,7 +12,8 @@ namespace gradus {
 class FilmFilter {
  public:
   FilmFilter() = default;
-  // type: GradusPixelFilter. width: full support in pixels; the box is always one pixel wide (as in Cycles).
+  // type: GradusPixelFilter. width: in pixels, as Cycles understands it: about the width at a tenth of the height; the box is always one
+  // pixel wide.
   FilmFilter(uint32_t type, float width);
   // Offset from the pixel's centre.
   Vec2 sample(const Vec2& u) const { return Vec2(sample_axis(u.x), sample_axis(u.y)); }
@@ -20,7 +21,7 @@ class FilmFilter {
  private:
   static constexpr int kCells = 1024;
   float sample_axis(float u) const;
-  std::array<float, kCells + 1> inverse_{};  // inverse of the cumulated filter over [-width/2, width/2]
+  std::array<float, kCells + 1> inverse_{};  // inverse of the cumulated filter over its support
 };
 
 }  // namespace gradus

@@ -48,7 +48,7 @@ constexpr Option kOptions[] = {
     OPTION(clamp_direct, kFloat, 0, 0, kMaxFloat, "", kSampling, "Largest direct radiance of a sample, 0 = off: clamping is bias"),
     OPTION(clamp_indirect, kFloat, 0, 0, kMaxFloat, "", kSampling, "Largest indirect radiance of a sample, 0 = off: clamping is bias"),
     OPTION(pixel_filter, kEnum, GRADUS_FILTER_BLACKMAN_HARRIS, 0, 2, kFilters, kSampling, "Pixel filter, importance-sampled"),
-    OPTION(filter_width, kFloat, 1.5, 0.01, 10, "", kSampling, "Width of the pixel filter in pixels"),
+    OPTION(filter_width, kFloat, 1.5, 0.01, 10, "", kSampling, "Width of the pixel filter in pixels, as in Cycles"),
     OPTION(film_exposure, kFloat, 1, 0, kMaxFloat, "", kOther, "Factor on all radiance that is delivered"),
     OPTION(film_transparent, kBool, 0, 0, 1, "", kSampling, "The world is transparent to the camera; alpha is reconstructed as a fourth channel"),
     OPTION(roughness_threshold, kFloat, 0.1, 0, 1, "", kSampling,
