@@ -125,8 +125,13 @@ class View:
                 library.render_release(old)
             library.scene_commit(self.session.scene, byref(self.cancel), None)
             handle = ctypes.c_uint64()
+            if self.cancel.value:
+                return
             library.render_start(self.session.scene, byref(self.settings), byref(handle))
             self.render = handle.value
+            # interrupt() sets `cancel` and then looks for a render: whichever comes first, one of the two sees the other.
+            if self.cancel.value:
+                library.render_cancel(self.render)
         except GradusError as error:
             if error.code != Error.CANCELLED:
                 self.error = error

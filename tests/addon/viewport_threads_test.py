@@ -1,0 +1,51 @@
+"""The viewport's threads, without a window: a native library in Python stands in."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from gradus import native, viewport
+
+
+class FakeLibrary:
+    """Calls `during` in the middle of one function."""
+
+    def __init__(self, name: str, during: Callable[[], None]) -> None:
+        self.calls: list[str] = []
+        self._name, self._during = name, during
+
+    def _call(self, name: str) -> None:
+        self.calls.append(name)
+        if name == self._name:
+            self._during()
+
+    def scene_commit(self, *_: Any) -> None:
+        self._call("commit")
+
+    def render_start(self, _scene: int, _settings: Any, handle: Any) -> None:
+        self._call("start")
+        ctypes.cast(handle, ctypes.POINTER(ctypes.c_uint64))[0] = 7
+
+    def render_cancel(self, render: int) -> None:
+        assert render == 7
+        self._call("cancel")
+
+
+def interrupted_during(name: str) -> FakeLibrary:
+    view = viewport.View.__new__(viewport.View)
+    view.cancel, view.render, view.worker, view.error = ctypes.c_int32(0), 0, None, None
+    view.settings = native.Settings()
+    library = FakeLibrary(name, view.interrupt)
+    view.session = SimpleNamespace(library=library, scene=1)
+    view._work(0)
+    return library
+
+
+@pytest.mark.parametrize(("name", "calls"), [("commit", ["commit"]), ("start", ["commit", "start", "cancel"])])
+def test_k4_a_cancel_before_the_render_has_a_handle_is_not_lost(name: str, calls: list[str]) -> None:
+    """The render went on beside the edit that had stopped it."""
+    assert interrupted_during(name).calls == calls
