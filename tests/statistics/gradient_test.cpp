@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradus/gradus_nodes.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -233,6 +234,71 @@ TEST(B7_SharedVertex, LightFoundBehindItIsWeighedByEachPathsOwnDensity) {
   }
   difference.check("dx", 8);
 }
+
+// What depends on the kind of a bounce.
+struct KindCase {
+  const char* name;
+  uint32_t visibility = GRADUS_VISIBLE_ALL;  // of the light
+  int emission_kind = -1;
+  uint32_t diffuse_bounces = 8;
+};
+
+class Kinds : public testing::TestWithParam<KindCase> {
+ protected:
+  // A floor whose halves scatter with the same class but mostly diffuse and mostly glossy, under a light and its reflection in a wall.
+  GradientImages image(uint32_t seed, bool sampled_as_light, uint32_t samples) {
+    PathScene scene;
+    test::Surface left, right, wall, light;
+    left.diffuse = right.glossy = Rgb(0.7f, 0.6f, 0.5f);
+    left.glossy = right.diffuse = Rgb(0.15f);
+    left.glossy_roughness = right.glossy_roughness = 0.6f;
+    wall.diffuse = Rgb(0.8f);
+    light.emission = Rgb(6.0f);
+    light.emission_kind = GetParam().emission_kind;
+    light.sampled_as_light = sampled_as_light;
+    scene.quad(Vec3(-1, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2), scene.material(left));
+    scene.quad(Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2), scene.material(right));
+    scene.quad(Vec3(-1, 0, -1), Vec3(2, 0, 0), Vec3(0, 1.5f, 0), scene.material(wall));
+    scene.quad(Vec3(-1, 1.6f, -0.8f), Vec3(2, 0, 0), Vec3(0, 0, 1), scene.material(light), GetParam().visibility);
+    scene.camera(Vec3(0, 0.9f, 1.2f), Vec3(0, 0, 0), 0.6f);
+    GradusSettings settings = test::test_settings(6, 3);
+    settings.seed = seed;
+    settings.independent_sampler = 1;
+    settings.max_bounces = 3;
+    settings.diffuse_bounces = GetParam().diffuse_bounces;
+    const IntegratorContext c = scene.context(settings);
+    Frame frame = test::make_test_frame(c.settings, true);
+    test::sample_frame(*make_gradient_integrator(c), 0, samples, &frame);
+    return read_images(frame, 0, false);
+  }
+};
+
+// A pixel's paths differ by which lobe their direction came from, which no density told.
+TEST_P(Kinds, B7_TheSampledLobeIsPartOfThePath) {
+  DifferenceStatistics dx;
+  for (uint32_t seed = 0; seed < 32; ++seed) dx.add(image(seed, true, 512), true);
+  dx.check("dx", 40);
+}
+
+// Light sampling and BSDF sampling saw different emissions: the picture depended on how a light was found.
+TEST_P(Kinds, B7_BothTechniquesSeeTheSameEmission) {
+  DifferenceStatistics difference;
+  for (uint32_t seed = 0; seed < 32; ++seed) {
+    GradientImages images = image(5000 + seed, true, 512);
+    images.dx = image(8000 + seed, false, 512).primal;
+    for (size_t i = 0; i < images.dx.size(); ++i) images.dx[i] -= images.primal[i];
+    std::fill(images.primal.begin(), images.primal.end(), 0.0f);
+    difference.add(images, true);
+  }
+  difference.check("image", 40);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Kinds,
+                         testing::Values(KindCase{"LimitOfDiffuseBounces", GRADUS_VISIBLE_ALL, -1, 0},
+                                         KindCase{"LightHiddenFromDiffuse", GRADUS_VISIBLE_ALL & ~GRADUS_VISIBLE_DIFFUSE},
+                                         KindCase{"EmissionForGlossyRays", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_GLOSSY},
+                                         KindCase{"EmissionByDepth", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_DIFFUSE_DEPTH}),
+                         [](const testing::TestParamInfo<KindCase>& info) { return std::string(info.param.name); });
 
 std::vector<Scenario> all_scenarios() {
   std::vector<Scenario> all;

@@ -71,6 +71,12 @@ struct BsdfEval {
   float pdf = 0.0f;  // p(wi | class)
 };
 
+// The whole class, and of it the lobes that make the same kind of bounce (diffuse or not): what limits on bounces, visibility to kinds of
+// rays, and the Light Path node look at.
+struct KindEval {
+  BsdfEval all, kind;
+};
+
 struct BsdfSample {
   Vec3 wi = Vec3(0.0f);
   Rgb value = Rgb(0.0f);  // f·|cos|, of the whole class for smooth lobes; for Dirac the coefficient
@@ -80,7 +86,9 @@ struct BsdfSample {
   float eta = 1.0f;          // IOR of the side of wi over that of wo; 1 for reflection
   float alpha = 1.0f;        // roughness of the sampled lobe, for the shift's criteria
   Vec3 lobe_normal = Vec3(0, 0, 1);
-  uint8_t lobe = 0;  // index of the sampled lobe
+  uint8_t lobe = 0;      // index of the sampled lobe
+  bool diffuse = false;  // kind of the sampled lobe
+  BsdfEval kind;         // value and density of the class's lobes of this kind; for Dirac value and pdf again
 };
 
 // Directional albedo of one lobe by itself, weight included, before finish(): for layering, so without what single scattering loses. wo
@@ -115,6 +123,8 @@ class Closures {
 
   // All smooth lobes of one class together.
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
+  // The same, and apart the lobes that make diffuse bounces, or those that do not.
+  KindEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const;
   // The same, split by Blender's light passes (contract 6.5): value of each pass; sums to evaluate().value.
   std::array<Rgb, 3> evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
   // u: direction; u_lobe: choice of the lobe. False: absorbed.

@@ -35,6 +35,8 @@ size_t pass_of(const Lobe& lobe, bool transmitted) {
   return static_cast<size_t>(reflecting_glass && lobe.pass == LightPass::Transmission ? LightPass::Glossy : lobe.pass);
 }
 
+bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse; }
+
 float stay_below_one(float u) { return std::min(u, 0.99999994f); }
 
 }  // namespace
@@ -57,16 +59,23 @@ BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3
   return eval;
 }
 
-BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
+BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const { return evaluate(c, wo, wi, false).all; }
+
+KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const {
   const size_t k = static_cast<size_t>(c);
   const bool transmitted = crosses(wi);
-  BsdfEval sum;
+  KindEval sum;
   for (int i = 0; i < entry_count_[k]; i++) {
     const Entry& entry = entries_[k][static_cast<size_t>(i)];
-    if (!entry.dirac) {
-      const BsdfEval part = evaluate_entry(entry, wo, wi, transmitted);
-      sum.value += part.value;
-      sum.pdf += part.pdf;
+    if (entry.dirac) {
+      continue;
+    }
+    const BsdfEval part = evaluate_entry(entry, wo, wi, transmitted);
+    sum.all.value += part.value;
+    sum.all.pdf += part.pdf;
+    if (is_diffuse(lobes_[entry.lobe]) == diffuse) {
+      sum.kind.value += part.value;
+      sum.kind.pdf += part.pdf;
     }
   }
   return sum;
@@ -106,6 +115,8 @@ bool Closures::evaluate_dirac(int index, const Vec3& wo, bool transmitted, BsdfS
     out->alpha = 0.0f;
     out->lobe_normal = source.normal;
     out->lobe = static_cast<uint8_t>(index);
+    out->diffuse = is_diffuse(source);
+    out->kind = {out->value, out->pdf};
     return crosses(out->wi) == transmitted;
   }
   return false;
@@ -133,9 +144,12 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
     return false;
   }
   out->wi = glm::normalize(frame.to_world(local));
-  const BsdfEval eval = evaluate(c, wo, out->wi);
+  out->diffuse = is_diffuse(source);
+  const KindEval kinds = evaluate(c, wo, out->wi, out->diffuse);
+  const BsdfEval& eval = kinds.all;
   out->value = eval.value;
   out->pdf = eval.pdf;
+  out->kind = kinds.kind;
   out->dirac = false;
   out->transmitted = crosses(out->wi);
   out->eta = out->transmitted && is_microfacet(source.type) ? source.ior : 1.0f;

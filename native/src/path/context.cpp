@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/emitter_table.h"
 #include "shading/material.h"
 
 namespace gradus {
@@ -11,8 +12,21 @@ namespace {
 // Blender's value bounds the mean of the channels; 0 is "no limit".
 float sum_limit(float clamp) { return clamp > 0.0f ? 3.0f * clamp : kInfinity; }
 
+constexpr uint32_t kBounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION;
+
+// Hidden from some kinds of bounces and not from others.
+bool tells_kinds_apart(uint32_t visibility) { return (visibility & kBounces) != 0 && (visibility & kBounces) != kBounces; }
+
+bool kinds_matter_in(const Snapshot& scene) {
+  const auto any = [](const auto& list, auto&& test) { return std::any_of(list.begin(), list.end(), test); };
+  return tells_kinds_apart(scene.world.visibility) || any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
+         any(scene.instances, [](const InstanceData& i) { return tells_kinds_apart(i.visibility); }) ||
+         (scene.emitters &&
+          any(scene.emitters->lamps, [](const Lamp& lamp) { return !lamp.dirac() && tells_kinds_apart(lamp.visibility); }));
+}
+
 bool is_uniform(const Snapshot& scene) {
-  constexpr uint32_t bounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION | GRADUS_VISIBLE_SHADOW;
+  constexpr uint32_t bounces = kBounces | GRADUS_VISIBLE_SHADOW;
   for (const InstanceData& instance : scene.instances) {
     const uint32_t bits = instance.visibility & bounces;
     if (bits != 0 && bits != bounces) {
@@ -36,6 +50,7 @@ PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const 
       clamp_direct(sum_limit(settings_.clamp_direct)),
       clamp_indirect(sum_limit(settings_.clamp_indirect)),
       has_transparency(lets_through(snapshot)),
-      uniform_visibility(is_uniform(snapshot)) {}
+      uniform_visibility(is_uniform(snapshot)),
+      kinds_matter(kinds_matter_in(snapshot)) {}
 
 }  // namespace gradus

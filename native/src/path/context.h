@@ -23,6 +23,9 @@ struct PathContext {
   bool has_transparency = true;
   // All surfaces look the same to every kind of bounce and to shadow rays, so that a shadow ray answers for a path segment.
   bool uniform_visibility = true;
+  // What a ray finds depends on the kind of bounce that it comes from: on visibility to kinds of rays, or on a Light Path node in front of
+  // an emission or a transparency.
+  bool kinds_matter = false;
 };
 
 // A contribution, clamped by the rule of its kind; keeps the hue (Cycles' film_clamp_light; a user's value bounds the channels' mean).

@@ -49,10 +49,11 @@ Contribution emission_contribution(const PathContext& context, const RaySource& 
   return found(context, source, state, state.throughput, vertex.shade.emission, light_pdf(context, source, point));
 }
 
-bool light_classes(const Vertex& vertex, const LightSample& light, LitClass lit[kScatterClasses]) {
+bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light, const RayState& ray,
+                   LitClass lit[kScatterClasses]) {
   bool any = false;
   for (int k = 0; k < kScatterClasses; ++k) {
-    lit[k] = light_class(vertex, static_cast<ScatterClass>(k), light.view, light.point.dirac);
+    lit[k] = light_class(context, vertex, static_cast<ScatterClass>(k), light, ray);
     any |= !is_black(lit[k].value);
   }
   return any;
@@ -67,7 +68,7 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
   c.pdf_light = light.view.pdf;
   c.pdf_bsdf = lit.pdf_bsdf;
   c.indirect = state.depth > 0;
-  c.light = light.view.radiance * transmittance;
+  c.light = transmittance;
   c.tail = lit.value * c.light / (c.pdf_light + c.pdf_bsdf);
   c.clamped = clamp_contribution(context, state.throughput * c.tail, c.indirect);
   return c;

@@ -10,7 +10,7 @@ namespace gradus {
 struct Contribution {
   Rgb clamped = Rgb(0.0f);
   Rgb tail = Rgb(0.0f);
-  Rgb light = Rgb(0.0f);   // radiance and transmittance of the tail
+  Rgb light = Rgb(0.0f);   // of the tail: what a ray found; in next-event estimation the transmittance
   float pdf_light = 0.0f;  // of the techniques that could have found the emitter, in solid angle
   float pdf_bsdf = 0.0f;
   bool indirect = false;
@@ -25,7 +25,8 @@ Contribution world_contribution(const PathContext& context, const RaySource& sou
 Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state, const Vertex& vertex);
 
 // Next-event estimation. False: no class scatters the light.
-bool light_classes(const Vertex& vertex, const LightSample& light, LitClass lit[kScatterClasses]);
+bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light, const RayState& ray,
+                   LitClass lit[kScatterClasses]);
 Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, const LitClass& lit,
                                 const Rgb& transmittance);
 

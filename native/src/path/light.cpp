@@ -25,23 +25,41 @@ bool sample_light(const PathContext& context, const Sampler& sampler, const Vert
   return light->view.pdf > 0.0f && !is_black(light->view.radiance) && static_cast<uint32_t>(depth) <= light->view.max_bounces;
 }
 
-LitClass light_class(const Vertex& vertex, ScatterClass c, const EmitterView& view, bool dirac_emitter) {
+std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light,
+                                 const RayState& ray) {
+  const EmitterView& view = light.view;
+  const bool transmitted = glm::dot(vertex.facing_normal(), view.direction) < 0.0f;
+  std::array<Rgb, 3> parts = vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction);
+  for (int i = 0; i < 3; ++i) {
+    const auto pass = static_cast<LightPass>(i);
+    if (is_black(parts[i])) continue;
+    if (!sees(view.visibility, pass, transmitted)) {
+      parts[i] = Rgb(0.0f);
+    } else if (!view.by_kind) {
+      parts[i] *= view.radiance;
+    } else {
+      RayState next = next_ray_state(ray, pass == LightPass::Diffuse, transmitted, false);
+      next.length = view.distance;
+      parts[i] *= emitter_radiance(context.scene, light.point, view, next);
+    }
+  }
+  return parts;
+}
+
+LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light, const RayState& ray) {
   LitClass lit;
   const Closures& closures = vertex.shade.closures;
   const float probability = closures.class_probability(c);
   if (!(probability > 0.0f) || !closures.has_smooth(c)) {
     return lit;
   }
+  const EmitterView& view = light.view;
   const BsdfEval eval = closures.evaluate(c, vertex.wo, view.direction);
-  lit.value = eval.value;
-  lit.pdf_bsdf = dirac_emitter ? 0.0f : probability * eval.pdf;
-  if ((view.visibility & kAllBounces) != kAllBounces) {
-    const bool transmitted = glm::dot(vertex.facing_normal(), view.direction) < 0.0f;
-    const std::array<Rgb, 3> parts = closures.evaluate_by_pass(c, vertex.wo, view.direction);
-    lit.value = Rgb(0.0f);
-    for (int pass = 0; pass < 3; ++pass) {
-      lit.value += sees(view.visibility, static_cast<LightPass>(pass), transmitted) ? parts[pass] : Rgb(0.0f);
-    }
+  lit.value = eval.value * view.radiance;
+  lit.pdf_bsdf = light.point.dirac ? 0.0f : probability * eval.pdf;
+  if (view.by_kind || (view.visibility & kAllBounces) != kAllBounces) {
+    const std::array<Rgb, 3> parts = light_by_pass(context, vertex, c, light, ray);
+    lit.value = parts[0] + parts[1] + parts[2];
   }
   return lit;
 }

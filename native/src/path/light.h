@@ -17,14 +17,18 @@ struct LightSample {
 
 // Light scattered within one class.
 struct LitClass {
-  Rgb value = Rgb(0.0f);  // f·|cos| of what the emitter may be seen by
+  Rgb value = Rgb(0.0f);  // f·|cos|·radiance
   float pdf_bsdf = 0.0f;  // P(class)·p(direction | class); 0 for emitters that BSDF sampling cannot find
 };
 
 // Emitter by the sample's random numbers. False: there is nothing to see.
 bool sample_light(const PathContext& context, const Sampler& sampler, const Vertex& vertex, int depth, LightSample* light);
-// Scattering of the emitter's light at a vertex towards its wo; the kinds of bounces that the emitter is hidden from are left out.
-LitClass light_class(const Vertex& vertex, ScatterClass c, const EmitterView& view, bool dirac_emitter);
+// Scattering of an emitter's light at a vertex towards its wo, the shadow left out. Each kind of bounce sees what a ray of that kind would
+// find: both techniques have the same integrand. ray: that arrived at the vertex.
+LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light, const RayState& ray);
+// The same, split by Blender's light passes.
+std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light,
+                                 const RayState& ray);
 // Transmittance for shadow rays.
 Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterPoint& point, const EmitterView& view,
                         uint32_t crossed);

@@ -86,11 +86,12 @@ void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare&
   }
 }
 
-void PassRecorder::light(int depth, const Vertex& vertex, ScatterClass c, const EmitterView& view, const Rgb& value) {
+void PassRecorder::light(const PathState& state, const Vertex& vertex, ScatterClass c, const LightSample& light, const Rgb& value) {
   if (!lights_) {
     return;
   }
-  add_light(depth + 1, value, depth == 0 ? share_of(vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction)) : share_,
+  const bool first = state.depth == 0;
+  add_light(state.depth + 1, value, first ? share_of(light_by_pass(context_, vertex, c, light, state.ray.state)) : share_,
             GRADUS_PASS_EMISSION);
 }
 
@@ -99,8 +100,15 @@ void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent
     return;
   }
   const Closures& closures = vertex.shade.closures;
-  share_ = event.sample.dirac ? whole(closures.lobe(event.sample.lobe).pass)
-                              : share_of(closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi));
+  if (event.sample.dirac) {
+    share_ = whole(closures.lobe(event.sample.lobe).pass);
+    return;
+  }
+  std::array<Rgb, 3> parts = closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi);
+  for (int pass = 0; pass < 3 && event.by_kind; ++pass) {
+    if ((static_cast<LightPass>(pass) == LightPass::Diffuse) != event.sample.diffuse) parts[pass] = Rgb(0.0f);
+  }
+  share_ = share_of(parts);
 }
 
 void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {

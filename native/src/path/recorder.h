@@ -24,8 +24,8 @@ class PassRecorder {
   // Light that was scattered `scatterings` times; 0: seen by the camera.
   void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
   void environment(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT); }
-  // Light that next-event estimation at a vertex with `depth` scatterings before it found in one class.
-  void light(int depth, const Vertex& vertex, ScatterClass c, const EmitterView& view, const Rgb& value);
+  // Light that next-event estimation at a vertex, where the path arrived with `state`, found in one class.
+  void light(const PathState& state, const Vertex& vertex, ScatterClass c, const LightSample& light, const Rgb& value);
   // The path scatters at a vertex with `depth` scatterings before it.
   void scattered(int depth, const Vertex& vertex, const ScatterEvent& event);
 

@@ -46,22 +46,20 @@ uint32_t bounce_visibility(LightPass pass, bool transmitted) {
   return pass == LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
 }
 
+RayState next_ray_state(const RayState& before, bool diffuse, bool transmitted, bool dirac) {
+  RayState state = before;
+  state.flags = (transmitted ? kRayTransmission : kRayReflection) | (diffuse ? kRayDiffuse : kRayGlossy) | (dirac ? kRaySingular : 0u);
+  state.length = 0.0f;
+  ++state.depth;
+  ++(transmitted ? state.transmission_depth : diffuse ? state.diffuse_depth : state.glossy_depth);
+  return state;
+}
+
 void follow(const PathContext&, const SurfacePoint& from, const Vec3& direction, LightPass pass, bool transmitted, bool dirac,
             PathRay* ray) {
   ray->ray = spawn_ray(from, direction);
   ray->visibility = bounce_visibility(pass, transmitted);
-  RayState& state = ray->state;
-  state.flags = (transmitted ? kRayTransmission : kRayReflection) | (pass == LightPass::Diffuse ? kRayDiffuse : kRayGlossy) |
-                (dirac ? kRaySingular : 0u);
-  state.length = 0.0f;
-  ++state.depth;
-  if (transmitted) {
-    ++state.transmission_depth;
-  } else if (pass == LightPass::Diffuse) {
-    ++state.diffuse_depth;
-  } else {
-    ++state.glossy_depth;
-  }
+  ray->state = next_ray_state(ray->state, pass == LightPass::Diffuse, transmitted, dirac);
 }
 
 float survive(const Sampler& sampler, PathState* state) {
@@ -87,11 +85,13 @@ bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& v
     return false;
   }
   event->pdf = closures.class_probability(event->scatter_class) * sample.pdf;
-  if (!(event->pdf > 0.0f) || is_black(sample.value)) {
+  event->by_kind = context.kinds_matter;
+  const Rgb& value = event->by_kind ? sample.kind.value : sample.value;
+  if (!(event->pdf > 0.0f) || is_black(value)) {
     return false;
   }
   event->dirac_rank = sample.dirac ? dirac_rank(closures, event->scatter_class, sample.lobe) : 0;
-  event->factor = sample.value / event->pdf;
+  event->factor = value / (event->by_kind ? event->pdf * event->kind_share() : event->pdf);
   state->throughput *= event->factor;
   ++state->depth;
   follow(context, vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac, &state->ray);

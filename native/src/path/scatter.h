@@ -18,8 +18,11 @@ struct ScatterEvent {
   ScatterClass scatter_class = ScatterClass::Diffuse;
   BsdfSample sample;
   float pdf = 0.0f;        // P(class)·p(direction | class); for Dirac events of the choice alone
+  bool by_kind = false;    // the kind of bounce is part of what is sampled: factor is that of its lobes alone
   int dirac_rank = 0;      // the sampled Dirac lobe's number among those of its class
   Rgb factor = Rgb(0.0f);  // value / pdf: what the throughput was multiplied with
+  // P(kind | direction) within the class.
+  float kind_share() const { return sample.kind.pdf / sample.pdf; }
 };
 
 // GradusVisibility bit of the bounce.
@@ -34,6 +37,8 @@ float survive(const Sampler& sampler, PathState* state);
 // segment.
 bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& vertex, PathState* state, ScatterEvent* event);
 
+// The state of the ray that leaves a vertex by such a bounce.
+RayState next_ray_state(const RayState& state, bool diffuse, bool transmitted, bool dirac);
 // The new segment's ray for a given direction; also for shifted paths, whose rays look like those of their base.
 void follow(const PathContext& context, const SurfacePoint& from, const Vec3& direction, LightPass pass, bool transmitted, bool dirac,
             PathRay* ray);

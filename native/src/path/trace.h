@@ -156,7 +156,8 @@ class PathTracer {
 
   void add_light(const Sampler& sampler, const Vertex& vertex) {
     LitClass lit[kScatterClasses];
-    if (!sample_light(context_, sampler, vertex, state_.depth, &s_.light) || !light_classes(vertex, s_.light, lit)) {
+    if (!sample_light(context_, sampler, vertex, state_.depth, &s_.light) ||
+        !light_classes(context_, vertex, s_.light, state_.ray.state, lit)) {
       return;
     }
     ++counters_.rays_shadow;
@@ -166,7 +167,7 @@ class PathTracer {
       if (!is_black(c.clamped)) {
         add(c.clamped);
         const auto scatter_class = static_cast<ScatterClass>(k);
-        if (recorder_ != nullptr) recorder_->light(state_.depth, vertex, scatter_class, s_.light.view, c.clamped);
+        if (recorder_ != nullptr) recorder_->light(state_, vertex, scatter_class, s_.light, c.clamped);
         observer_.light(vertex, s_.light, scatter_class, c);
       }
     }

@@ -153,17 +153,28 @@ void multiply_choice(double probability, EmitterView* view) {
   if (!is_finite(view->pdf)) view->pdf = 0.0f;
 }
 
+bool depends_on_kind(const Snapshot& snapshot, const EmitterPoint& point) {
+  const uint32_t material =
+      point.kind == EmitterKind::World ? snapshot.world_material : snapshot.material_of(point.instance, point.triangle);
+  return material < snapshot.materials.size() && snapshot.materials[material]->depends_on_kind;
+}
+
 void shade_view(const Snapshot& snapshot, const EmitterPoint& point, EmitterView* view) {
-  if (point.kind == EmitterKind::Lamp) view->radiance *= lamp_emission(snapshot, snapshot.emitters->lamps[point.index], point, *view);
-  if (point.kind == EmitterKind::Triangle && view->cosine > 0.0f) {
-    const Rgb* constant = constant_emission(snapshot, point);
-    const RayState ray = light_ray(view->distance);
-    view->radiance = constant ? *constant : shade_emission(snapshot, surface_of(snapshot, point), -view->direction, ray);
+  if (point.kind == EmitterKind::Lamp) {
+    view->radiance *= lamp_emission(snapshot, snapshot.emitters->lamps[point.index], point, *view);
+  } else if (point.kind != EmitterKind::None && view->cosine > 0.0f) {
+    view->by_kind = depends_on_kind(snapshot, point);
+    view->radiance = view->by_kind ? Rgb(1.0f) : emitter_radiance(snapshot, point, *view, light_ray(view->distance));
   }
-  if (point.kind == EmitterKind::World) view->radiance = shade_world(snapshot, point.direction, light_ray(kInfinity));
 }
 
 }  // namespace
+
+Rgb emitter_radiance(const Snapshot& snapshot, const EmitterPoint& point, const EmitterView& view, const RayState& ray) {
+  if (point.kind == EmitterKind::World) return shade_world(snapshot, point.direction, ray);
+  if (const Rgb* constant = constant_emission(snapshot, point)) return *constant;
+  return shade_emission(snapshot, surface_of(snapshot, point), -view.direction, ray);
+}
 
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u) {
   double probability;

@@ -10,6 +10,7 @@ namespace gradus {
 
 class Snapshot;
 struct SurfacePoint;
+struct RayState;
 
 enum class EmitterKind : uint8_t { None, Lamp, Triangle, World };
 
@@ -39,6 +40,7 @@ struct EmitterView {
   bool casts_shadow = true;
   uint32_t visibility = 0;  // GradusVisibility bits: which kinds of bounce may see it
   uint32_t max_bounces = UINT32_MAX;
+  bool by_kind = false;  // the radiance depends on the kind of ray that looks: ask emitter_radiance(); `radiance` is 1
 };
 
 // The receiver of light; normal 0 for points without an orientation.
@@ -54,6 +56,8 @@ EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, 
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterView* view);
 // The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine there.
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
+// Radiance of a triangle or the world towards the receiver, for a ray of this kind.
+Rgb emitter_radiance(const Snapshot& snapshot, const EmitterPoint& point, const EmitterView& view, const RayState& ray);
 // The density of view_emitter() alone: for weights, where the radiance is known or not needed.
 float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
 // The segment from a surface to an emitter, both ends moved off their surfaces by what rounding may do.

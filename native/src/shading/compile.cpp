@@ -92,6 +92,14 @@ bool looks_at_ray(const Program& p) {
   return false;
 }
 
+// Light sampling and BSDF sampling see the same values of the modes that are left out.
+bool looks_at_kind(const Program& p) {
+  return std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) {
+    return i.op == GRADUS_OP_LIGHT_PATH && i.mode != GRADUS_LIGHT_PATH_CAMERA && i.mode != GRADUS_LIGHT_PATH_SHADOW &&
+           i.mode != GRADUS_LIGHT_PATH_LENGTH;
+  });
+}
+
 // Mean luminance over a few places, textures at their mean colour.
 float estimate(const Program& p, const ImageStore& images) {
   constexpr int kPlaces = 8;
@@ -151,6 +159,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   Analysis(m->surface, m.get()).run();
   describe_emission(m.get(), images);
   describe_transparency(m.get());
+  m->depends_on_kind = looks_at_kind(m->emission) || looks_at_kind(m->transparency);
   return m;
 }
 

@@ -48,8 +48,21 @@ ShiftedEvent event_towards(const ScatterEvent& event, const Vertex& y, const Vec
   if (!(probability > 0.0f) || !closures.has_smooth(event.scatter_class)) {
     return failed(ShiftFailure::Class);
   }
-  const BsdfEval eval = closures.evaluate(event.scatter_class, y.wo, wi);
-  return weigh(event, wi, eval.value, probability * eval.pdf, jacobian);
+  const KindEval eval = closures.evaluate(event.scatter_class, y.wo, wi, event.sample.diffuse);
+  // A kind is diffuse or not, reflected or transmitted; the latter follows from the direction.
+  const bool same_side = is_transmission(y, wi) == event.sample.transmitted;
+  const float share = same_side && eval.all.pdf > 0.0f ? eval.kind.pdf / eval.all.pdf : 0.0f;
+  const float kind_ratio = share / event.kind_share();
+  const float pdf = probability * eval.all.pdf;
+  if (event.by_kind && !(share > 0.0f)) {
+    return failed(same_side ? ShiftFailure::Class : ShiftFailure::Side);
+  }
+  if (event.by_kind) {
+    return weigh(event, wi, eval.kind.value / share, pdf, jacobian * kind_ratio);
+  }
+  ShiftedEvent shifted = weigh(event, wi, eval.all.value, pdf, jacobian);
+  shifted.kind_ratio = kind_ratio;
+  return shifted;
 }
 
 ShiftedEvent copy_event(const Vertex& x, const ScatterEvent& event, const Vertex& y) {

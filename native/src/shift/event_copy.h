@@ -13,6 +13,10 @@ struct ShiftedEvent {
   Rgb factor = Rgb(0.0f);  // value / pdf
   float pdf = 0.0f;        // P(class)·p(direction | class)
   float ratio = 0.0f;      // the event's factor of r: J·pdf'/pdf
+  // And the factor of r for the kind of the bounce, P'(kind | direction)/P(kind | direction), which counts from where it matters: for what
+  // lies behind the next vertex, because limits on bounces depend on it; where emitters do, too, it is part of `ratio`. 0: the offset
+  // makes no such bounce in this direction.
+  float kind_ratio = 1.0f;
   ShiftFailure failure = ShiftFailure::None;
 };
 

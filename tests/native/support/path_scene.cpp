@@ -18,6 +18,12 @@ class Program {
     }
     return node(op, static_cast<uint32_t>(values.size()), mode);
   }
+  int32_t emission(const Vec4& color, int light_path) {
+    const int32_t kind = node(GRADUS_OP_LIGHT_PATH, 0, static_cast<uint32_t>(light_path));
+    inputs_.push_back({-1, 0, {color.x, color.y, color.z, color.w}});
+    inputs_.push_back({kind, 0, {0, 0, 0, 0}});
+    return node(GRADUS_OP_EMISSION, 2, 0);
+  }
   int32_t combine(uint32_t op, int32_t a, int32_t b, float factor) {
     if (op == GRADUS_OP_MIX_SHADER) {
       inputs_.push_back({-1, 0, {factor, factor, factor, factor}});
@@ -65,7 +71,8 @@ int32_t build_surface(const Surface& s, Program* p) {
     surface = p->add(surface, p->closure(GRADUS_OP_GLASS, {Vec4(s.glass), Vec4(s.glass_roughness), Vec4(s.ior)}));
   }
   if (!is_black(s.emission)) {
-    surface = p->add(surface, p->closure(GRADUS_OP_EMISSION, {rgb(s.emission), Vec4(1.0f)}));
+    surface = p->add(surface, s.emission_kind >= 0 ? p->emission(rgb(s.emission), s.emission_kind)
+                                                   : p->closure(GRADUS_OP_EMISSION, {rgb(s.emission), Vec4(1.0f)}));
   }
   if (s.transparent > 0.0f) {
     surface = p->combine(GRADUS_OP_MIX_SHADER, surface, p->closure(GRADUS_OP_TRANSPARENT, {Vec4(1.0f)}), s.transparent);

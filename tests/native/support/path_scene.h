@@ -18,6 +18,7 @@ struct Surface {
   float glass_roughness = 0.0f;
   float ior = 1.5f;
   Rgb emission = Rgb(0.0f);
+  int emission_kind = -1;  // GradusLightPathMode: the emission is multiplied by it
   float transparent = 0.0f;
   bool sampled_as_light = true;
 };

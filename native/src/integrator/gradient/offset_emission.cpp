@@ -62,6 +62,9 @@ void OffsetPaths::seen() {
     if (o.fresh) {
       gradient_[k] += pairs_[k].paired(seen_, see(&o), o.ratio);
     }
+    if (o.stage == OffsetStage::Traced || o.stage == OffsetStage::Linked) {
+      include_kind(&o);
+    }
   }
 }
 

@@ -43,7 +43,7 @@ void OffsetPaths::light_all(const LightSample& sample) {
 void OffsetPaths::light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
   OffsetPath& o = offsets_[k];
   const EmitterView& view = o.light.view;
-  const LitClass lit = light_class(*o.here, scatter_class, view, sample.point.dirac);
+  const LitClass lit = light_class(context_, *o.here, scatter_class, LightSample{sample.point, view}, base_state_.ray.state);
   const bool all = joint(view) && reconnects(scatter_class) && !sample.point.dirac;
   const float pdf = all ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
@@ -52,7 +52,7 @@ void OffsetPaths::light_own(int k, const LightSample& sample, ScatterClass scatt
     alone(k, c);
     return;
   }
-  const Rgb value = o.state.throughput * lit.value * view.radiance * o.light.transmittance / (view.pdf + lit.pdf_bsdf);
+  const Rgb value = o.state.throughput * lit.value * o.light.transmittance / (view.pdf + lit.pdf_bsdf);
   pair(k, c, value, o.ratio * copy_jacobian(sample.point, sample.view, view) * pdf / base_pdf);
 }
 
@@ -63,15 +63,15 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
     alone(k, c);
     return;
   }
-  const LitClass lit = light_class(*o.linked, scatter_class, sample.view, sample.point.dirac);
-  if (is_black(lit.value)) {
+  const LitClass lit = light_class(context_, *o.linked, scatter_class, sample, base_state_.ray.state);
+  if (is_black(lit.value) || !(o.link.kind_ratio > 0.0f)) {
     ++counters_.fail_class;
     alone(k, c);
     return;
   }
   const bool all = joint(sample.view) && reconnects(scatter_class) && !sample.point.dirac;
   const float ratio = all ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
-  pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), o.link.ratio * ratio);
+  pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), o.link.ratio * o.link.kind_ratio * ratio);
 }
 
 void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {

@@ -20,6 +20,7 @@ void OffsetPaths::open_link(OffsetPath* o, const Vertex& vertex, const ShiftedEv
   o->link.open = true;
   o->link.throughput = o->state.throughput * event.factor * through / base_segment_->probability;
   o->link.ratio = o->ratio * event.ratio;
+  o->link.kind_ratio = event.kind_ratio;
   o->link.pdf = event.pdf;
   o->linked->point = vertex.point;
   o->linked->wo = -event.wi;
@@ -103,9 +104,14 @@ void OffsetPaths::scatter(const Vertex& vertex, const ScatterEvent& event) {
       fail(&o, shared.failure);
       continue;
     }
+    if (!(o.link.kind_ratio > 0.0f)) {
+      fail(&o, ShiftFailure::Class);
+      continue;
+    }
     ++counters_.shifts_reconnected;
     o.state.throughput = o.link.throughput * shared.factor;
-    o.ratio = o.link.ratio * shared.ratio;
+    o.ratio = o.link.ratio * o.link.kind_ratio * shared.ratio;
+    o.kind_ratio = shared.kind_ratio;
     o.shared_pdf = shared.pdf;
     o.stage = OffsetStage::Linked;
   }

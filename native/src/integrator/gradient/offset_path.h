@@ -30,7 +30,8 @@ struct OffsetLink {
   bool open = false;
   Rgb throughput = Rgb(0.0f);
   float ratio = 0.0f;
-  float pdf = 0.0f;  // of the direction to the shared vertex
+  float kind_ratio = 0.0f;  // for light and paths that go on; emission looks at `ratio` alone (ShiftedEvent)
+  float pdf = 0.0f;         // of the direction to the shared vertex
 };
 
 // A light sample seen from an offset's own vertex.
@@ -43,6 +44,7 @@ struct OffsetLight {
 struct OffsetPath {
   OffsetStage stage = OffsetStage::Absent;
   float ratio = 1.0f;
+  float kind_ratio = 1.0f;  // of the last event (ShiftedEvent); in `ratio` once the emission behind that event has been seen
   PathState state;          // throughput, and the ray of the last segment that it traced
   Segment segment;          // that segment
   ScatterEvent event;       // density and kind of the event that began it

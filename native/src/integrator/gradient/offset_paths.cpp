@@ -34,7 +34,7 @@ void count_failure(Counters* counters, ShiftFailure cause) {
 }
 
 OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters)
-    : context_(context), counters_(*counters), joint_(!context.has_transparency && context.uniform_visibility) {
+    : context_(context), counters_(*counters), joint_(!context.has_transparency && context.uniform_visibility && !context.kinds_matter) {
   for (OffsetPath& o : offsets_) {
     o.here = &o.storage[0];
     o.previous = &o.storage[1];
@@ -70,7 +70,7 @@ void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& le
     OffsetPath& o = offsets_[k];
     o.stage = pairs_[k].present() ? OffsetStage::Traced : OffsetStage::Absent;
     o.state = PathState{};
-    o.ratio = 1.0f;
+    o.ratio = o.kind_ratio = 1.0f;
     o.from_camera = true;
     ++(o.stage == OffsetStage::Absent ? counters_.fail_border : counters_.shifts_attempted);
   }

@@ -38,6 +38,8 @@ class OffsetPaths {
   void trace_camera(const PathState& state);
   void copy_events(const RaySource& source, const PathState& state);
   void copy_direction(OffsetPath* offset);
+  // From here on the path depends on the kind of its last bounce.
+  void include_kind(OffsetPath* offset);
   void leave(OffsetPath* offset, const ShiftedEvent& event, const PathState& state);
   void trace_all(const bool wanted[kOffsets]);
 

@@ -45,6 +45,13 @@ void OffsetPaths::trace_camera(const PathState& state) {
   trace_all(wanted);
 }
 
+void OffsetPaths::include_kind(OffsetPath* o) {
+  o->ratio *= std::exchange(o->kind_ratio, 1.0f);
+  if (!(o->ratio > 0.0f)) {
+    fail(o, ShiftFailure::Class);
+  }
+}
+
 // The offset scatters; its ray looks like the base's to the scene.
 void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathState& state) {
   const uint16_t transparent_depth = o->state.ray.state.transparent_depth;
@@ -54,6 +61,7 @@ void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathStat
   o->state.depth = state.depth;
   o->state.throughput *= event.factor;
   o->ratio *= event.ratio;
+  o->kind_ratio = event.kind_ratio;
   o->event.pdf = event.pdf;
   o->from_camera = false;
 }
@@ -99,6 +107,7 @@ void OffsetPaths::copy_direction(OffsetPath* o) {
   }
   o->state.throughput *= o->segment.weight;
   o->stage = OffsetStage::Traced;
+  include_kind(o);
 }
 
 }  // namespace gradus
