@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 import pytest
+from gradus.export import ExportError
 from support import recording
 
 
@@ -43,7 +44,8 @@ def test_e2_parent_of_scale_zero_and_broken_camera(scene: bpy.types.Scene) -> No
     assert recorded.instances["count"] == 1
     camera.parent = None
     camera.location.x = float("nan")
-    recording.export(scene)
+    with pytest.raises(ExportError, match="not finite"):
+        recording.export(scene)
 
 
 @pytest.mark.parametrize(

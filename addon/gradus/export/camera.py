@@ -128,6 +128,8 @@ def camera_state(camera: Any, scene: Any, width: int, height: int, engine: Any =
     aspect = (scene.render.pixel_aspect_x, scene.render.pixel_aspect_y)
     matrix = _camera_matrix(camera, engine, scene)
     values = tuple(matrix_values(matrix))
+    if not all(map(math.isfinite, values)):
+        raise ExportError(f"Camera '{camera.name}' has no place: its matrix is not finite")
     if camera.type != "CAMERA":
         lens = _DEFAULT_LENS
         if camera.type == "LIGHT" and camera.data.type == "SPOT":
