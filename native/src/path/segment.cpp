@@ -28,15 +28,18 @@ float pass_probability(const ShadeResult& shade) {
   return through / (through + std::max(1.0f - through, least));
 }
 
-// Lamps between the ray's ends.
-void see_lamps(const PathContext& context, const Ray& ray, float start, Segment* segment) {
+// Lamps on a part of the segment. The ray is that of the whole segment: a lamp that faces its receiver faces the segment's start, not the
+// surface that the ray has just passed, as light sampling has it.
+void see_lamps(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
   if (!context.scene.features.has_lamps_with_extent) {
     return;
   }
-  LampHit hits[kMaxSightings];
-  const int count = intersect_lamps(context.scene, ray, hits, kMaxSightings - segment->lamp_count);
-  for (int i = 0; i < count; ++i) {
-    segment->lamps[segment->lamp_count++] = {hits[i].point, start + hits[i].distance, segment->weight, segment->probability};
+  Ray part = whole;
+  part.t_min = std::max(whole.t_min, begin);
+  part.t_max = end;
+  intersect_lamps(context.scene, part, &segment->met);
+  for (const LampHit& hit : segment->met) {
+    segment->lamps.push_back({hit.point, hit.distance, segment->weight, segment->probability});
   }
 }
 
@@ -60,7 +63,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
   segment->probability = 1.0f;
   segment->crossed = 0;
   segment->length = 0.0f;
-  segment->lamp_count = 0;
+  segment->lamps.clear();
   Ray part = ray->ray;
   vertex->wo = -part.direction;
   for (;;) {
@@ -71,9 +74,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     } else {
       context.scene.intersect(part, ray->visibility, &hit);
     }
-    Ray seen = part;
-    seen.t_max = hit.valid() ? hit.t : part.t_max;
-    see_lamps(context, seen, segment->length, segment);
+    see_lamps(context, ray->ray, segment->length, hit.valid() ? segment->length + hit.t : ray->ray.t_max, segment);
     if (!hit.valid()) {
       return;
     }
@@ -109,23 +110,27 @@ Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& to) {
   return Ray{start, 0.0f, line / distance, distance * (1.0f - kShorten)};
 }
 
-Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind) {
+Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind, uint16_t* transparent_depth) {
   if (!context.has_transparency && context.uniform_visibility) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
   Rgb transmittance(1.0f);
   Ray part = ray;
   RayState state = kind.state;
-  for (uint32_t crossed = 0; crossed <= context.settings.transparent_max_bounces; ++crossed) {
+  for (;;) {
     Hit hit;
     if (!context.scene.intersect(part, kind.visibility, &hit)) {
       return transmittance;
     }
+    if (*transparent_depth >= context.settings.transparent_max_bounces) {
+      return Rgb(0.0f);
+    }
+    state.transparent_depth = (*transparent_depth)++;
     const SurfacePoint point = context.scene.surface_point(hit);
     state.length = hit.t;
     transmittance *= shade_transparency(context.scene, point, -part.direction, state);
     if (is_black(transmittance)) {
-      break;
+      return Rgb(0.0f);
     }
     part.origin = offset_origin(point, part.direction);
     part.t_min = 0.0f;
@@ -134,7 +139,6 @@ Rgb segment_transmittance(const PathContext& context, const Ray& ray, const Path
       return transmittance;
     }
   }
-  return Rgb(0.0f);
 }
 
 }  // namespace gradus

@@ -24,16 +24,14 @@ enum class SegmentEnd : uint8_t {
   Exhausted,  // met more transparent surfaces than allowed: nothing is seen
 };
 
-inline constexpr int kMaxSightings = 8;
-
 struct Segment {
   SegmentEnd end = SegmentEnd::Escaped;
   Rgb weight = Rgb(1.0f);    // transmittance over the probability of the decisions taken
   float probability = 1.0f;  // of these decisions
   int crossed = 0;           // surfaces that were passed
   float length = 0.0f;
-  int lamp_count = 0;
-  LampSighting lamps[kMaxSightings];
+  std::vector<LampSighting> lamps;  // segments are reused: allocates for the most that any had
+  std::vector<LampHit> met;         // scratch: lamps on a part of the segment
 };
 
 // A ray and what it looks like to the scene.
@@ -54,6 +52,7 @@ Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, float distance = 
 Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& to);
 
 // Transmittance of a segment to a known end for a ray of this kind, decisions replaced by their expectation; 0 if blocked.
-Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind);
+// transparent_depth: surfaces that the path passed before, and after the call those on the segment, too.
+Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind, uint16_t* transparent_depth);
 
 }  // namespace gradus

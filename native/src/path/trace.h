@@ -107,12 +107,12 @@ class PathTracer {
   void add(const Rgb& value) { result_.radiance += Radiance(value, 0.0f); }
 
   void add_lamps(const RaySource& source) {
-    for (int i = 0; i < s_.segment.lamp_count; ++i) {
-      const Contribution c = lamp_contribution(context_, source, state_, s_.segment.lamps[i]);
+    for (const LampSighting& lamp : s_.segment.lamps) {
+      const Contribution c = lamp_contribution(context_, source, state_, lamp);
       if (!is_black(c.clamped)) {
         add(c.clamped);
         if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
-        observer_.lamp(source, c, s_.segment.lamps[i]);
+        observer_.lamp(source, c, lamp);
       }
     }
   }

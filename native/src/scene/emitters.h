@@ -4,6 +4,8 @@
 // (same random numbers would give another point).
 #pragma once
 
+#include <vector>
+
 #include "base/types.h"
 
 namespace gradus {
@@ -73,7 +75,7 @@ struct LampHit {
   EmitterPoint point;
   float distance;
 };
-// Fills at most `capacity` hits sorted by distance, returns their number.
-int intersect_lamps(const Snapshot& snapshot, const Ray& ray, LampHit* hits, int capacity);
+// Fills `hits`, sorted by distance.
+void intersect_lamps(const Snapshot& snapshot, const Ray& ray, std::vector<LampHit>* hits);
 
 }  // namespace gradus

@@ -89,9 +89,10 @@ bool intersect_lamp(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float
   return false;
 }
 
-int intersect_lamps(const Snapshot& snapshot, const Ray& ray, LampHit* hits, int capacity) {
+void intersect_lamps(const Snapshot& snapshot, const Ray& ray, std::vector<LampHit>* hits) {
+  hits->clear();
   const LampScene* lamps = snapshot.emitters->lamps_with_extent.get();
-  return lamps ? lamps->intersect(snapshot.emitters->lamps, ray, hits, capacity) : 0;
+  if (lamps) lamps->intersect(snapshot.emitters->lamps, ray, hits);
 }
 
 }  // namespace gradus

@@ -2,6 +2,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
+
 #include "base/device.h"
 #include "base/error.h"
 
@@ -11,31 +13,16 @@ namespace {
 
 constexpr size_t kMaxListed = 12;
 
-// Keeps the nearest hits in order; equal distances by index, so that the order does not depend on the traversal.
-struct Collector {
-  LampHit* hits;
-  int capacity;
-  int count = 0;
+// Equal distances by index, so that the order does not depend on the traversal.
+bool before(const LampHit& a, const LampHit& b) {
+  return a.distance != b.distance ? a.distance < b.distance : a.point.index < b.point.index;
+}
 
-  static bool before(const LampHit& a, const LampHit& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.point.index < b.point.index;
-  }
-  void add(const LampHit& hit) {
-    if (count == capacity) {
-      if (!before(hit, hits[count - 1])) return;
-      --count;
-    }
-    int i = count++;
-    for (; i > 0 && before(hit, hits[i - 1]); --i) hits[i] = hits[i - 1];
-    hits[i] = hit;
-  }
-};
-
-void try_lamp(const std::vector<Lamp>& lamps, uint32_t index, const Ray& ray, Collector* collector) {
+void try_lamp(const std::vector<Lamp>& lamps, uint32_t index, const Ray& ray, std::vector<LampHit>* hits) {
   LampHit hit{};
   if (!intersect_lamp(lamps[index], ray, &hit.point, &hit.distance)) return;
   hit.point.index = index;
-  collector->add(hit);
+  hits->push_back(hit);
 }
 
 struct Query {
@@ -43,7 +30,7 @@ struct Query {
   const std::vector<Lamp>* lamps;
   const std::vector<uint32_t>* placed;
   const Ray* ray;
-  Collector* collector;
+  std::vector<LampHit>* hits;
 };
 
 struct Placed {
@@ -63,7 +50,7 @@ void bound_lamp(const RTCBoundsFunctionArguments* args) {
 void meet_lamp(const RTCIntersectFunctionNArguments* args) {
   if (!args->valid[0]) return;
   auto* query = reinterpret_cast<Query*>(args->context);
-  try_lamp(*query->lamps, (*query->placed)[args->primID], *query->ray, query->collector);
+  try_lamp(*query->lamps, (*query->placed)[args->primID], *query->ray, query->hits);
 }
 
 }  // namespace
@@ -97,12 +84,15 @@ LampScene::~LampScene() {
   if (scene_) rtcReleaseScene(scene_);
 }
 
-int LampScene::intersect(const std::vector<Lamp>& lamps, const Ray& ray, LampHit* hits, int capacity) const {
-  if (capacity <= 0 || !is_finite(ray.origin) || !is_finite(ray.direction) || !(ray.t_min < ray.t_max)) return 0;
-  Collector collector{hits, capacity};
-  for (const uint32_t i : listed_) try_lamp(lamps, i, ray, &collector);
-  if (!scene_) return collector.count;
-  Query query{{}, &lamps, &placed_, &ray, &collector};
+void LampScene::intersect(const std::vector<Lamp>& lamps, const Ray& ray, std::vector<LampHit>* hits) const {
+  if (!is_finite(ray.origin) || !is_finite(ray.direction) || !(ray.t_min < ray.t_max)) return;
+  for (const uint32_t i : listed_) try_lamp(lamps, i, ray, hits);
+  if (scene_) trace_placed(lamps, ray, hits);
+  std::sort(hits->begin(), hits->end(), before);
+}
+
+void LampScene::trace_placed(const std::vector<Lamp>& lamps, const Ray& ray, std::vector<LampHit>* hits) const {
+  Query query{{}, &lamps, &placed_, &ray, hits};
   rtcInitIntersectContext(&query.context);
   RTCRayHit r{};
   r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
@@ -112,7 +102,6 @@ int LampScene::intersect(const std::vector<Lamp>& lamps, const Ray& ray, LampHit
   r.ray.mask = 0xffffffffu;
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_, &query.context, &r);
-  return collector.count;
 }
 
 }  // namespace gradus

@@ -18,10 +18,11 @@ class LampScene {
   ~LampScene();
   LampScene(const LampScene&) = delete;
   LampScene& operator=(const LampScene&) = delete;
-  // lamps: as given to the constructor. The nearest `capacity` hits, sorted; returns their number.
-  int intersect(const std::vector<Lamp>& lamps, const Ray& ray, LampHit* hits, int capacity) const;
+  // lamps: as given to the constructor. Adds all hits to `hits`, which is empty, and sorts it.
+  void intersect(const std::vector<Lamp>& lamps, const Ray& ray, std::vector<LampHit>* hits) const;
 
  private:
+  void trace_placed(const std::vector<Lamp>& lamps, const Ray& ray, std::vector<LampHit>* hits) const;
   std::shared_ptr<Device> device_;
   std::vector<uint32_t> listed_;  // suns, and all lamps while they are few
   std::vector<uint32_t> placed_;  // primitives of the scene

@@ -88,10 +88,10 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
     if (point.kind != EmitterKind::Lamp || point.dirac) continue;
     const EmitterView view = view_emitter(*snapshot, point, receiver);
     if (!(view.pdf > 0.0f)) continue;
-    LampHit hits[64];
-    const int count = intersect_lamps(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, hits, 64);
+    std::vector<LampHit> hits;
+    intersect_lamps(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, &hits);
     const LampHit* met = nullptr;
-    for (int k = 0; k < count; ++k) {
+    for (size_t k = 0; k < hits.size(); ++k) {
       if (hits[k].point.index == point.index) met = &hits[k];
       if (k > 0) {
         EXPECT_LE(hits[k - 1].distance, hits[k].distance);

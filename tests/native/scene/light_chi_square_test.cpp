@@ -15,9 +15,9 @@ using gradus::testing::ChiSquareResult;
 double density(const Snapshot& snapshot, const Receiver& receiver, const Vec3& direction) {
   double sum = 0.0;
   const Ray ray{receiver.position, 0.0f, direction, kInfinity};
-  LampHit hits[64];
-  const int count = intersect_lamps(snapshot, ray, hits, 64);
-  for (int i = 0; i < count; ++i) sum += emitter_pdf(snapshot, hits[i].point, receiver);
+  std::vector<LampHit> hits;
+  intersect_lamps(snapshot, ray, &hits);
+  for (const LampHit& met : hits) sum += emitter_pdf(snapshot, met.point, receiver);
   sum += emitter_pdf(snapshot, emitter_of_world(snapshot, direction), receiver);
   // All surfaces on the ray: light sampling does not know which is in front.
   Ray rest = ray;

@@ -8,9 +8,9 @@ namespace {
 
 Rgb lamps_between(const Snapshot& scene, const Ray& ray) {
   Rgb sum(0.0f);
-  LampHit hits[kMaxSightings];
-  const int count = intersect_lamps(scene, ray, hits, kMaxSightings);
-  for (int i = 0; i < count; ++i) sum += view_emitter(scene, hits[i].point, Receiver{ray.origin, Vec3(0.0f), true}).radiance;
+  std::vector<LampHit> hits;
+  intersect_lamps(scene, ray, &hits);
+  for (const LampHit& hit : hits) sum += view_emitter(scene, hit.point, Receiver{ray.origin, Vec3(0.0f), true}).radiance;
   return sum;
 }
 

@@ -38,8 +38,8 @@ bool OffsetPaths::joint(const EmitterView& view) const {
 // What the offset's own segment shows; alpha is 1 − what the camera sees through. Brings its throughput to the end of the segment.
 Radiance OffsetPaths::see(OffsetPath* o) const {
   Radiance seen(0.0f);
-  for (int i = 0; i < o->segment.lamp_count; ++i) {
-    seen += Radiance(lamp_contribution(context_, o->source(), o->state, o->segment.lamps[i]).clamped, 0.0f);
+  for (const LampSighting& lamp : o->segment.lamps) {
+    seen += Radiance(lamp_contribution(context_, o->source(), o->state, lamp).clamped, 0.0f);
   }
   o->state.throughput *= o->segment.weight;
   const float all = mean_component(o->state.throughput);
@@ -79,7 +79,8 @@ void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint&
     return;
   }
   ++counters_.rays_shift_shadow;
-  const Rgb through = segment_transmittance(context_, shadow_ray(o.here->point, point, offset), base_state_.ray);
+  uint16_t transparent_depth = o.state.ray.state.transparent_depth;
+  const Rgb through = segment_transmittance(context_, shadow_ray(o.here->point, point, offset), base_state_.ray, &transparent_depth);
   if (is_black(through)) {
     ++counters_.fail_occluded;
     alone(k, c);

@@ -25,6 +25,7 @@ void OffsetPaths::open_link(OffsetPath* o, const Vertex& vertex, const ShiftedEv
   o->linked->point = vertex.point;
   o->linked->wo = -event.wi;
   RayState ray = base_state_.ray.state;
+  ray.transparent_depth = o->link.transparent_depth;
   ray.length = glm::length(vertex.point.position - o->here->point.position);
   shade_surface(context_.scene, vertex.point, o->linked->wo, ray, context_.settings.roughness_threshold, &o->linked->shade);
 }
@@ -44,6 +45,7 @@ void OffsetPaths::link_all(const Vertex& vertex) {
     if (wanted[k]) {
       o.link = OffsetLink{};
       o.link.known = true;
+      o.link.transparent_depth = o.state.ray.state.transparent_depth;
       const ShiftFailure failure = try_link(&o, vertex, &events[k]);
       wanted[k] = failure == ShiftFailure::None;
       count_failure(&counters_, failure);
@@ -61,7 +63,7 @@ void OffsetPaths::link_all(const Vertex& vertex) {
     if (!wanted[k]) {
       continue;
     }
-    const Rgb through = packet ? Rgb(blocked[k] ? 0.0f : 1.0f) : segment_transmittance(context_, rays[k], base_state_.ray);
+    const Rgb through = packet ? Rgb(blocked[k] ? 0.0f : 1.0f) : segment_transmittance(context_, rays[k], base_state_.ray, &offsets_[k].link.transparent_depth);
     if (is_black(through)) {
       ++counters_.fail_occluded;
     } else {
@@ -110,6 +112,7 @@ void OffsetPaths::scatter(const Vertex& vertex, const ScatterEvent& event) {
     }
     ++counters_.shifts_reconnected;
     o.state.throughput = o.link.throughput * shared.factor;
+    o.state.ray.state.transparent_depth = o.link.transparent_depth;
     o.ratio = o.link.ratio * o.link.kind_ratio * shared.ratio;
     o.kind_ratio = shared.kind_ratio;
     o.shared_pdf = shared.pdf;

@@ -31,6 +31,7 @@ struct OffsetLink {
   Rgb throughput = Rgb(0.0f);
   float ratio = 0.0f;
   float kind_ratio = 0.0f;  // for light and paths that go on; emission looks at `ratio` alone (ShiftedEvent)
+  uint16_t transparent_depth = 0;
   float pdf = 0.0f;         // of the direction to the shared vertex
 };
 

@@ -100,10 +100,18 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
   }
 }
 
+// An offset that has passed more transparent surfaces than its base may meet the limit on the shared segments; so may the base on the way
+// back.
 void OffsetPaths::passed(const Segment& segment) {
   for (OffsetPath& o : offsets_) {
-    if (o.stage == OffsetStage::Linked) {
-      o.state.throughput *= segment.weight;
+    if (o.stage != OffsetStage::Linked) {
+      continue;
+    }
+    o.state.throughput *= segment.weight;
+    uint16_t& depth = o.state.ray.state.transparent_depth;
+    depth = static_cast<uint16_t>(depth + segment.crossed);
+    if (segment.crossed > 0 && depth > context_.settings.transparent_max_bounces) {
+      fail(&o, ShiftFailure::Occluded);
     }
   }
 }

@@ -1,0 +1,95 @@
+// What lies along one segment of a path.
+#include "path/segment.h"
+
+#include <gtest/gtest.h>
+
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+
+GradusLight lamp_at(const Vec3& position, float radius) {
+  GradusLight light = test::make_light(GRADUS_LIGHT_POINT, test::translation(position), Rgb(1.0f));
+  light.radius = radius;
+  return light;
+}
+
+uint64_t pane(PathScene* scene) {
+  test::Surface clear;
+  clear.diffuse = Rgb(0.5f);
+  clear.transparent = 0.5f;
+  return scene->material(clear);
+}
+
+// The segment along +x from the origin for one of the sampler's samples.
+Segment trace(const PathContext& context, uint32_t sample, PathRay* ray) {
+  *ray = PathRay{};
+  ray->ray = Ray{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), kInfinity};
+  Vertex vertex;
+  Segment segment;
+  SampleKey key;
+  key.index = sample;
+  trace_segment(context, Sampler(key), 0, nullptr, ray, &vertex, &segment);
+  return segment;
+}
+
+// Segments held eight lamps at most.
+TEST(Segment, TheNinthLampOnARayIsSeenToo) {
+  PathScene scene;
+  for (int i = 0; i < 20; ++i) scene.light(lamp_at(Vec3(2.0f + 1.5f * float(i), 0.1f, 0.0f), 0.4f));
+  scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
+  const IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const PathContext context(*c.snapshot, c.camera, c.settings);
+  PathRay ray;
+  const Segment segment = trace(context, 0, &ray);
+  ASSERT_EQ(segment.lamps.size(), 20u);
+  for (size_t i = 1; i < 20; ++i) EXPECT_GT(segment.lamps[i].distance, segment.lamps[i - 1].distance);
+}
+
+// Lamps that turn towards their receiver were met as seen from the last transparent surface, and weighed as seen from the vertex.
+TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
+  PathScene scene;
+  GradusLight light = lamp_at(Vec3(3.0f, 0.5f, 0.2f), 0.8f);
+  light.flags |= GRADUS_LIGHT_DISK_FACING;
+  scene.light(light);
+  scene.quad(Vec3(2, -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), pane(&scene));
+  scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
+  const IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const PathContext context(*c.snapshot, c.camera, c.settings);
+  int seen = 0;
+  for (uint32_t sample = 0; sample < 64; ++sample) {
+    PathRay ray;
+    const Segment segment = trace(context, sample, &ray);
+    for (const LampSighting& lamp : segment.lamps) {
+      const EmitterView view = view_emitter(context.scene, lamp.point, Receiver{ray.ray.origin, Vec3(0.0f), true});
+      EXPECT_LT(glm::length(view.direction - ray.ray.direction), 1e-5f);
+      EXPECT_NEAR(view.distance, lamp.distance, 1e-4f);
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 5);
+}
+
+// The surfaces that a path had passed before did not count.
+TEST(Segment, TransmittanceGoesOnCountingTransparentSurfaces) {
+  PathScene scene;
+  const uint64_t material = pane(&scene);
+  for (int i = 1; i <= 2; ++i) scene.quad(Vec3(float(i), -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), material);
+  scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
+  GradusSettings settings = test::test_settings(4, 4);
+  settings.transparent_max_bounces = 3;
+  const IntegratorContext c = scene.context(settings);
+  const PathContext context(*c.snapshot, c.camera, c.settings);
+  PathRay kind;
+  for (uint16_t before = 0; before < 4; ++before) {
+    uint16_t depth = before;
+    const Rgb through = segment_transmittance(context, Ray{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), 5.0f}, kind, &depth);
+    EXPECT_NEAR(through.x, before <= 1 ? 0.25f : 0.0f, 1e-5f) << before;
+    EXPECT_EQ(depth, before <= 1 ? before + 2 : 3);
+  }
+}
+
+}  // namespace
+}  // namespace gradus
