@@ -1,0 +1,54 @@
+// Embree builds on many threads and keeps one error per thread: what goes wrong on a worker must reach the caller.
+#include <embree3/rtcore.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "base/device.h"
+#include "base/error.h"
+#include "scene/scene_fixture.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+struct Budget {
+  std::atomic<int64_t> left;
+  std::atomic<int> refused_elsewhere{0};
+  std::thread::id caller = std::this_thread::get_id();
+};
+
+bool allow(void* data, ssize_t bytes, bool) {
+  auto* budget = static_cast<Budget*>(data);
+  if ((budget->left -= bytes) >= 0 || bytes <= 0) return true;
+  budget->refused_elsewhere += std::this_thread::get_id() != budget->caller;
+  return false;
+}
+
+TEST(G5_Memory, WhatEmbreeIsRefusedOnAWorkerReachesTheCaller) {
+  TestScene test;
+  test.mesh(1, sphere(Vec3(0.0f), 1.0f, 200, 400));
+  test.instance(1);
+  RTCDevice embree = test_device()->embree();
+  int elsewhere = 0;
+  for (int64_t limit = 1 << 12; limit <= 1 << 23; limit *= 2) {
+    Budget budget{limit};
+    rtcSetDeviceMemoryMonitorFunction(embree, allow, &budget);
+    try {
+      test.commit();
+      EXPECT_GE(budget.left, 0) << limit;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), GRADUS_ERROR_OUT_OF_MEMORY) << e.what();
+    }
+    rtcSetDeviceMemoryMonitorFunction(embree, nullptr, nullptr);
+    elsewhere += budget.refused_elsewhere;
+  }
+  EXPECT_GT(elsewhere, 0);
+  Hit hit;
+  EXPECT_TRUE(test.commit()->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+}
+
+}  // namespace
+}  // namespace gradus
