@@ -102,19 +102,19 @@ void RenderLoop::prepare() {
 
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end, const NoiseStop& noise) const {
   if (stop_.load(std::memory_order_relaxed) || begin >= input_.settings.samples || noise.all_done()) return false;
-  const float limit = input_.settings.time_limit;
-  if (limit > 0.0f && begin > 0 && clock_.seconds() - sampling_began_ >= limit) return false;
-  *end = shorten_for_time(begin, batch_end(begin, input_.settings.samples));
-  return true;
+  *end = std::min(batch_end(begin, input_.settings.samples), begin + affordable_samples(begin));
+  return *end > begin;
 }
 
-// With a time limit a long batch must not run far beyond it: by the pace so far, at least one sample.
-uint32_t RenderLoop::shorten_for_time(uint32_t begin, uint32_t end) const {
-  const float limit = input_.settings.time_limit;
-  if (!(limit > 0.0f) || begin == 0) return end;
-  const double elapsed = clock_.seconds() - sampling_began_;
-  const double affordable = elapsed > 0.0 ? (limit - elapsed) / elapsed * begin : end - begin;
-  return std::min(end, begin + std::max(1u, static_cast<uint32_t>(std::clamp(affordable, 0.0, double(kLongestBatch)))));
+// How many more samples per pixel the time limit allows, by the pace so far and rounded to the nearest: a render ends within half a sample
+// of the limit. The first one is always taken.
+uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
+  const double limit = input_.settings.time_limit;
+  if (!(limit > 0.0)) return kLongestBatch;
+  const uint32_t taken = begin - first_begin_;
+  if (taken == 0) return 1;
+  const double elapsed = std::max(clock_.seconds() - sampling_began_, 1e-9);
+  return static_cast<uint32_t>(std::clamp((limit - elapsed) / elapsed * taken + 0.5, 0.0, double(kLongestBatch)));
 }
 
 void RenderLoop::sample() {
@@ -122,6 +122,7 @@ void RenderLoop::sample() {
   const auto cancel = [this] { return stop_.load(std::memory_order_relaxed); };
   NoiseStop noise(plan_.sampled, input_.settings.noise_threshold);
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed) : 0;
+  first_begin_ = begin;
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end, noise); begin = end) {

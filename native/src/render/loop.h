@@ -54,7 +54,7 @@ class RenderLoop {
   void reconstruct_frame();
   // False: nothing more to do.
   bool next_batch(uint32_t begin, uint32_t* end, const NoiseStop& noise) const;
-  uint32_t shorten_for_time(uint32_t begin, uint32_t end) const;
+  uint32_t affordable_samples(uint32_t begin) const;
   void run_batch(uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
   void sample_tile(size_t tile, uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
   void tile_done(uint64_t pixel_samples);
@@ -80,6 +80,7 @@ class RenderLoop {
   std::atomic<int64_t> last_image_ms_{0};
   std::mutex counters_mutex_;
   double sampling_began_ = 0.0;
+  uint32_t first_begin_ = 0;  // samples that were resumed
   RenderStats stats_;
 
   mutable std::mutex mutex_;  // guards what follows

@@ -234,6 +234,27 @@ TEST(Loop, StopsByTimeAndDeliversTheReconstruction) {
   EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_DONE});
 }
 
+// Seconds of sampling with a limit, where each sample of the one tile takes this long.
+double limited_seconds(double limit, double sample, const std::shared_ptr<const Frame>& resumed = nullptr) {
+  GradusSettings settings = small_settings(8, 8, 100000);
+  settings.time_limit = float(limit);
+  const auto slow = fake_factory([sample](FakeIntegrator* fake) {
+    fake->before = [sample](const WorkUnit& unit) { std::this_thread::sleep_for(std::chrono::duration<double>(sample * unit.count)); };
+  });
+  auto render = start(settings, slow, resumed);
+  render->wait(20.0);
+  return nlohmann::json::parse(render->stats_json())["seconds"]["sample"];
+}
+
+// The sample that reached the limit was taken however far beyond it ended.
+TEST(Loop, ATimeLimitIsMetWithinHalfASample) {
+  EXPECT_LT(limited_seconds(0.65, 0.2), 0.75);  // three samples
+  EXPECT_GT(limited_seconds(0.75, 0.2), 0.75);  // four
+}
+
+// The pace was taken from all samples, those of the frame that it went on from included.
+TEST(Loop, ATimeLimitHoldsForAResumedRender) { EXPECT_LT(limited_seconds(0.3, 0.05, rendered(small_settings(8, 8, 64))), 0.45); }
+
 TEST(Loop, StopsTilesByNoise) {
   GradusSettings settings = small_settings(128, 64, 256);
   settings.noise_threshold = 0.05f;
