@@ -492,6 +492,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_scene_set_lights": (c_int, [Scene, POINTER(Light), c_size_t]),
     "gradus_scene_set_camera": (c_int, [Scene, POINTER(Camera)]),
     "gradus_scene_set_world": (c_int, [Scene, POINTER(World)]),
+    "gradus_scene_warning": (c_int, [Scene, POINTER(c_char_p)]),
     "gradus_scene_remove": (c_int, [Scene, c_uint32, c_uint64]),
     "gradus_scene_commit": (c_int, [Scene, POINTER(c_int32), POINTER(c_float)]),
     "gradus_scene_record": (c_int, [Scene, c_uint32]),

@@ -11,7 +11,7 @@ import os
 import struct
 import threading
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from ctypes import byref
 from pathlib import Path
 from typing import Any, TypeVar
@@ -131,12 +131,19 @@ class Library:
         self.cdll.gradus_error(byref(message))
         return (message.value or b"").decode("utf-8", "replace")
 
-    def take_warnings(self, device: int) -> list[str]:
-        """All warnings of the device that nobody has taken yet, oldest first."""
+    def take_device_warnings(self, device: int) -> list[str]:
+        """All warnings about the device that nobody has taken yet, oldest first."""
+        return self._take_warnings(self.device_warning, device)
+
+    def take_scene_warnings(self, scene: int) -> list[str]:
+        """The same about what was committed to a scene."""
+        return self._take_warnings(self.scene_warning, scene)
+
+    def _take_warnings(self, function: Callable[..., int], handle: int) -> list[str]:
         warnings: list[str] = []
         message = ctypes.c_char_p()
         while True:
-            self.device_warning(device, byref(message))
+            function(handle, byref(message))
             if not message.value:
                 return warnings
             warnings.append(message.value.decode("utf-8", "replace"))

@@ -76,9 +76,11 @@ class Session:
             raise failures[0]
 
     def take_new_warnings(self, texts: list[str]) -> list[str]:
-        """Those of `texts` and of the device that this session has not reported yet: every missing file is named once."""
+        """Those of `texts`, the scene and the device that this session has not reported yet: every missing file is named once."""
+        about_device = _device_warnings.setdefault(self.device, [])
+        about_device += self.library.take_device_warnings(self.device)
         fresh = []
-        for text in [*texts, *self.library.take_warnings(self.device)]:
+        for text in [*texts, *self.library.take_scene_warnings(self.scene), *about_device]:
             if text not in self.reported:
                 self.reported.add(text)
                 fresh.append(text)
@@ -94,6 +96,8 @@ _lock = threading.RLock()
 _sessions: dict[Key, Session] = {}
 _devices: dict[tuple[str, int], int] = {}
 _bakers: dict[int, color.Baker] = {}
+_device_warnings: dict[int, list[str]] = {}
+"""All that were made: each session reports them, whichever comes first."""
 summaries: dict[tuple[str, str], dict[str, Any]] = {}
 """(scene, layer) -> stats of the last final render, for the panels."""
 
@@ -148,6 +152,7 @@ def clear() -> None:
         handles = list(_devices.values())
         _devices.clear()
         _bakers.clear()
+        _device_warnings.clear()
     for handle in handles:
         native.load().device_release(handle)
     summaries.clear()

@@ -71,7 +71,7 @@ int run(const RenderArguments& args) {
   const client::Frame frame = render_frame(device, scene, settings, target, args);
   frame.save(target.string());
   if (!args.image.empty()) write_image(frame, settings, args.image);
-  print_warnings(device);
+  print_warnings(device, scene);
   std::printf("%s\n", target.c_str());
   return 0;
 }

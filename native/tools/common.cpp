@@ -90,8 +90,9 @@ uint32_t parse_choice(const std::string& option, const std::string& value) {
   return option == "integrator" ? settings.integrator : settings.reconstruction;
 }
 
-void print_warnings(const client::Device& device) {
+void print_warnings(const client::Device& device, const client::Scene& scene) {
   for (std::string text = device.warning(); !text.empty(); text = device.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  for (std::string text = scene.warning(); !text.empty(); text = scene.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
 }  // namespace gradus::tool

@@ -41,6 +41,6 @@ uint64_t parse_passes(const std::string& text);
 // Value of an option of kind enum; throws as the library does.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
-void print_warnings(const client::Device& device);
+void print_warnings(const client::Device& device, const client::Scene& scene);
 
 }  // namespace gradus::tool

@@ -85,4 +85,4 @@ def test_f5_missing_configuration(tmp_path: Path) -> None:
 def test_the_device_has_no_complaint_about_blender_s_configuration() -> None:
     library = native.load()
     store.clear()
-    assert library.take_warnings(store.device(library)) == []
+    assert library.take_device_warnings(store.device(library)) == []

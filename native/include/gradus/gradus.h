@@ -76,7 +76,8 @@ typedef struct GradusDeviceSettings {
  * goes wrong (a foreign Embree or TBB in the process). */
 GRADUS_API GradusError gradus_device_create(const GradusDeviceSettings* settings, GradusDevice* device);
 GRADUS_API GradusError gradus_device_release(GradusDevice device);
-/* Takes the oldest warning not yet taken; *text is NULL when there is none; valid until the thread's next call. */
+/* Takes the oldest warning about the device (colour management) not yet taken; *text is NULL when there is none; valid until the thread's
+ * next call. */
 GRADUS_API GradusError gradus_device_warning(GradusDevice device, const char** text);
 
 typedef struct GradusColorSpace {
@@ -322,6 +323,8 @@ GRADUS_API GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uin
 /* Makes what was set the current immutable snapshot, sharing what did not change; builds acceleration structures.
  * `progress` may be NULL; a non-zero *cancel (polled by the library, may be NULL) ends it with CANCELLED within 0.25 s. */
 GRADUS_API GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cancel, float* progress);
+/* Like gradus_device_warning: what commits of this scene had to leave out or replace. */
+GRADUS_API GradusError gradus_scene_warning(GradusScene scene, const char** text);
 /* From now on keeps what is set (0: forgets it), so that the scene can be saved. Off by default: it doubles the memory of the arrays. */
 GRADUS_API GradusError gradus_scene_record(GradusScene scene, uint32_t enabled);
 

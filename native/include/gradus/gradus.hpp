@@ -100,6 +100,12 @@ class Scene : public Handle<GradusScene, gradus_scene_release> {
   void set_world(const GradusWorld& world) { check(gradus_scene_set_world(id_, &world)); }
   void remove(GradusObjectKind kind, uint64_t key) { check(gradus_scene_remove(id_, kind, key)); }
   void commit() { check(gradus_scene_commit(id_, nullptr, nullptr)); }
+  // Empty when there is none.
+  std::string warning() const {
+    const char* text = nullptr;
+    check(gradus_scene_warning(id_, &text));
+    return text ? text : "";
+  }
   void record(bool enabled) { check(gradus_scene_record(id_, enabled ? 1 : 0)); }
   void save(const GradusSettings& settings, const std::string& path) const { check(gradus_scene_save(id_, &settings, path.c_str())); }
 

@@ -25,7 +25,7 @@ GradusError gradus_device_warning(GradusDevice device, const char** text) {
   return api::guard([&] {
     api::require(text, "text") = nullptr;
     thread_local std::string taken;  // valid until the thread's next call
-    if (api::find_handle<Device>(device)->take_warning(&taken)) *text = taken.c_str();
+    if (api::find_handle<Device>(device)->warnings().take(&taken)) *text = taken.c_str();
   });
 }
 

@@ -20,6 +20,7 @@ struct SceneObject {
   ~SceneObject();
   std::mutex mutex;  // calls of one scene wait for each other
   Scene scene;
+  Warnings warnings;                        // of commits
   std::shared_ptr<SceneRecorder> recorder;  // nullptr: not recording
 };
 

@@ -57,7 +57,12 @@ GradusError gradus_render_wait(GradusRender render, double seconds) {
 }
 
 GradusError gradus_render_release(GradusRender render) {
-  return api::guard([&] { api::remove_handle<api::RenderObject>(render); });
+  return api::guard([&] {
+    const auto object = api::remove_handle<api::RenderObject>(render);
+    // Another thread may wait in gradus_render_wait and hold the object: it gets CANCELLED, and nothing is sampled from here on.
+    object->render.cancel();
+    object->render.wait(-1.0);
+  });
 }
 
 GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* pixels, size_t count) {

@@ -115,7 +115,18 @@ GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uint64_t key) 
 }
 
 GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cancel, float* progress) {
-  return with_scene(scene, [&](api::SceneObject& s) { s.scene.commit(cancel, progress); });
+  return with_scene(scene, [&](api::SceneObject& s) {
+    s.scene.commit(cancel, progress);
+    for (const std::string& text : s.scene.snapshot()->warnings) s.warnings.add(text);
+  });
+}
+
+GradusError gradus_scene_warning(GradusScene scene, const char** text) {
+  return api::guard([&] {
+    api::require(text, "text") = nullptr;
+    thread_local std::string taken;  // valid until the thread's next call
+    if (api::find_handle<api::SceneObject>(scene)->warnings.take(&taken)) *text = taken.c_str();
+  });
 }
 
 GradusError gradus_scene_record(GradusScene scene, uint32_t enabled) {

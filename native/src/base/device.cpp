@@ -75,8 +75,8 @@ uint32_t thread_count(uint32_t wanted) {
 
 Device::Device(const GradusDeviceSettings& settings) : threads_(thread_count(settings.threads)) {
   check_tbb();
-  color_ =
-      std::make_unique<ColorManager>(settings.color_config ? settings.color_config : "", [this](const std::string& text) { warn(text); });
+  color_ = std::make_unique<ColorManager>(settings.color_config ? settings.color_config : "",
+                                          [this](const std::string& text) { warnings_.add(text); });
   embree_ = rtcNewDevice(("threads=" + std::to_string(threads_) + ",set_affinity=0,start_threads=0").c_str());
   if (!embree_) throw unsupported("Embree cannot start on this processor (AVX2 is needed)");
   try {
@@ -92,20 +92,5 @@ Device::Device(const GradusDeviceSettings& settings) : threads_(thread_count(set
 }
 
 Device::~Device() { rtcReleaseDevice(embree_); }
-
-void Device::warn(const std::string& text) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (seen_.size() >= kMaxWarnings || std::find(seen_.begin(), seen_.end(), text) != seen_.end()) return;
-  seen_.push_back(text);
-  warnings_.push_back(text);
-}
-
-bool Device::take_warning(std::string* text) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (warnings_.empty()) return false;
-  *text = std::move(warnings_.front());
-  warnings_.pop_front();
-  return true;
-}
 
 }  // namespace gradus

@@ -1,13 +1,11 @@
 // What renders of one host share: threads, Embree's device, colour management, warnings.
 #pragma once
 
-#include <deque>
 #include <memory>
-#include <mutex>
-#include <string>
 
 #include <tbb/task_arena.h>
 
+#include "base/warnings.h"
 #include "gradus/gradus.h"
 
 struct RTCDeviceTy;
@@ -18,8 +16,6 @@ class ColorManager;  // color/color.h
 
 class Device {
  public:
-  static constexpr size_t kMaxWarnings = 1000;
-
   // Throws Error UNSUPPORTED if Embree or TBB are not those it was built with (contract 7.5).
   explicit Device(const GradusDeviceSettings& settings);
   ~Device();
@@ -31,18 +27,15 @@ class Device {
   tbb::task_arena& arena() { return arena_; }
   uint32_t threads() const { return threads_; }
   ColorManager& color() { return *color_; }
-  // Each text is kept once; at most kMaxWarnings in all.
-  void warn(const std::string& text);
-  bool take_warning(std::string* text);
+  // Of the device itself: colour management. Those of scenes are with the scenes.
+  Warnings& warnings() { return warnings_; }
 
  private:
+  Warnings warnings_;
   RTCDeviceTy* embree_ = nullptr;
   uint32_t threads_ = 0;
   tbb::task_arena arena_;
   std::unique_ptr<ColorManager> color_;
-  std::mutex mutex_;
-  std::deque<std::string> warnings_;
-  std::deque<std::string> seen_;
 };
 
 }  // namespace gradus

@@ -180,7 +180,6 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
   // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.
   device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });
   snapshot->content_key = content_key(*state_);
-  for (const std::string& text : snapshot->warnings) device_->warn(text);
   monitor.report(1.0f);
   state_->current = std::move(snapshot);
 }

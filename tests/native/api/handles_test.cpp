@@ -1,7 +1,10 @@
 // G1, G3, G6 and G10 of the C API: wrong handles, the error slot, calls out of order, handles that come and go.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <functional>
+#include <mutex>
 #include <random>
 #include <thread>
 
@@ -62,6 +65,10 @@ std::vector<std::function<GradusError(uint64_t)>> handle_functions(uint32_t kind
               },
               [](uint64_t h) { return gradus_scene_remove(h, GRADUS_KIND_MESH, 1); },
               [](uint64_t h) { return gradus_scene_commit(h, nullptr, nullptr); },
+              [](uint64_t h) {
+                const char* t;
+                return gradus_scene_warning(h, &t);
+              },
               [](uint64_t h) { return gradus_scene_record(h, 1); },
               [](uint64_t h) { return gradus_scene_save(h, nullptr, "/nonexistent/x"); },
               [](uint64_t h) {
@@ -142,6 +149,60 @@ TEST(G1_Handles, WrongOnesAreRefusedEverywhere) {
   EXPECT_OK(gradus_device_release(device));
 }
 
+// Any function with live, freed, foreign and invented handles, in any order, from two threads.
+TEST(G1_Handles, TenThousandRandomCalls) {
+  std::vector<std::function<GradusError(uint64_t)>> functions;
+  for (uint32_t kind = 0; kind < 4; ++kind) {
+    for (const auto& function : handle_functions(kind)) functions.push_back(function);
+  }
+  std::mutex mutex;
+  std::vector<uint64_t> handles{0, 1, UINT64_MAX};
+  const auto keep = [&](uint64_t handle) {
+    const std::lock_guard lock(mutex);
+    handles.push_back(handle);
+  };
+  const auto any = [&](std::mt19937_64& random) {
+    const std::lock_guard lock(mutex);
+    return random() % 16 == 0 ? random() : handles[random() % handles.size()];
+  };
+  const auto make = [&](std::mt19937_64& random) {
+    uint64_t made = 0;
+    const GradusSettings settings = small_render(4, 4, 1);
+    switch (random() % 4) {
+      case 0:
+        made = make_device();
+        break;
+      case 1:
+        if (gradus_scene_create(any(random), &made) == GRADUS_OK) fill_scene(made);
+        break;
+      case 2:
+        gradus_render_start(any(random), &settings, &made);
+        break;
+      default:
+        gradus_render_frame(any(random), &made);
+        break;
+    }
+    if (made) keep(made);
+  };
+  const auto calls = [&](uint32_t seed) {
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 5000; ++i) {
+      if (i % 16 == 0) make(random);
+      const GradusError code = functions[random() % functions.size()](any(random));
+      EXPECT_GE(code, GRADUS_OK);
+      EXPECT_LE(code, GRADUS_ERROR_CANCELLED);
+      gradus_error(nullptr);
+    }
+  };
+  std::thread other(calls, 2);
+  calls(1);
+  other.join();
+  for (const uint64_t handle : handles) {
+    for (const auto release : {gradus_render_release, gradus_frame_release, gradus_scene_release, gradus_device_release}) release(handle);
+  }
+  gradus_error(nullptr);
+}
+
 TEST(G1_Handles, NullPointersAreRefusedEverywhere) {
   const GradusDevice device = make_device();
   const GradusScene scene = make_scene(device);
@@ -151,6 +212,7 @@ TEST(G1_Handles, NullPointersAreRefusedEverywhere) {
   EXPECT_EQ(gradus_device_create(nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_device_warning(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_device_set_color_space(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_scene_warning(scene, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_scene_create(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_scene_set_mesh(scene, 1, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_scene_set_image(scene, 1, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
@@ -259,6 +321,51 @@ TEST(G6_Order, ReleaseWhileRenderingWaits) {
   EXPECT_OK(gradus_scene_release(scene));
   EXPECT_OK(gradus_device_release(device));
   gradus_error(nullptr);
+}
+
+// The waiting thread kept the render alive, which went on for all of its samples.
+TEST(G6_Order, ReleaseWhileAnotherThreadWaitsCancels) {
+  const GradusDevice device = make_device();
+  const GradusScene scene = make_scene(device);
+  const GradusSettings settings = small_render(256, 256, 16777216);
+  for (int i = 0; i < 5; ++i) {
+    GradusRender render = 0;
+    ASSERT_OK(gradus_render_start(scene, &settings, &render));
+    std::atomic<bool> waits{false};
+    GradusError outcome = GRADUS_OK;
+    std::thread waiter([&] {
+      waits = true;
+      outcome = gradus_render_wait(render, -1.0);
+      gradus_error(nullptr);
+    });
+    while (!waits) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10 * i));
+    EXPECT_OK(gradus_render_release(render));
+    waiter.join();
+    // Invalid if the handle was gone before the thread came to wait.
+    EXPECT_TRUE(outcome == GRADUS_ERROR_CANCELLED || outcome == GRADUS_ERROR_INVALID_ARGUMENT) << outcome;
+  }
+  EXPECT_OK(gradus_scene_release(scene));
+  EXPECT_OK(gradus_device_release(device));
+}
+
+// They were the device's: what a viewport had to leave out was told to whichever render asked next.
+TEST(SceneWarnings, StayWithTheirScene) {
+  const GradusDevice device = make_device();
+  const GradusScene good = make_scene(device), broken = make_scene(device);
+  EXPECT_OK(gradus_scene_remove(broken, GRADUS_KIND_MESH, 1));
+  EXPECT_OK(gradus_scene_commit(broken, nullptr, nullptr));
+  const char* text = nullptr;
+  EXPECT_OK(gradus_device_warning(device, &text));
+  EXPECT_EQ(text, nullptr);
+  EXPECT_OK(gradus_scene_warning(good, &text));
+  EXPECT_EQ(text, nullptr);
+  EXPECT_OK(gradus_scene_warning(broken, &text));
+  ASSERT_NE(text, nullptr);
+  EXPECT_NE(std::string(text).find("mesh that does not exist"), std::string::npos) << text;
+  EXPECT_OK(gradus_scene_release(good));
+  EXPECT_OK(gradus_scene_release(broken));
+  EXPECT_OK(gradus_device_release(device));
 }
 
 TEST(G10_Registry, HandlesComeAndGo) {

@@ -26,19 +26,17 @@ TEST(Device, TasksFlushDenormalsAndTheCallerKeepsItsState) {
   EXPECT_FALSE(FlushDenormals::active());
 }
 
-TEST(Device, WarnsOnceAndInOrder) {
-  GradusDeviceSettings settings{};
-  settings.struct_size = sizeof(settings);
-  Device device(settings);
-  device.warn("a");
-  device.warn("b");
-  device.warn("a");
+TEST(Warnings, ComeOnceAndInOrder) {
+  Warnings warnings;
+  warnings.add("a");
+  warnings.add("b");
+  warnings.add("a");
   std::string text;
-  EXPECT_TRUE(device.take_warning(&text));
+  EXPECT_TRUE(warnings.take(&text));
   EXPECT_EQ(text, "a");
-  EXPECT_TRUE(device.take_warning(&text));
+  EXPECT_TRUE(warnings.take(&text));
   EXPECT_EQ(text, "b");
-  EXPECT_FALSE(device.take_warning(&text));
+  EXPECT_FALSE(warnings.take(&text));
 }
 
 }  // namespace
