@@ -15,12 +15,16 @@ namespace {
 using test::Scenario;
 using DVec3 = glm::dvec3;
 
+// No emitter of these scenes tells kinds of rays apart.
+const RayState kAnyRay;
+
 DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
 
 // Follows a path and adds up its light in double: from the values and densities that sampling found (in float), anew multiplied, weighed
 // and summed.
 class DoubleObserver : public NoObserver {
  public:
+  explicit DoubleObserver(const PathContext& context) : context_(context) {}
   DVec3 radiance = DVec3(0.0);
 
   void begin(const Sampler&, const Vec2&, const Vec2&) {
@@ -33,7 +37,7 @@ class DoubleObserver : public NoObserver {
   void emission(const RaySource&, const Contribution& c, const Vertex&) { add(found(c)); }
   void survived(float probability) { throughput_ /= double(probability); }
   void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
-    const LitClass lit = light_class(vertex, scatter_class, sample.view, sample.point.dirac);
+    const LitClass lit = light_class(context_, vertex, scatter_class, sample, kAnyRay);
     add(to_double(lit.value) * to_double(c.light) / (double(c.pdf_light) + double(lit.pdf_bsdf)));
   }
   void scatter(const Vertex& vertex, const ScatterEvent& event) {
@@ -47,6 +51,7 @@ class DoubleObserver : public NoObserver {
     return to_double(c.light) * (light > 0.0 ? bsdf / (light + bsdf) : 1.0);
   }
   void add(const DVec3& value) { radiance += throughput_ * value; }
+  const PathContext& context_;
   DVec3 throughput_ = DVec3(1.0);
 };
 
@@ -61,7 +66,7 @@ TEST_P(B8_Double, ImagesDifferByLessThanOnePercentOfTheirNoise) {
   Frame frame = test::make_test_frame(context.settings, false);
   const auto scratch = std::make_unique<PathScratch>();
   PassRecorder recorder(path, &frame, &frame.counters);
-  DoubleObserver observer;
+  DoubleObserver observer(path);
   PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &frame.counters, &observer);
   std::vector<DVec3> sum(size_t(width) * height, DVec3(0.0)), squares(sum);
   const WorkUnit unit{frame.region, 0, samples, nullptr};
@@ -120,8 +125,8 @@ TEST_P(B8_Strategies, WeightsSumToOne) {
     if (!camera_vertex(path, sampler, film, &x) || !camera_vertex(path, sampler, film + Vec2(1, 0), &y)) continue;
     if (!sample_light(path, sampler, x, 0, &light) || light.point.dirac) continue;
     const EmitterView view = view_emitter(path.scene, light.point, receiver_of(y));
-    const LitClass lit_x = light_class(x, ScatterClass::Diffuse, light.view, false);
-    const LitClass lit_y = light_class(y, ScatterClass::Diffuse, view, false);
+    const LitClass lit_x = light_class(path, x, ScatterClass::Diffuse, light, kAnyRay);
+    const LitClass lit_y = light_class(path, y, ScatterClass::Diffuse, LightSample{light.point, view}, kAnyRay);
     if (!(lit_x.pdf_bsdf > 0.0f) || !(lit_y.pdf_bsdf > 0.0f) || !(view.pdf > 0.0f)) continue;
     ++done;
     const float there = copy_jacobian(light.point, light.view, view), back = copy_jacobian(light.point, view, light.view);
