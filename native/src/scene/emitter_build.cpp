@@ -28,16 +28,6 @@ struct Candidates {
 
 bool is_light(const MaterialData* material) { return material && material->emits && material->sample_as_light; }
 
-std::array<Vec3, 3> internal_corners(const InstanceData& instance, uint32_t triangle) {
-  if (instance.flat_positions) {
-    const uint32_t* v = instance.mesh->triangle_vertices.data() + size_t(triangle) * 3;
-    return {instance.flat_positions[v[0]], instance.flat_positions[v[1]], instance.flat_positions[v[2]]};
-  }
-  std::array<Vec3, 3> p = triangle_positions(*instance.mesh, triangle);
-  for (Vec3& v : p) v = Vec3(instance.to_world * Vec4(v, 1.0f));
-  return p;
-}
-
 bool any_light(const Snapshot& snapshot, const InstanceData& instance) {
   if (instance.materials.empty()) return is_light(snapshot.materials[0].get());
   return std::any_of(instance.materials.begin(), instance.materials.end(),
@@ -53,7 +43,7 @@ Candidates find_triangles(const Snapshot& snapshot, const CommitMonitor& monitor
     monitor.check();
     for (uint32_t t = 0; t < instance.mesh->triangle_count; ++t) {
       if (instance.mesh->is_dropped(t) || !is_light(snapshot.materials[snapshot.material_of(i, t)].get())) continue;
-      const std::array<Vec3, 3> p = internal_corners(instance, t);
+      const std::array<Vec3, 3> p = snapshot.corners(i, t);
       const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
       if (area > 0.0f && is_finite(area)) found.triangles.push_back({i, t, area});
     }
@@ -91,7 +81,7 @@ float radiance_estimate(const Snapshot& snapshot, const EmissiveTriangle& triang
 }
 
 LightBounds triangle_bounds(const Snapshot& snapshot, const EmissiveTriangle& triangle, bool measure) {
-  const std::array<Vec3, 3> p = internal_corners(snapshot.instances[triangle.instance], triangle.triangle);
+  const std::array<Vec3, 3> p = snapshot.corners(triangle.instance, triangle.triangle);
   LightBounds b;
   b.lower = glm::min(p[0], glm::min(p[1], p[2]));
   b.upper = glm::max(p[0], glm::max(p[1], p[2]));

@@ -5,6 +5,7 @@
 
 #include "scene/emitter_table.h"
 #include "scene/snapshot.h"
+#include "scene/spherical_triangle.h"
 #include "shading/material.h"
 #include "shading/shade.h"
 
@@ -20,13 +21,19 @@ RayState light_ray(float length) {
   return state;
 }
 
-EmitterPoint sample_triangle(const Snapshot& snapshot, uint32_t index, const Vec2& u) {
+Vec2 sample_triangle_area(const Vec2& u) {
+  const float root = std::sqrt(u.x);
+  return Vec2(1.0f - root, u.y * root);
+}
+
+EmitterPoint sample_triangle(const Snapshot& snapshot, uint32_t index, const Receiver& receiver, const Vec2& u) {
   const EmissiveTriangle& t = snapshot.emitters->triangles[index];
+  const std::array<Vec3, 3> corners = snapshot.corners(t.instance, t.triangle);
+  const SphericalTriangle seen(corners, receiver.position);
   Hit hit;
   hit.instance = t.instance;
   hit.triangle = t.triangle;
-  const float root = std::sqrt(u.x);
-  hit.barycentric = Vec2(1.0f - root, u.y * root);
+  hit.barycentric = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
   return emitter_of_surface(snapshot, snapshot.surface_point(hit));
 }
 
@@ -41,7 +48,7 @@ EmitterPoint sample_tree(const Snapshot& snapshot, const Receiver& receiver, dou
   const EmitterTable& table = *snapshot.emitters;
   const uint32_t light = table.tree.sample(receiver, choice, probability);
   if (light < table.tree_lamps.size()) return sample_lamp_at(snapshot, table.tree_lamps[light], receiver, u);
-  return sample_triangle(snapshot, light - uint32_t(table.tree_lamps.size()), u);
+  return sample_triangle(snapshot, light - uint32_t(table.tree_lamps.size()), receiver, u);
 }
 
 EmitterPoint sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, double* probability) {
@@ -128,8 +135,9 @@ EmitterView view_triangle(const Snapshot& snapshot, const EmitterPoint& point, c
   view.distance = std::sqrt(distance2);
   view.direction = to_light / view.distance;
   view.cosine = std::fabs(glm::dot(point.normal, view.direction));
-  const float area = snapshot.emitters->triangles[point.index].area;
-  if (view.cosine > 0.0f) view.pdf = distance2 / (view.cosine * area);
+  if (!(view.cosine > 0.0f)) return view;
+  const SphericalTriangle seen(snapshot.corners(point.instance, point.triangle), receiver.position);
+  view.pdf = seen.usable() ? 1.0f / seen.solid_angle() : distance2 / (view.cosine * snapshot.emitters->triangles[point.index].area);
   return view;
 }
 

@@ -1,6 +1,7 @@
 // The immutable scene that integrators see. Made by Scene::commit(); shares unchanged buffers with the snapshot before.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,6 +64,8 @@ class Snapshot {
   // World position of the hit one frame earlier or later: surface motion.
   Vec3 position_at(const Hit& hit, bool next) const;
 
+  // Corners of a triangle of an instance, in internal space.
+  std::array<Vec3, 3> corners(uint32_t instance, uint32_t triangle) const;
   // Material (index in `materials`) of a triangle of an instance.
   uint32_t material_of(uint32_t instance, uint32_t triangle) const;
 

@@ -29,7 +29,8 @@ float plane_error(const std::array<Vec3, 3>& p) {
   return gamma_bound(8) * size * std::clamp(conditioning, 1.0f, 1e4f);
 }
 
-std::array<Vec3, 3> corners(const InstanceData& instance, uint32_t triangle) {
+// As stored: in internal space if the mesh lies in the top level, else in the mesh's own.
+std::array<Vec3, 3> stored_corners(const InstanceData& instance, uint32_t triangle) {
   if (!instance.flat_positions) return triangle_positions(*instance.mesh, triangle);
   const uint32_t* v = instance.mesh->triangle_vertices.data() + size_t(triangle) * 3;
   return {instance.flat_positions[v[0]], instance.flat_positions[v[1]], instance.flat_positions[v[2]]};
@@ -70,7 +71,7 @@ Vec3 shading_normal(const InstanceData& instance, const Hit& hit, const Vec3& ge
 }
 
 void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
-  const std::array<Vec3, 3> p = corners(instance, hit.triangle);
+  const std::array<Vec3, 3> p = stored_corners(instance, hit.triangle);
   const std::array<Vec3, 3> sizes = {glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])};
   point->position = interpolate(p, hit.barycentric);
   point->geometric_normal = unit_normal_of(p) * (instance.mirrored ? -1.0f : 1.0f);
@@ -79,7 +80,7 @@ void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* poin
 }
 
 void place_instanced(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
-  const std::array<Vec3, 3> p = corners(instance, hit.triangle);
+  const std::array<Vec3, 3> p = stored_corners(instance, hit.triangle);
   const Vec3 local = interpolate(p, hit.barycentric);
   const Vec3 local_size = interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
   point->position = Vec3(instance.to_world * Vec4(local, 1.0f));
@@ -118,6 +119,15 @@ SurfacePoint Snapshot::surface_point(const Hit& hit) const {
   point.shading_normal = shading_normal(instance, hit, point.geometric_normal);
   point.material = material_of(hit.instance, hit.triangle);
   return point;
+}
+
+std::array<Vec3, 3> Snapshot::corners(uint32_t index, uint32_t triangle) const {
+  const InstanceData& instance = instances[index];
+  std::array<Vec3, 3> p = stored_corners(instance, triangle);
+  if (!instance.flat_positions) {
+    for (Vec3& v : p) v = Vec3(instance.to_world * Vec4(v, 1.0f));
+  }
+  return p;
 }
 
 Vec3 Snapshot::position_at(const Hit& hit, bool next) const {
