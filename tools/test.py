@@ -64,7 +64,7 @@ def kill_group(process: subprocess.Popen) -> None:
 
 
 def native(program: Path, limit: float, environment: dict[str, str]) -> Result:
-    result = Result(f"native {program.name}")
+    result = Result(f"native {program.relative_to(ROOT)}")
     code, output = run([str(program), "--gtest_brief=0", "--gtest_color=no"], limit, environment)
     # Counted from the log, not from the report file, which a crash would take with it.
     result.passed = len(re.findall(r"^\[       OK \] ", output, re.M))
@@ -166,6 +166,10 @@ def main() -> int:
         limit = LIMIT["full" if options.full else "native"]
         for program in sorted((ROOT / "build" / "tests").glob("gradus_*_tests")):
             jobs.append(lambda program=program, limit=limit: native(program, limit, environment))
+        if options.full:  # memory errors do not need long counts
+            short = environment | {"GRADUS_TEST_FULL": "0"}
+            sanitized = ROOT / "build-sanitize" / "tests" / "gradus_native_tests"
+            jobs.append(lambda: native(sanitized, limit, short))
     if options.what in ("all", "addon"):
         limit = LIMIT["full" if options.full else "host"]
         for name in options.hosts.split(","):

@@ -7,4 +7,8 @@ case " $* " in
   *) tools/setup/setup test ;;
 esac
 tools/build.sh tests
+case " $* " in
+  *" addon "*) ;;
+  *" --full "*) tools/build.sh sanitizers ;;
+esac
 exec /usr/bin/python3 tools/test.py "$@"
