@@ -83,7 +83,6 @@ PROMISED = [
     "LightFalloff",
     "Normal",
     "BsdfSheen",
-    "BsdfVelvet",
     "BsdfMetallic",
 ]
 # Outputs that fall back although their node does not.
@@ -456,6 +455,52 @@ def test_the_volume_of_a_world_is_named() -> None:
     program = translate(world, "WORLD")
     assert program.warnings == ["Haze: volume is not supported yet and is left out"]
     assert op_names(program) == ["EMISSION"]
+
+
+# The same node under the manual's name, which is that of the newest Blender.
+RENAMED = {
+    "Bright Contrast": "Brightness/Contrast",
+    "ColorRamp": "Color Ramp",
+    "Hue Saturation Value": "Hue/Saturation/Value",
+    "Invert": "Invert Color",
+    "Mix (Legacy)": "MixRGB",
+}
+
+
+def test_the_manual_lists_every_node_that_is_translated() -> None:
+    from gradus.nodes import registry
+
+    manual = (ROOT / "docs" / "user-guide.md").read_text()
+    listed = {name.strip(" .\n") for line in manual.split("\n- ")[1:] for name in line.partition("\n\n")[0].partition(":")[2].split(",")}
+    listed = {" ".join(name.split()) for name in listed} | {"Velvet BSDF"}  # named as replaced
+    for bl_idname in registry.known():
+        kind = getattr(bpy.types, bl_idname, None)
+        if kind is not None:
+            name = kind.bl_rna.name
+            assert RENAMED.get(name, name).removesuffix(" (Legacy)") in listed, bl_idname
+
+
+@pytest.mark.parametrize(
+    "kind, distribution, named",
+    [
+        ("BsdfGlass", "BECKMANN", True),
+        ("BsdfAnisotropic", "ASHIKHMIN_SHIRLEY", True),
+        ("BsdfAnisotropic", "GGX", False),
+        ("BsdfRefraction", "BECKMANN", True),
+        ("BsdfSheen", "ASHIKHMIN", True),
+        ("BsdfSheen", "MICROFIBER", False),
+        ("BsdfVelvet", None, True),
+    ],
+)
+def test_a_lobe_that_is_rendered_as_another_is_named(kind: str, distribution: str | None, named: bool) -> None:
+    material = new_material("Old")
+    node = add(material, kind)
+    if distribution is not None:
+        node.distribution = distribution
+    show(material, node.outputs[0])
+    program = translate(material)
+    assert program.uses_fallback == named
+    assert len(program.warnings) == named
 
 
 def test_operations_are_those_of_the_header() -> None:

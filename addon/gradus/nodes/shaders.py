@@ -8,9 +8,15 @@ from .program import BLACK_CLOSURE, Value, constant_float
 from .registry import translator
 
 
+_RENDERED = frozenset({"GGX", "MULTI_GGX", "SHARP"})
+
+
 def distribution_mode(view: NodeView) -> int:
-    """1: energy of multiple scattering. Beckmann and Ashikhmin-Shirley lobes are rendered as GGX of the same roughness."""
-    return 1 if getattr(view.node, "distribution", "GGX") == "MULTI_GGX" else 0
+    """1: energy of multiple scattering. Other distributions (Beckmann, Ashikhmin-Shirley) are rendered as GGX of the same roughness."""
+    distribution = getattr(view.node, "distribution", "GGX")
+    if distribution not in _RENDERED:
+        view.warn_replaced("is rendered with the distribution GGX")
+    return 1 if distribution == "MULTI_GGX" else 0
 
 
 def roughness(view: NodeView) -> Value:
@@ -53,6 +59,7 @@ def glass(view: NodeView) -> Value:
 
 @translator("ShaderNodeBsdfRefraction")
 def refraction(view: NodeView) -> Value:
+    distribution_mode(view)
     return view.add_closure(Op.REFRACTION, (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal")))
 
 
@@ -74,6 +81,9 @@ def metallic(view: NodeView) -> Value:
 
 @translator("ShaderNodeBsdfSheen", "ShaderNodeBsdfVelvet")
 def sheen(view: NodeView) -> Value:
+    """Microfibres, as Blender has them since 4.0; before, Velvet was the lobe of Ashikhmin, which later Sheen nodes can choose."""
+    if getattr(view.node, "distribution", "ASHIKHMIN") == "ASHIKHMIN":
+        view.warn_replaced("is rendered as a sheen of microfibres")
     return view.add_closure(Op.SHEEN, (view.value("Color"), view.value("Roughness", "Sigma"), view.direction("Normal")))
 
 
