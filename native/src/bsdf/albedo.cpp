@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "bsdf/albedo_tables.h"
-#include "bsdf/frame.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
 
@@ -101,8 +100,8 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
   return Rgb(1.0f) + fresnel * mean / (Rgb(1.0f) - fresnel * (1.0f - mean)) * missing;
 }
 
-LobeAlbedo two_sided_albedo(const Lobe& lobe, const Vec3& wo) {
-  const float cosine = std::clamp(std::abs(wo.z), 0.0f, 1.0f);
+LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
+  const float cosine = std::min(std::abs(signed_cosine), 1.0f);
   const Rgb scale = lobe.weight * lobe.energy;
   switch (lobe.type) {
     case LobeType::Diffuse:
@@ -132,7 +131,7 @@ Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo) {
     prepared.ior = prepared.fresnel == FresnelType::Schlick ? std::max(prepared.ior, 1.0f / prepared.ior) : prepared.ior;
     kept = prepared.multiscatter ? 1.0f : ggx_moments(mean_alpha(prepared), glm::dot(prepared.normal, wo)).one;
   }
-  const LobeAlbedo albedo = two_sided_albedo(prepared, make_frame(prepared.normal, prepared.tangent).to_local(wo));
+  const LobeAlbedo albedo = two_sided_albedo(prepared, glm::dot(prepared.normal, wo));
   return (albedo.reflected + albedo.transmitted) / std::max(kept, 0.05f);
 }
 

@@ -78,11 +78,14 @@ Lobe* Closures::add() {
 void Closures::drop_black_lobes() {
   int kept = prepared_;
   for (int i = prepared_; i < count_; i++) {
-    Lobe lobe = lobes_[static_cast<size_t>(i)];
+    Lobe& lobe = lobes_[static_cast<size_t>(i)];
     lobe.weight = glm::max(lobe.weight, 0.0f);
     if (is_finite(lobe.weight) && !is_black(lobe.weight)) {
       original_[static_cast<size_t>(kept)] = {lobe.type, lobe.normal, lobe.ior};
-      lobes_[static_cast<size_t>(kept++)] = lobe;
+      if (kept != i) {
+        lobes_[static_cast<size_t>(kept)] = lobe;
+      }
+      kept++;
     }
   }
   count_ = prepared_ = kept;
@@ -131,8 +134,7 @@ void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) 
 
 void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold) {
   Lobe& lobe = lobes_[static_cast<size_t>(index)];
-  const Frame3 frame = make_frame(lobe.normal, lobe.tangent);
-  const LobeAlbedo albedo = two_sided_albedo(lobe, frame.to_local(wo));
+  const LobeAlbedo albedo = two_sided_albedo(lobe, glm::dot(lobe.normal, wo));
   float reflected = mean_component(albedo.reflected);
   float transmitted = mean_component(albedo.transmitted);
   const uint8_t sides = sides_of(lobe.type);

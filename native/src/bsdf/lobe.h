@@ -42,12 +42,13 @@ inline bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflectio
 // Turns the normal to the side of wo, limits what users can type, makes it Dirac where float demands it, fills `energy`.
 void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo);
 
-// Directional albedo of both sides of a lobe, weight and energy compensation included. wo in the lobe's frame; lobe as after finish().
+// Directional albedo of both sides of a lobe, weight and energy compensation included, seen under the cosine of wo and the lobe's
+// normal; lobe as after finish().
 struct LobeAlbedo {
   Rgb reflected = Rgb(0.0f);
   Rgb transmitted = Rgb(0.0f);
 };
-LobeAlbedo two_sided_albedo(const Lobe& lobe, const Vec3& wo);
+LobeAlbedo two_sided_albedo(const Lobe& lobe, float cosine);
 // Factor by which multiple scattering raises a microfacet lobe seen under `cosine`.
 Rgb multiscatter_energy(const Lobe& lobe, float cosine);
 

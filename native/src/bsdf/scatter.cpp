@@ -162,8 +162,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
 Rgb Closures::albedo(LightPass pass, const Vec3& wo) const {
   Rgb sum(0.0f);
   for (int i = 0; i < count_; i++) {
-    const Frame3 frame = make_frame(lobe(i).normal, lobe(i).tangent);
-    const LobeAlbedo albedo = two_sided_albedo(lobe(i), frame.to_local(wo));
+    const LobeAlbedo albedo = two_sided_albedo(lobe(i), glm::dot(lobe(i).normal, wo));
     sum += pass_of(lobe(i), false) == static_cast<size_t>(pass) ? albedo.reflected : Rgb(0.0f);
     sum += pass_of(lobe(i), true) == static_cast<size_t>(pass) ? albedo.transmitted : Rgb(0.0f);
   }

@@ -11,14 +11,12 @@ bool sees(uint32_t visibility, LightPass pass, bool transmitted) { return (visib
 
 }  // namespace
 
-bool sample_light(const PathContext& context, const Sampler& sampler, const Vertex& vertex, int depth, LightSample* light) {
+bool sample_light(const PathContext& context, const VertexSample& u, const Vertex& vertex, int depth, LightSample* light) {
   if (!context.scene.features.has_emitters || vertex.shade.closures.empty()) {
     return false;
   }
-  const uint32_t block = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
   const Receiver receiver = receiver_of(vertex);
-  light->point = sample_emitter(context.scene, receiver, sampler.get1(block + dimension::kLightChoice),
-                                sampler.get2(block + dimension::kLight), &light->view);
+  light->point = sample_emitter(context.scene, receiver, u.light_choice.x, u.light, &light->view);
   if (light->point.kind == EmitterKind::None) {
     return false;
   }

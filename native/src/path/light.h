@@ -22,7 +22,7 @@ struct LitClass {
 };
 
 // Emitter by the sample's random numbers. False: there is nothing to see.
-bool sample_light(const PathContext& context, const Sampler& sampler, const Vertex& vertex, int depth, LightSample* light);
+bool sample_light(const PathContext& context, const VertexSample& u, const Vertex& vertex, int depth, LightSample* light);
 // Scattering of an emitter's light at a vertex towards its wo, the shadow left out. Each kind of bounce sees what a ray of that kind would
 // find: both techniques have the same integrand. ray: that arrived at the vertex.
 LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light, const RayState& ray);

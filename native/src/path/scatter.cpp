@@ -9,10 +9,6 @@ namespace gradus {
 
 namespace {
 
-uint32_t vertex_block(int depth, uint32_t block) {
-  return dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex + block;
-}
-
 bool choose_class(const Closures& closures, float u, ScatterClass* chosen) {
   float sum = 0.0f;
   bool found = false;
@@ -62,26 +58,25 @@ void follow(const PathContext&, const SurfacePoint& from, const Vec3& direction,
   ray->state = next_ray_state(ray->state, pass == LightPass::Diffuse, transmitted, dirac);
 }
 
-float survive(const Sampler& sampler, PathState* state) {
+float survive(const VertexSample& u, PathState* state) {
   if (state->depth < 2) {
     return 1.0f;
   }
   const float probability = std::min(1.0f, std::sqrt(std::max(0.0f, max_component(state->throughput))));
-  if (probability < 1.0f && !(sampler.get1(vertex_block(state->depth, dimension::kRoulette)) < probability)) {
+  if (probability < 1.0f && !(u.roulette.x < probability)) {
     return 0.0f;
   }
   state->throughput /= probability;
   return probability;
 }
 
-bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& vertex, PathState* state, ScatterEvent* event) {
+bool scatter(const PathContext& context, const VertexSample& u, const Vertex& vertex, PathState* state, ScatterEvent* event) {
   const Closures& closures = vertex.shade.closures;
-  const Vec2 u = sampler.get2(vertex_block(state->depth, dimension::kLobe));
-  if (closures.empty() || !choose_class(closures, u.x, &event->scatter_class)) {
+  if (closures.empty() || !choose_class(closures, u.lobe.x, &event->scatter_class)) {
     return false;
   }
   BsdfSample& sample = event->sample;
-  if (!closures.sample(event->scatter_class, vertex.wo, u.y, sampler.get2(vertex_block(state->depth, dimension::kBsdf)), &sample)) {
+  if (!closures.sample(event->scatter_class, vertex.wo, u.lobe.y, u.bsdf, &sample)) {
     return false;
   }
   event->pdf = closures.class_probability(event->scatter_class) * sample.pdf;

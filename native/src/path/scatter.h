@@ -31,11 +31,11 @@ uint32_t bounce_visibility(LightPass pass, bool transmitted);
 // Russian roulette at a vertex, after its emission was seen and before it is lit: what a ray finds does not suffer from the roulette's
 // variance. Cycles' rule: from the third vertex on, by the square root of the largest channel, which matches a display's curve roughly.
 // 0: the path ends; otherwise the probability, by which the throughput was divided.
-float survive(const Sampler& sampler, PathState* state);
+float survive(const VertexSample& u, PathState* state);
 
 // Samples the next direction. False: absorbed. Otherwise state->ray, throughput and depth are those of the new
 // segment.
-bool scatter(const PathContext& context, const Sampler& sampler, const Vertex& vertex, PathState* state, ScatterEvent* event);
+bool scatter(const PathContext& context, const VertexSample& u, const Vertex& vertex, PathState* state, ScatterEvent* event);
 
 // The state of the ray that leaves a vertex by such a bounce.
 RayState next_ray_state(const RayState& state, bool diffuse, bool transmitted, bool dirac);

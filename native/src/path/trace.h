@@ -72,14 +72,15 @@ class PathTracer {
     if (!goes_on || state_.emission_only) {
       return false;
     }
-    const float survival = survive(sampler, &state_);
+    const VertexSample u = sampler.vertex(state_.depth);
+    const float survival = survive(u, &state_);
     if (!(survival > 0.0f)) {
       return false;
     }
     observer_.survived(survival);
-    add_light(sampler, *vertex);
+    add_light(u, *vertex);
     const int depth = state_.depth;
-    if (!scatter(context_, sampler, *vertex, &state_, &s_.event)) {
+    if (!scatter(context_, u, *vertex, &state_, &s_.event)) {
       return false;
     }
     if (recorder_ != nullptr) {
@@ -154,9 +155,9 @@ class PathTracer {
     return true;
   }
 
-  void add_light(const Sampler& sampler, const Vertex& vertex) {
+  void add_light(const VertexSample& u, const Vertex& vertex) {
     LitClass lit[kScatterClasses];
-    if (!sample_light(context_, sampler, vertex, state_.depth, &s_.light) ||
+    if (!sample_light(context_, u, vertex, state_.depth, &s_.light) ||
         !light_classes(context_, vertex, s_.light, state_.ray.state, lit)) {
       return;
     }

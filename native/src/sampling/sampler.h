@@ -33,6 +33,11 @@ inline constexpr uint32_t kOcclusion = 5;    // ambient occlusion pass
 inline constexpr uint32_t kPerVertex = 6;
 }  // namespace dimension
 
+// What a path needs at one vertex: its blocks but for the occlusion's.
+struct VertexSample {
+  Vec2 bsdf, lobe, light, light_choice, roulette;
+};
+
 class Sampler {
  public:
   Sampler() = default;
@@ -42,10 +47,13 @@ class Sampler {
   // Point of block `block` in [0, 1)²: any order, any number of times, always the same.
   Vec2 get2(uint32_t block) const;
   float get1(uint32_t block) const { return get2(block).x; }
+  // The blocks of the vertex with `depth` scatterings before it, the same values: eight lanes cost about what one does.
+  VertexSample vertex(int depth) const;
 
  private:
   uint32_t stream_hash_ = 0;
   uint32_t index_ = 0;
+  uint32_t reversed_index_ = 0;
   bool independent_ = false;
 };
 

@@ -2,12 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace gradus {
 
 namespace {
 
 float safe_acos(float c) { return std::acos(std::clamp(c, -1.0f, 1.0f)); }
+
+// A complex number whose argument is the solid angle of the rectangle from the foot of the perpendicular, of length z, to (x, y).
+std::complex<double> corner(double x, double y, double z) { return {z * std::sqrt(x * x + y * y + z * z), x * y}; }
+
+// a·b by components: finite numbers need no more.
+std::complex<double> times(const std::complex<double>& a, const std::complex<double>& b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+// The four corners' angles, atan(xy / (z·sqrt(x²+y²+z²))), add up with alternating signs to one in (0, 2π): a single arctangent of the
+// product. About 0 rounding decides the sign, so that what is nearly all of the hemisphere counts as nothing, too.
+float solid_angle_of(float x0, float x1, float y0, float y1, float z) {
+  const std::complex<double> plus = times(corner(x1, y1, z), corner(x0, y0, z)), minus = times(corner(x0, y1, z), corner(x1, y0, z));
+  const std::complex<double> all = times(plus, std::conj(minus));
+  const double angle = std::atan2(all.imag(), all.real());
+  constexpr double whole_turn = 6.28318530717958647692;
+  return static_cast<float>(angle < -SphericalRectangle::kSmallestSolidAngle ? angle + whole_turn : angle);
+}
 
 }  // namespace
 
@@ -26,20 +45,16 @@ SphericalRectangle::SphericalRectangle(const Vec3& centre, const Vec3& axis_x, c
   y0_ = glm::dot(d, y_) - half_height;
   y1_ = glm::dot(d, y_) + half_height;
   if (!(z0_ < 0.0f)) return;
-  // z components of the unit normals of the four planes through the point and an edge; the others follow from them.
-  const float n0 = -y0_ / std::sqrt(z0_ * z0_ + y0_ * y0_), n2 = y1_ / std::sqrt(z0_ * z0_ + y1_ * y1_);
-  const float n1 = x1_ / std::sqrt(z0_ * z0_ + x1_ * x1_), n3 = -x0_ / std::sqrt(z0_ * z0_ + x0_ * x0_);
-  const float g0 = safe_acos(-n0 * n1), g1 = safe_acos(-n1 * n2), g2 = safe_acos(-n2 * n3), g3 = safe_acos(-n3 * n0);
-  b0_ = n0;
-  b1_ = n2;
-  k_ = 2.0f * kPi - g2 - g3;
-  solid_angle_ = g0 + g1 - k_;
+  solid_angle_ = solid_angle_of(x0_, x1_, y0_, y1_, -z0_);
 }
 
 Vec3 SphericalRectangle::sample(const Vec2& u) const {
-  const float au = u.x * solid_angle_ + k_;
-  const float fu = (std::cos(au) * b0_ - b1_) / std::sin(au);
-  const float cu = std::clamp(std::copysign(1.0f, fu) / std::sqrt(fu * fu + b0_ * b0_), -1.0f, 1.0f);
+  // z components of the unit normals of the four planes through the point and an edge; the others follow from them.
+  const float n0 = -y0_ / std::sqrt(z0_ * z0_ + y0_ * y0_), n2 = y1_ / std::sqrt(z0_ * z0_ + y1_ * y1_);
+  const float n3 = -x0_ / std::sqrt(z0_ * z0_ + x0_ * x0_);
+  const float au = u.x * solid_angle_ + (2.0f * kPi - safe_acos(-n2 * n3) - safe_acos(-n3 * n0));
+  const float fu = (std::cos(au) * n0 - n2) / std::sin(au);
+  const float cu = std::clamp(std::copysign(1.0f, fu) / std::sqrt(fu * fu + n0 * n0), -1.0f, 1.0f);
   const float xu = std::clamp(-(cu * z0_) / std::sqrt(std::max(1e-12f, 1.0f - cu * cu)), x0_, x1_);
   const float d2 = xu * xu + z0_ * z0_;
   const float h0 = y0_ / std::sqrt(d2 + y0_ * y0_), h1 = y1_ / std::sqrt(d2 + y1_ * y1_);

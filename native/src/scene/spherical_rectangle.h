@@ -10,8 +10,9 @@ class SphericalRectangle {
  public:
   // axis_x, axis_y: unit, at right angles.
   SphericalRectangle(const Vec3& centre, const Vec3& axis_x, const Vec3& axis_y, float half_width, float half_height, const Vec3& from);
-  // Small solid angles cancel in float, and there sampling by area is as good.
-  bool usable() const { return solid_angle_ > 1e-3f; }
+  // The sampling of small solid angles cancels in float, and there sampling by area is as good.
+  static constexpr float kSmallestSolidAngle = 1e-3f;
+  bool usable() const { return solid_angle_ > kSmallestSolidAngle; }
   float solid_angle() const { return solid_angle_; }
   // Position on the rectangle.
   Vec3 sample(const Vec2& u) const;
@@ -19,7 +20,6 @@ class SphericalRectangle {
  private:
   Vec3 from_, x_, y_, z_;
   float x0_, x1_, y0_, y1_, z0_;
-  float b0_ = 0.0f, b1_ = 0.0f, k_ = 0.0f;
   float solid_angle_ = 0.0f;
 };
 

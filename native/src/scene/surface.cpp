@@ -1,8 +1,9 @@
 #include "scene/surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <limits>
 
 #include "scene/mesh.h"
 #include "scene/snapshot.h"
@@ -17,16 +18,44 @@ constexpr float gamma_bound(int n) { return float(n) * kUnitRoundoff / (1.0f - f
 
 float largest(const Vec3& v) { return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z))); }
 
+// Squares of lengths within these bounds lose nothing to float's range.
+constexpr float kSmallestSquare = 1e-30f, kLargestSquare = 1e30f;
+bool is_safe_square(float square) { return square > kSmallestSquare && square < kLargestSquare; }
+
+// Unit vector, also where the square of the length leaves float's range; `fallback` where there is none.
+Vec3 safe_normalize(const Vec3& v, const Vec3& fallback) {
+  const float square = glm::dot(v, v);
+  if (is_safe_square(square)) return v * (1.0f / std::sqrt(square));
+  const float scale = largest(v);
+  if (!(scale > 0.0f) || !is_finite(scale)) return fallback;
+  return glm::normalize(v / scale);
+}
+
+struct Plane {
+  Vec3 normal;  // unit
+  float error;  // of the plane equation that the next ray computes, see below
+};
+
 // The next ray's plane equation is computed from the corners relative to its origin: rounding grows with the size of the triangle,
 // and once more where two short edges are nearly parallel, because the normal comes from them.
-float plane_error(const std::array<Vec3, 3>& p) {
+float plane_error(const Vec3 e[3], float area) {
+  const float a = glm::dot(e[0], e[0]), b = glm::dot(e[1], e[1]), c = glm::dot(e[2], e[2]);
+  const float low = std::min(a, std::min(b, c)), high = std::max(a, std::max(b, c));
+  const float middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+  const float conditioning = std::sqrt(low) * (std::sqrt(middle) / area);
+  return gamma_bound(8) * std::sqrt(high) * std::clamp(conditioning, 1.0f, 1e4f);
+}
+
+Plane plane_of(const std::array<Vec3, 3>& p) {
   const Vec3 e[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
-  float squares[3] = {glm::dot(e[0], e[0]), glm::dot(e[1], e[1]), glm::dot(e[2], e[2])};
-  const float area = glm::length(glm::cross(e[0], e[1]));
-  std::sort(squares, squares + 3);
-  const float size = std::sqrt(squares[2]);
-  const float conditioning = std::sqrt(squares[0]) * (std::sqrt(squares[1]) / area);
-  return gamma_bound(8) * size * std::clamp(conditioning, 1.0f, 1e4f);
+  const Vec3 cross = glm::cross(e[0], -e[2]);
+  const float square = glm::dot(cross, cross);
+  const float area = std::sqrt(square);
+  if (is_safe_square(square)) return {cross * (1.0f / area), plane_error(e, area)};
+  // Coordinates beyond 1e19, or tiny triangles: scaled to where squares are safe.
+  const float scale = std::max(largest(e[0]), std::max(largest(e[1]), largest(e[2])));
+  const Vec3 normal = scale > 0.0f ? safe_normalize(glm::cross(e[0] / scale, -e[2] / scale), Vec3(0, 0, 1)) : Vec3(0, 0, 1);
+  return {normal, plane_error(e, area)};
 }
 
 // As stored: in internal space if the mesh lies in the top level, else in the mesh's own.
@@ -41,28 +70,6 @@ Vec3 magnitudes(const Mat4& m, const Vec3& v) {
   return glm::abs(Vec3(m[0])) * v.x + glm::abs(Vec3(m[1])) * v.y + glm::abs(Vec3(m[2])) * v.z + glm::abs(Vec3(m[3]));
 }
 
-Vec3 normal_of(const std::array<Vec3, 3>& p) { return glm::cross(p[1] - p[0], p[2] - p[0]); }
-
-// Unit vector, also where the square of the length leaves float's range; `fallback` where there is none.
-Vec3 safe_normalize(const Vec3& v, const Vec3& fallback) {
-  const float scale = largest(v);
-  if (!(scale > 0.0f) || !is_finite(scale)) return fallback;
-  return glm::normalize(v / scale);
-}
-
-// Squares of coordinates beyond 1e19 leave float's range: scaled down first.
-Vec3 unit_normal_of(std::array<Vec3, 3> p) {
-  const Vec3 base = p[0];
-  float scale = 0.0f;
-  for (Vec3& v : p) {
-    v -= base;
-    scale = std::max(scale, largest(v));
-  }
-  if (scale > 0.0f)
-    for (Vec3& v : p) v /= scale;
-  return safe_normalize(normal_of(p), Vec3(0, 0, 1));
-}
-
 // Linear in the barycentrics; where the mesh is flat or its normals are broken, the geometric normal.
 Vec3 shading_normal(const InstanceData& instance, const Hit& hit, const Vec3& geometric) {
   std::array<Vec3, 3> n;
@@ -74,29 +81,33 @@ void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* poin
   const std::array<Vec3, 3> p = stored_corners(instance, hit.triangle);
   const std::array<Vec3, 3> sizes = {glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])};
   point->position = interpolate(p, hit.barycentric);
-  point->geometric_normal = unit_normal_of(p) * (instance.mirrored ? -1.0f : 1.0f);
+  const Plane plane = plane_of(p);
+  point->geometric_normal = instance.mirrored ? -plane.normal : plane.normal;
   const Vec3 error = gamma_bound(7) * interpolate(sizes, hit.barycentric);
-  point->error = glm::dot(glm::abs(point->geometric_normal), error) + plane_error(p);
+  point->error = glm::dot(glm::abs(point->geometric_normal), error) + plane.error;
 }
 
 void place_instanced(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
   const std::array<Vec3, 3> p = stored_corners(instance, hit.triangle);
+  const Plane plane = plane_of(p);
   const Vec3 local = interpolate(p, hit.barycentric);
   const Vec3 local_size = interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
   point->position = Vec3(instance.to_world * Vec4(local, 1.0f));
-  point->geometric_normal = safe_normalize(instance.normal_to_world * unit_normal_of(p), Vec3(0, 0, 1));
+  point->geometric_normal = safe_normalize(instance.normal_to_world * plane.normal, Vec3(0, 0, 1));
   // There: corners, sum, matrix. And back: Embree takes the next ray into the mesh's space, with rounding of its own there.
   const Mat4 linear(instance.to_world[0], instance.to_world[1], instance.to_world[2], Vec4(0.0f));
   const Vec3 back = magnitudes(instance.to_local, glm::abs(point->position));
   const Vec3 error = magnitudes(instance.to_world, local_size) * gamma_bound(8) + magnitudes(linear, back) * gamma_bound(8) +
-                     magnitudes(linear, Vec3(plane_error(p)));
+                     magnitudes(linear, Vec3(plane.error));
   point->error = glm::dot(glm::abs(point->geometric_normal), error);
 }
 
-// The float next to v in the direction of `up`.
-float step_away(float v, float direction) {
-  if (direction == 0.0f) return v;
-  return std::nextafter(v, direction > 0.0f ? kInfinity : -kInfinity);
+// The float next to v in the direction of `up`: std::nextafter for finite v, without the call.
+float step_away(float v, float up) {
+  if (up == 0.0f) return v;
+  if (v == 0.0f) return std::copysign(std::numeric_limits<float>::denorm_min(), up);
+  const auto bits = std::bit_cast<uint32_t>(v);
+  return std::bit_cast<float>((v > 0.0f) == (up > 0.0f) ? bits + 1 : bits - 1);
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST_P(B8_Strategies, WeightsSumToOne) {
     const Vec2 film = Vec2(31.0f, 24.0f) * sampler.get2(dimension::kFilm);
     LightSample light;
     if (!camera_vertex(path, sampler, film, &x) || !camera_vertex(path, sampler, film + Vec2(1, 0), &y)) continue;
-    if (!sample_light(path, sampler, x, 0, &light) || light.point.dirac) continue;
+    if (!sample_light(path, sampler.vertex(0), x, 0, &light) || light.point.dirac) continue;
     const EmitterView view = view_emitter(path.scene, light.point, receiver_of(y));
     const LitClass lit_x = light_class(path, x, ScatterClass::Diffuse, light, kAnyRay);
     const LitClass lit_y = light_class(path, y, ScatterClass::Diffuse, LightSample{light.point, view}, kAnyRay);
