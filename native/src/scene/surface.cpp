@@ -48,7 +48,7 @@ float plane_error(const Vec3 e[3], float area) {
 
 Plane plane_of(const std::array<Vec3, 3>& p) {
   const Vec3 e[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
-  const Vec3 cross = glm::cross(e[0], -e[2]);
+  const Vec3 cross = glm::cross(e[0], p[2] - p[0]);  // not -e[2]: zeros keep their sign, which tangents follow
   const float square = glm::dot(cross, cross);
   const float area = std::sqrt(square);
   if (is_safe_square(square)) return {cross * (1.0f / area), plane_error(e, area)};
