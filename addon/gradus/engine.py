@@ -19,6 +19,10 @@ def free(state: dict[str, Any]) -> None:
             part.free()
 
 
+# Looked up now: at the end of Blender its types may be gone before the last engine, and then a look-up crashes.
+_parent_del: Callable[[Any], None] | None = getattr(bpy.types.RenderEngine, "__del__", None)
+
+
 class GradusRenderEngine(bpy.types.RenderEngine):
     """No __init__: in Blender 4.5 and 5.0 it would run twice on one object. State is in class-level defaults."""
 
@@ -39,9 +43,8 @@ class GradusRenderEngine(bpy.types.RenderEngine):
     def __del__(self) -> None:
         # At the end of Blender its side of the object is gone before ours, and then every look-up on self raises.
         free(object.__getattribute__(self, "__dict__"))
-        parent = getattr(bpy.types.RenderEngine, "__del__", None)
-        if parent is not None:
-            parent(self)
+        if _parent_del is not None:
+            _parent_del(self)
 
     def update_render_passes(self, scene: bpy.types.Scene | None = None, renderlayer: bpy.types.ViewLayer | None = None) -> None:
         self._guard(lambda: renderer.register_passes(self, scene, renderlayer))

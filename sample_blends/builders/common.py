@@ -221,6 +221,7 @@ def diffuse(name: str, color: Color) -> bpy.types.Material:
 def glass(name: str, color: Color = (1, 1, 1), roughness: float = 0.0, ior: float = 1.5) -> bpy.types.Material:
     def build(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
         node = tree.nodes.new("ShaderNodeBsdfGlass")
+        node.distribution = "GGX"  # the default differs between versions
         node.inputs["Color"].default_value = (*color, 1.0)
         node.inputs["Roughness"].default_value = roughness
         node.inputs["IOR"].default_value = ior

@@ -8,8 +8,10 @@ import os
 import re
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
+import pytest
 
 
 def test_register_twice(addon: object) -> None:
@@ -18,6 +20,17 @@ def test_register_twice(addon: object) -> None:
         assert not hasattr(bpy.types.Scene, "gradus")
         addon.register()
         assert hasattr(bpy.types.Scene, "gradus")
+
+
+def test_an_engine_that_outlives_blenders_types_does_not_look_for_them(addon: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    from gradus import engine
+
+    freed = []
+    monkeypatch.setattr(engine, "bpy", None)
+    monkeypatch.setattr(engine, "_parent_del", None)
+    job = SimpleNamespace(free=lambda: freed.append(True))
+    engine.GradusRenderEngine.__del__(SimpleNamespace(job=job))
+    assert freed == [True]
 
 
 def test_version_answers(library: ctypes.CDLL) -> None:

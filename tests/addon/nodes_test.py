@@ -497,10 +497,20 @@ def test_a_lobe_that_is_rendered_as_another_is_named(kind: str, distribution: st
     node = add(material, kind)
     if distribution is not None:
         node.distribution = distribution
+    node.inputs["Sigma" if kind == "BsdfVelvet" else "Roughness"].default_value = 0.3
     show(material, node.outputs[0])
     program = translate(material)
     assert program.uses_fallback == named
     assert len(program.warnings) == named
+
+
+def test_the_distribution_of_a_smooth_lobe_does_not_matter() -> None:
+    material = new_material("Glass")
+    node = add(material, "BsdfGlass")
+    node.distribution = "BECKMANN"
+    node.inputs["Roughness"].default_value = 0.0
+    show(material, node.outputs[0])
+    assert translate(material).warnings == []
 
 
 def test_operations_are_those_of_the_header() -> None:
