@@ -28,3 +28,27 @@ class EnginePanel:
 
 class RenderPanel(EnginePanel):
     bl_context = "render"
+
+
+class MaterialPanel(EnginePanel):
+    bl_context = "material"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.material is not None
+
+
+class WorldPanel(EnginePanel):
+    bl_context = "world"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.world is not None
+
+
+class LightPanel(EnginePanel):
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.light is not None

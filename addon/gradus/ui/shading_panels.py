@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from .base import EnginePanel
+from .base import LightPanel, MaterialPanel, WorldPanel
 
 
 def draw_output(layout: Any, tree: Any, name: str) -> None:
@@ -18,13 +18,8 @@ def draw_output(layout: Any, tree: Any, name: str) -> None:
         layout.template_node_view(tree, output, output.inputs[name])
 
 
-class GRADUS_MATERIAL_PT_surface(EnginePanel, bpy.types.Panel):
+class GRADUS_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
     bl_label = "Surface"
-    bl_context = "material"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.material is not None
 
     def draw(self, context: Any) -> None:
         material = context.material
@@ -35,14 +30,9 @@ class GRADUS_MATERIAL_PT_surface(EnginePanel, bpy.types.Panel):
             self.layout.prop(material, "use_nodes", icon="NODETREE")
 
 
-class GRADUS_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
+class GRADUS_MATERIAL_PT_settings(MaterialPanel, bpy.types.Panel):
     bl_label = "Settings"
-    bl_context = "material"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.material is not None
 
     def draw(self, context: Any) -> None:
         layout, material = self.columns(), context.material
@@ -54,13 +44,8 @@ class GRADUS_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
                     layout.prop(owner, name)
 
 
-class GRADUS_WORLD_PT_surface(EnginePanel, bpy.types.Panel):
+class GRADUS_WORLD_PT_surface(WorldPanel, bpy.types.Panel):
     bl_label = "Surface"
-    bl_context = "world"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.world is not None
 
     def draw(self, context: Any) -> None:
         world = context.world
@@ -72,14 +57,9 @@ class GRADUS_WORLD_PT_surface(EnginePanel, bpy.types.Panel):
             self.layout.prop(world, "color")
 
 
-class GRADUS_WORLD_PT_mist(EnginePanel, bpy.types.Panel):
+class GRADUS_WORLD_PT_mist(WorldPanel, bpy.types.Panel):
     bl_label = "Mist Pass"
-    bl_context = "world"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.world is not None
 
     def draw(self, context: Any) -> None:
         layout, mist = self.columns(), context.world.mist_settings
@@ -87,14 +67,9 @@ class GRADUS_WORLD_PT_mist(EnginePanel, bpy.types.Panel):
             layout.prop(mist, name)
 
 
-class GRADUS_WORLD_PT_settings(EnginePanel, bpy.types.Panel):
+class GRADUS_WORLD_PT_settings(WorldPanel, bpy.types.Panel):
     bl_label = "Settings"
-    bl_context = "world"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.world is not None
 
     def draw(self, context: Any) -> None:
         layout, world = self.columns(), context.world
@@ -110,9 +85,8 @@ class GRADUS_WORLD_PT_settings(EnginePanel, bpy.types.Panel):
                 column.prop(visibility, name)
 
 
-class GRADUS_DATA_PT_light(EnginePanel, bpy.types.Panel):
+class GRADUS_DATA_PT_light(LightPanel, bpy.types.Panel):
     bl_label = "Light"
-    bl_context = "data"
 
     VALUES = {  # noqa: RUF012
         "POINT": ("shadow_soft_size", "use_soft_falloff"),
@@ -120,10 +94,6 @@ class GRADUS_DATA_PT_light(EnginePanel, bpy.types.Panel):
         "SUN": ("angle",),
         "AREA": ("shape", "size"),
     }
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.light is not None
 
     def draw(self, context: Any) -> None:
         light = context.light
@@ -147,14 +117,9 @@ class GRADUS_DATA_PT_light(EnginePanel, bpy.types.Panel):
             layout.prop(cycles, "use_multiple_importance_sampling")
 
 
-class GRADUS_DATA_PT_light_nodes(EnginePanel, bpy.types.Panel):
+class GRADUS_DATA_PT_light_nodes(LightPanel, bpy.types.Panel):
     bl_label = "Nodes"
-    bl_context = "data"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.light is not None
 
     def draw(self, context: Any) -> None:
         light = context.light
