@@ -28,6 +28,22 @@ std::vector<float> eigenvalues(int length) {
 
 using Range = tbb::blocked_range<int>;
 
+// Calls body(y, row y, row y + 1, whether that one exists, scratch) for every second row: one complex transform serves two rows.
+template <class Body>
+void for_row_pairs(int w, int h, float* work, const Body& body) {
+  tbb::parallel_for(Range(0, (h + 1) / 2, kRowGrain), [&](const Range& range) {
+    const FlushDenormals flush;
+    Dct::Scratch scratch(w);
+    std::vector<float> spare(static_cast<size_t>(w));
+    for (int pair = range.begin(); pair < range.end(); ++pair) {
+      const int y = 2 * pair;
+      const bool both = y + 1 < h;
+      float* const a = work + size_t(y) * w;
+      body(y, a, both ? a + w : spare.data(), both, &scratch);
+    }
+  });
+}
+
 }  // namespace
 
 PoissonDct::PoissonDct(int width, int height)
@@ -41,19 +57,10 @@ void PoissonDct::solve(float data_weight, const FillRow& fill, const Sum& sum, c
 }
 
 void PoissonDct::rows_forward(const FillRow& fill, float* work) const {
-  const int w = width(), h = height();
-  tbb::parallel_for(Range(0, (h + 1) / 2, kRowGrain), [&](const Range& range) {
-    const FlushDenormals flush;
-    Dct::Scratch scratch(w);
-    std::vector<float> spare(static_cast<size_t>(w));
-    for (int pair = range.begin(); pair < range.end(); ++pair) {
-      const int y = 2 * pair;
-      float* const a = work + size_t(y) * w;
-      float* const b = y + 1 < h ? a + w : spare.data();
-      fill(y, a);
-      if (y + 1 < h) fill(y + 1, b);
-      row_.forward(a, b, &scratch);
-    }
+  for_row_pairs(width(), height(), work, [&](int y, float* a, float* b, bool both, Dct::Scratch* scratch) {
+    fill(y, a);
+    if (both) fill(y + 1, b);
+    row_.forward(a, b, scratch);
   });
 }
 
@@ -89,19 +96,10 @@ void PoissonDct::columns(float data_weight, const double* sum, float* work) cons
 }
 
 void PoissonDct::rows_inverse(const TakeRow& take, float* work) const {
-  const int w = width(), h = height();
-  tbb::parallel_for(Range(0, (h + 1) / 2, kRowGrain), [&](const Range& range) {
-    const FlushDenormals flush;
-    Dct::Scratch scratch(w);
-    std::vector<float> spare(static_cast<size_t>(w));
-    for (int pair = range.begin(); pair < range.end(); ++pair) {
-      const int y = 2 * pair;
-      float* const a = work + size_t(y) * w;
-      float* const b = y + 1 < h ? a + w : spare.data();
-      row_.inverse(a, b, &scratch);
-      take(y, a);
-      if (y + 1 < h) take(y + 1, b);
-    }
+  for_row_pairs(width(), height(), work, [&](int y, float* a, float* b, bool both, Dct::Scratch* scratch) {
+    row_.inverse(a, b, scratch);
+    take(y, a);
+    if (both) take(y + 1, b);
   });
 }
 
