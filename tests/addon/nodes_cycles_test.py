@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -139,3 +139,29 @@ def test_a9_node(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
     assert difference.mean() / scale < 0.025
     assert np.quantile(difference, 0.95) / scale < 0.15
     assert np.abs(expected.mean(axis=(0, 1)) - found.mean(axis=(0, 1))).max() / scale < 0.02
+
+
+@pytest.fixture
+def coarse(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
+    """The stage with a smooth sphere of few faces in place of the others."""
+    others = [item for item in stage.objects if item.type == "MESH"]
+    for item in others:
+        item.hide_render = True
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=8, ring_count=6, radius=1.5)
+    bpy.ops.object.shade_smooth()
+    sphere = bpy.context.object
+    yield stage
+    bpy.data.objects.remove(sphere)
+    for item in others:
+        item.hide_render = False
+
+
+@pytest.mark.parametrize("name", ["normal map", "tangent uv"])
+def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.types.Scene, tmp_path: Path) -> None:
+    material = new_material()
+    show(material, CASES[name](Graph(material)))
+    bpy.context.object.data.materials.append(material)
+    expected, found = (picture(coarse, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    difference = np.abs(expected - found)
+    assert np.abs(expected).mean() > 0.05
+    assert np.quantile(difference, 0.95) / np.abs(expected).mean() < 0.02

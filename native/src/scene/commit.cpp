@@ -8,6 +8,7 @@
 #include "scene/emitter_table.h"
 #include "scene/lamp_scene.h"
 #include "scene/scene_state.h"
+#include "scene/tangent_field.h"
 #include "shading/material.h"
 
 namespace gradus {
@@ -171,6 +172,8 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     const std::vector<size_t> chosen = place_instances(*state_, snapshot.get());
     monitor.check();
     assign_materials(state_->instances, chosen, materials, snapshot.get());
+    add_tangents(state_->current.get(), snapshot.get());
+    monitor.check();
     build_geometry(device_, chosen, monitor.step(0.25f, 0.8f), state_.get(), snapshot.get());
     place_camera(*state_, snapshot.get());
     place_world(*state_, materials, snapshot.get());

@@ -17,6 +17,7 @@ struct MeshData;      // scene/mesh.h
 struct MaterialData;  // shading/material.h: compiled node program and flags
 class ImageStore;     // scene/image_store.h
 struct Accelerator;   // scene/accelerator.h: Embree scenes
+struct TangentField;  // scene/tangent_field.h
 
 // Matrices lead to and from the snapshot's internal space (Snapshot::origin). A mirrored instance keeps outside outside: normals are
 // transformed by the inverse transpose, and geometric normals point to where the corners run counter-clockwise in the mesh.
@@ -35,7 +36,8 @@ struct InstanceData {
   Vec4 color{1.0f};
   Vec3 generated{0.0f};
   Vec2 uv{0.0f};
-  std::vector<uint32_t> materials;  // by slot: index in Snapshot::materials
+  std::vector<uint32_t> materials;                            // by slot: index in Snapshot::materials
+  std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps for which a material asks
 };
 
 // What a scene contains, so that what it does not need can be left out.

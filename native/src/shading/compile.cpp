@@ -100,6 +100,20 @@ bool looks_at_kind(const Program& p) {
   });
 }
 
+bool asks_for_tangents(const Instruction& i) {
+  return (i.op == GRADUS_OP_NORMAL_MAP && i.mode == GRADUS_NORMAL_TANGENT) || (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV);
+}
+
+std::vector<std::string> tangent_maps(const Program& p) {
+  std::vector<std::string> names;
+  for (const Instruction& i : p.code) {
+    if (!asks_for_tangents(i)) continue;
+    const std::string name = i.resource > 0 ? p.names[i.resource - 1] : "";
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
 // Mean luminance over a few places, textures at their mean colour.
 float estimate(const Program& p, const ImageStore& images) {
   constexpr int kPlaces = 8;
@@ -156,6 +170,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   m->transparent_shadow = desc.transparent_shadow != 0;
   m->uses_fallback = desc.uses_fallback != 0;
   m->pass_index = desc.pass_index;
+  m->tangent_maps = tangent_maps(m->surface);
   Analysis(m->surface, m.get()).run();
   describe_emission(m.get(), images);
   describe_transparency(m.get());

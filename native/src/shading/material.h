@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/types.h"
 #include "gradus/gradus.h"
@@ -37,6 +38,7 @@ struct MaterialData {
   Rgb constant_transparency = Rgb(0.0f);
   float emission_estimate = 0.0f;  // luminance for the choice of lights: exact where constant, else textures at their mean
   int32_t pass_index = 0;
+  std::vector<std::string> tangent_maps;  // names of UV maps ("": the default) whose tangents it asks for
 };
 
 // Compiles a node program: folds constants, drops what nothing needs, allots registers. Throws Error INVALID_ARGUMENT, with the

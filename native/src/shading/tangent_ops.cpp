@@ -1,45 +1,41 @@
-// Tangent and Normal Map nodes. UV tangents are those of the triangle, made orthogonal to the interpolated normal.
+// Tangent and Normal Map nodes.
 #include "scene/mesh.h"
+#include "scene/tangent_field.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
 namespace gradus {
 namespace {
 
-struct TangentFrame {
-  Vec3 tangent = Vec3(0.0f);  // zero: the mesh has no usable UV map
-  float handedness = 1.0f;
-};
-
-// In the object's space.
-TangentFrame uv_tangent(const ShadeContext& c, const std::string* name, const Vec3& local_normal) {
-  TangentFrame frame;
-  if (!c.instance) return frame;
+// Interpolated over the triangle, in the object's space; w: handedness. 0: the mesh has no usable UV map.
+Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
+  if (!c.instance) return Vec4(0.0f);
   const MeshData& mesh = *c.instance->mesh;
   const MeshAttribute* uv = name ? find_attribute(mesh, *name) : default_uv_map(mesh);
-  if (!uv) return frame;
-  const std::array<Vec4, 3> t = corner_values(mesh, *uv, c.hit.triangle);
-  const std::array<Vec3, 3> p = triangle_positions(mesh, c.hit.triangle);
-  const Vec2 d1 = Vec2(t[1]) - Vec2(t[0]), d2 = Vec2(t[2]) - Vec2(t[0]);
-  const float area = d1.x * d2.y - d2.x * d1.y;
-  if (area == 0.0f || !is_finite(area)) return frame;
-  frame.handedness = area > 0.0f ? 1.0f : -1.0f;
-  const Vec3 along_u = ((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * frame.handedness;
-  frame.tangent = safe_normalize(along_u - local_normal * glm::dot(local_normal, along_u));
-  return frame;
+  for (const auto& field : c.instance->tangents)
+    if (field->uv == uv) return interpolate(field->corners(c.hit.triangle), c.hit.barycentric);
+  return Vec4(0.0f);
 }
 
 Vec3 unflipped(const ShadeContext& c) { return c.backfacing ? -c.normal : c.normal; }
 
+// In the object's space. As interpolated, not normalised: bakers and Cycles build the frame with it.
+Vec3 local_normal(const ShadeContext& c) {
+  std::array<Vec3, 3> normals;
+  if (triangle_normals(*c.instance->mesh, c.hit.triangle, &normals)) return interpolate(normals, c.hit.barycentric);
+  return normal_to_local(c, unflipped(c));
+}
+
 Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 color, float strength) {
-  const Vec3 n = normal_to_local(c, unflipped(c));
-  const TangentFrame frame = uv_tangent(c, args.name, n);
-  if (frame.tangent == Vec3(0.0f)) return c.normal;
+  const Vec4 frame = uv_tangent(c, args.name);
+  const Vec3 tangent(frame);
+  if (tangent == Vec3(0.0f)) return c.normal;
+  const Vec3 n = local_normal(c);
   color.x *= strength;
   color.y *= strength;
   color.z = 1.0f + (color.z - 1.0f) * saturate(strength);
-  const Vec3 bitangent = glm::cross(n, frame.tangent) * frame.handedness;
-  const Vec3 local = frame.tangent * color.x + bitangent * color.y + n * color.z;
+  const Vec3 bitangent = glm::cross(n, tangent) * frame.w;
+  const Vec3 local = tangent * color.x + bitangent * color.y + n * color.z;
   const Vec3 world = normal_to_world(c, local);
   return c.backfacing ? -world : world;
 }
@@ -49,7 +45,7 @@ Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 
 Vec3 tangent(const ResourceArgs& args, const ShadeContext& c) {
   Vec3 direction;
   if (args.mode == GRADUS_TANGENT_UV) {
-    const Vec3 local = uv_tangent(c, args.name, normal_to_local(c, unflipped(c))).tangent;
+    const Vec3 local(uv_tangent(c, args.name));
     direction = c.instance ? Mat3(c.instance->to_world) * local : local;
   } else {
     const Vec3 g = generated(c) - 0.5f;
