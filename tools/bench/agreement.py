@@ -23,7 +23,12 @@ SHARE = 0.95
 RESULTS = ROOT / "docs" / "benchmark" / "agreement.json"
 
 # Scenes that are known to differ, each with its reason.
-NAMED_DIFFERENCES: dict[str, str] = {}
+NAMED_DIFFERENCES: dict[str, str] = {
+    "breakfast-room": "floor and walls have faces in one plane: in Cycles the sky shines through between them, in three patches on the "
+    "floor, which are gone when the floor is lifted by 2 mm",
+    "bathroom": "inner and outer faces of the wash basin lie in one plane: Cycles loses light between them (the basin alone, white in a "
+    "white world, shows 0.96 in place of 1; here 1.00)",
+}
 
 
 def blocks(image: np.ndarray) -> np.ndarray:
