@@ -18,15 +18,17 @@ BEFORE_40 = bpy.app.version < (4, 0, 0)
 DISTANCE = 3.0
 
 
-def _receiver(scene: bpy.types.Scene) -> None:
+def _receiver(scene: bpy.types.Scene, node: str = "ShaderNodeBsdfDiffuse", **inputs: float) -> None:
     """A small white plane that fills the view of an orthographic camera below the light."""
     material = bpy.data.materials.new("White")
     material.use_nodes = True
     tree = material.node_tree
     tree.nodes.clear()
-    diffuse, output = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeOutputMaterial")
-    diffuse.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    surface, output = tree.nodes.new(node), tree.nodes.new("ShaderNodeOutputMaterial")
+    surface.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    for name, value in inputs.items():
+        surface.inputs[name].default_value = value
+    tree.links.new(surface.outputs[0], output.inputs["Surface"])
     mesh = recording.grid(1, 0.04)
     mesh.materials.append(material)
     recording.add(mesh, "Receiver")
@@ -130,3 +132,20 @@ def test_area_shines_on_one_side(irradiance: Callable[..., np.ndarray]) -> None:
 def test_exposure_and_normalize(irradiance: Callable[..., np.ndarray], kind: str, settings: dict[str, Any], expected: float) -> None:
     """Values that Cycles 4.5 shows."""
     assert irradiance(kind, **{"energy": 100.0, **settings})[0] == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("roughness, wanted", [(0.0, 0.0), (0.6, 1.0)])
+def test_rays_pass_through_lights_without_multiple_importance(
+    roughness: float, wanted: float, scene: bpy.types.Scene, render: Callable[..., Any]
+) -> None:
+    """As in Cycles: a mirror does not show them, and what light sampling alone can do has the same brightness as ever."""
+    _receiver(scene, "ShaderNodeBsdfAnisotropic", Roughness=roughness)
+    data = bpy.data.lights.new("Light", "AREA")
+    recording.add(data, "Light", (0, 0, DISTANCE))
+    means = []
+    for multiple in (True, False):
+        data.cycles.use_multiple_importance_sampling = multiple
+        passes = render(scene, samples=256, integrator="PATH", reconstruction="NONE", max_bounces=1)
+        means.append(float(passes["Combined"][:, :, :3].mean()))
+    assert means[0] > 0.1
+    assert means[1] == pytest.approx(wanted * means[0], rel=0.03)

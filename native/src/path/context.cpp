@@ -22,7 +22,7 @@ bool kinds_matter_in(const Snapshot& scene) {
   return tells_kinds_apart(scene.world.visibility) || any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
          any(scene.instances, [](const InstanceData& i) { return tells_kinds_apart(i.visibility); }) ||
          (scene.emitters &&
-          any(scene.emitters->lamps, [](const Lamp& lamp) { return !lamp.dirac() && tells_kinds_apart(lamp.visibility); }));
+          any(scene.emitters->lamps, [](const Lamp& lamp) { return lamp.found_by_rays() && tells_kinds_apart(lamp.visibility); }));
 }
 
 bool is_uniform(const Snapshot& scene) {

@@ -124,7 +124,7 @@ void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps
                   Snapshot* snapshot) {
   const auto lamp_scene = std::make_shared<const LampScene>(device, lamps);
   SceneFeatures& features = snapshot->features;
-  features.has_lamps_with_extent = std::any_of(lamps.begin(), lamps.end(), [](const Lamp& lamp) { return !lamp.dirac(); });
+  features.has_lamps_with_extent = std::any_of(lamps.begin(), lamps.end(), [](const Lamp& lamp) { return lamp.found_by_rays(); });
   auto table = build_emitters(*snapshot, std::move(lamps), &state->world_map, monitor);
   table->lamps_with_extent = features.has_lamps_with_extent ? lamp_scene : nullptr;
   features.has_emitters = !table->lamps.empty() || !table->triangles.empty() || !table->world.black();

@@ -76,6 +76,7 @@ bool make_lamp(const GradusLight& d, const Vec3& origin, Lamp* lamp) {
   *lamp = Lamp();
   if (!is_finite_light(d)) return false;
   lamp->casts_shadow = !(d.flags & GRADUS_LIGHT_NO_SHADOW);
+  lamp->multiple_importance = !(d.flags & GRADUS_LIGHT_NO_MIS);
   lamp->visibility = d.visibility;
   lamp->max_bounces = d.max_bounces;
   lamp->pass_index = d.pass_index;

@@ -16,6 +16,7 @@ struct Lamp {
   bool is_spot = false;
   bool spot_cosine = false;
   bool casts_shadow = true;
+  bool multiple_importance = true;  // off: rays pass through it, as in Cycles
   uint32_t visibility = GRADUS_VISIBLE_ALL;
   uint32_t max_bounces = UINT32_MAX;
   int32_t pass_index = 0;
@@ -35,6 +36,7 @@ struct Lamp {
   float one_minus_cos_sun = 0.0f;  // of half the angle
 
   bool dirac() const { return shape == Shape::Point || shape == Shape::Direction; }
+  bool found_by_rays() const { return !dirac() && multiple_importance; }
   bool at_infinity() const { return shape == Shape::Direction || shape == Shape::Cone; }
 };
 

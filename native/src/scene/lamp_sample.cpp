@@ -89,7 +89,7 @@ bool in_front(const Lamp& lamp, const Vec3& from) { return glm::dot(from - lamp.
 
 bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point) {
   point->kind = EmitterKind::Lamp;
-  point->dirac = lamp.dirac();
+  point->dirac = !lamp.found_by_rays();
   switch (lamp.shape) {
     case Lamp::Shape::Point:
       point->position = lamp.position;

@@ -57,7 +57,7 @@ void meet_lamp(const RTCIntersectFunctionNArguments* args) {
 
 LampScene::LampScene(const std::shared_ptr<Device>& device, const std::vector<Lamp>& lamps) : device_(device) {
   for (uint32_t i = 0; i < lamps.size(); ++i)
-    if (!lamps[i].dirac()) (lamps[i].at_infinity() ? listed_ : placed_).push_back(i);
+    if (lamps[i].found_by_rays()) (lamps[i].at_infinity() ? listed_ : placed_).push_back(i);
   if (placed_.size() <= kMaxListed) {
     listed_.insert(listed_.end(), placed_.begin(), placed_.end());
     placed_.clear();
