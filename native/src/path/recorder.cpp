@@ -56,13 +56,15 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
     planes_[plane.pass] = &plane;
     active_ = true;
     lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
+    features_ |= plane.pass == GRADUS_PASS_DENOISING_ALBEDO || plane.pass == GRADUS_PASS_DENOISING_NORMAL ||
+                 plane.pass == GRADUS_PASS_DENOISING_DEPTH;
   }
 }
 
 void PassRecorder::begin_sample(size_t pixel, bool first_sample) {
   pixel_ = pixel;
   first_sample_ = first_sample;
-  features_done_ = false;
+  features_done_ = !features_;
   path_length_ = 0.0f;
 }
 

@@ -17,6 +17,8 @@ class PassRecorder {
   bool active() const { return active_; }
 
   void begin_sample(size_t pixel, bool first_sample);
+  // surface() will look at the closures of the vertex with `depth` scatterings before it.
+  bool needs_closures(int depth) const { return depth == 0 || !features_done_; }
   // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // The ray left the scene.
@@ -48,6 +50,7 @@ class PassRecorder {
   std::array<PassPlane*, GRADUS_PASS_COUNT> planes_{};
   bool active_ = false;
   bool lights_ = false;
+  bool features_ = false;
   bool first_sample_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;

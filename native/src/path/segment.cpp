@@ -56,8 +56,14 @@ bool stops(const Sampler& sampler, int number, const Vertex& vertex, Segment* se
 
 }  // namespace
 
+void shade_vertex(const PathContext& context, const RayState& ray, Vertex* vertex) {
+  if (!vertex->shade.complete) {
+    shade_surface(context.scene, vertex->point, vertex->wo, ray, context.settings.roughness_threshold, &vertex->shade);
+  }
+}
+
 void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
-                   Segment* segment) {
+                   Segment* segment, Shading shading) {
   segment->end = SegmentEnd::Escaped;
   segment->weight = Rgb(1.0f);
   segment->probability = 1.0f;
@@ -81,7 +87,8 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     segment->length += hit.t;
     ray->state.length = segment->length;
     vertex->point = context.scene.surface_point(hit);
-    shade_surface(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
+    const auto shade = shading == Shading::Now ? shade_surface : shade_seen;
+    shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
     if (stops(sampler, number, *vertex, segment)) {
       segment->end = SegmentEnd::Surface;
       return;

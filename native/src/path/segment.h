@@ -41,10 +41,15 @@ struct PathRay {
   RayState state;
 };
 
+// Closures where a segment ends: worked out at once, or left to shade_vertex() until the path is known to go on.
+enum class Shading : uint8_t { Now, Later };
+
 // number: of scatterings so far; keys the decisions. first: the nearest hit if it is known. Fills `vertex` where the segment ends on a
 // surface, and counts transparent surfaces in ray->state.
 void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
-                   Segment* segment);
+                   Segment* segment, Shading shading = Shading::Now);
+// Closures, where they are still missing. ray: that arrived.
+void shade_vertex(const PathContext& context, const RayState& ray, Vertex* vertex);
 
 // The ray from a vertex towards a direction, up to `distance`.
 Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, float distance = kInfinity);

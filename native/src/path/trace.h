@@ -65,7 +65,9 @@ class PathTracer {
  private:
   // One segment and what is seen at its end. False: the path has ended.
   bool step(const Sampler& sampler, const RaySource& source, Vertex* vertex) {
-    trace_segment(context_, sampler, state_.depth, nullptr, &state_.ray, vertex, &s_.segment);
+    const bool record = recorder_ != nullptr && recorder_->needs_closures(state_.depth);
+    const Shading shading = record ? Shading::Now : Shading::Later;
+    trace_segment(context_, sampler, state_.depth, nullptr, &state_.ray, vertex, &s_.segment, shading);
     observer_.arrive(source, state_, s_.segment, *vertex);
     const bool goes_on = see(sampler, source, *vertex);
     observer_.seen();
@@ -78,6 +80,7 @@ class PathTracer {
       return false;
     }
     observer_.survived(survival);
+    shade_vertex(context_, state_.ray.state, vertex);
     add_light(u, *vertex);
     const int depth = state_.depth;
     if (!scatter(context_, u, *vertex, &state_, &s_.event)) {
@@ -157,8 +160,7 @@ class PathTracer {
 
   void add_light(const VertexSample& u, const Vertex& vertex) {
     LitClass lit[kScatterClasses];
-    if (!sample_light(context_, u, vertex, state_.depth, &s_.light) ||
-        !light_classes(context_, vertex, s_.light, state_.ray.state, lit)) {
+    if (!sample_light(context_, u, vertex, state_.depth, &s_.light) || !light_classes(context_, vertex, s_.light, state_.ray.state, lit)) {
       return;
     }
     ++counters_.rays_shadow;

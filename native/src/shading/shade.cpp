@@ -14,7 +14,7 @@ const MaterialData& material_of(const Snapshot& snapshot, uint32_t index) {
 void clear(ShadeResult* result) {
   result->closures.clear();
   result->emission = result->transparency = result->holdout = Rgb(0.0f);
-  result->fallback = false;
+  result->fallback = result->complete = false;
 }
 
 Rgb emission_of(const MaterialData& material, const ShadeContext& context) {
@@ -35,6 +35,19 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
   const ShadeContext context = surface_context(snapshot, point, wo, ray);
   run_program(material.surface, context, result);
   result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
+  result->complete = true;
+}
+
+void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+                ShadeResult* result) {
+  const MaterialData& material = material_of(snapshot, point.material);
+  if (material.may_be_transparent || material.has_holdout) {
+    shade_surface(snapshot, point, wo, ray, roughness_threshold, result);
+    return;
+  }
+  clear(result);
+  result->fallback = material.uses_fallback;
+  result->emission = shade_emission(snapshot, point, wo, ray);
 }
 
 Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {

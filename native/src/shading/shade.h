@@ -36,11 +36,16 @@ struct ShadeResult {
   Rgb transparency = Rgb(0.0f);  // weight of the ray that goes straight on
   Rgb holdout = Rgb(0.0f);
   bool fallback = false;  // the material holds a replaced node
+  bool complete = false;  // the closures are there
 };
 
 // wo: towards the previous vertex. roughness_threshold: alpha that separates classes.
 void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                    ShadeResult* result);
+// What a ray sees before anything is scattered, which a path that ends here needs alone: without closures where the surface is opaque.
+// shade_surface() adds them.
+void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+                ShadeResult* result);
 // Emission alone, for emitter points that light sampling chose.
 Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
 // Transparency alone, for shadow rays.
