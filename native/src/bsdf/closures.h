@@ -121,6 +121,9 @@ class Closures {
   // The class has lobes that are not Dirac, so that evaluate() can be non-zero.
   bool has_smooth(ScatterClass c) const { return has_smooth_[static_cast<int>(c)]; }
 
+  // Any class has.
+  bool has_smooth() const { return has_smooth_[0] || has_smooth_[1] || has_smooth_[2]; }
+
   // All smooth lobes of one class together.
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
   // The same, and apart the lobes that make diffuse bounces, or those that do not.

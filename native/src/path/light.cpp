@@ -12,7 +12,7 @@ bool sees(uint32_t visibility, LightPass pass, bool transmitted) { return (visib
 }  // namespace
 
 bool sample_light(const PathContext& context, const VertexSample& u, const Vertex& vertex, int depth, LightSample* light) {
-  if (!context.scene.features.has_emitters || vertex.shade.closures.empty()) {
+  if (!context.scene.features.has_emitters || !vertex.shade.closures.has_smooth()) {
     return false;
   }
   const Receiver receiver = receiver_of(vertex);

@@ -40,20 +40,30 @@ uint32_t cell(float x, uint32_t count) { return std::min(uint32_t(std::max(x, 0.
 }  // namespace
 
 Distribution2D::Distribution2D(uint32_t width, uint32_t height, const std::vector<float>& values)
-    : width_(width), height_(height), conditional_(size_t(width + 1) * height), marginal_(height + 1) {
+    : width_(width),
+      height_(height),
+      guide_(size_t(kGuides + 1) * height),
+      conditional_(size_t(width + 1) * height),
+      marginal_(height + 1) {
   std::vector<double> sums(height);
   for (uint32_t y = 0; y < height; ++y) {
     const float* v = values.data() + size_t(y) * width;
     sums[y] = cumulate(
         width, [v](uint32_t x) { return double(v[x]); }, conditional_.data() + size_t(y) * (width + 1));
+    for (uint32_t k = 0; k <= kGuides; ++k) guide_[size_t(y) * (kGuides + 1) + k] = find(row(y), width_, float(k) / float(kGuides));
   }
   cumulate(
       height, [&sums](uint32_t y) { return sums[y]; }, marginal_.data());
 }
 
+uint32_t Distribution2D::find_in_row(uint32_t y, float u) const {
+  const uint32_t* guide = guide_.data() + size_t(y) * (kGuides + 1) + std::min(uint32_t(u * float(kGuides)), kGuides - 1);
+  return guide[0] + find(row(y) + guide[0], guide[1] - guide[0] + 1, u);
+}
+
 Vec2 Distribution2D::sample(const Vec2& u) const {
   const uint32_t y = find(marginal_.data(), height_, u.y);
-  const uint32_t x = find(row(y), width_, u.x);
+  const uint32_t x = find_in_row(y, u.x);
   return {within(row(y), width_, x, u.x), within(marginal_.data(), height_, y, u.y)};
 }
 

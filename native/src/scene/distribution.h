@@ -22,8 +22,14 @@ class Distribution2D {
 
  private:
   const float* row(uint32_t y) const { return conditional_.data() + size_t(y) * (width_ + 1); }
+  uint32_t find_in_row(uint32_t y, float u) const;
+
+  // Steps of u per row for which the cell is known in advance: a search over all of a row waits for memory again and again (Chen and Asau
+  // 1974, "On generating random variates from an empirical distribution").
+  static constexpr uint32_t kGuides = 128;
 
   uint32_t width_ = 0, height_ = 0;
+  std::vector<uint32_t> guide_;     // cell of u = k/kGuides: kGuides + 1 values per row
   std::vector<float> conditional_;  // cumulated from 0 to 1 in each row: width + 1 values
   std::vector<float> marginal_;     // of the rows: height + 1 values
 };

@@ -26,7 +26,29 @@ Vec2 sample_triangle_area(const Vec2& u) {
   return Vec2(1.0f - root, u.y * root);
 }
 
-EmitterPoint sample_triangle(const Snapshot& snapshot, uint32_t index, const Receiver& receiver, const Vec2& u) {
+// The surface is that of the emissive triangle with this index.
+EmitterPoint triangle_point(uint32_t index, const SurfacePoint& surface) {
+  EmitterPoint point;
+  point.kind = EmitterKind::Triangle;
+  point.index = index;
+  point.instance = surface.hit.instance;
+  point.triangle = surface.hit.triangle;
+  point.barycentric = surface.hit.barycentric;
+  point.position = surface.position;
+  point.normal = surface.geometric_normal;
+  point.error = surface.error;
+  return point;
+}
+
+// An emitter point with what was found on the way: the probability with which its emitter was chosen (of all, or of its group), and the
+// solid angle in which it was sampled uniformly, 0 if it was not.
+struct EmitterSample {
+  EmitterPoint point;
+  double probability = 1.0;
+  float solid_angle = 0.0f;
+};
+
+EmitterSample sample_triangle(const Snapshot& snapshot, uint32_t index, const Receiver& receiver, const Vec2& u) {
   const EmissiveTriangle& t = snapshot.emitters->triangles[index];
   const std::array<Vec3, 3> corners = snapshot.corners(t.instance, t.triangle);
   const SphericalTriangle seen(corners, receiver.position);
@@ -34,53 +56,65 @@ EmitterPoint sample_triangle(const Snapshot& snapshot, uint32_t index, const Rec
   hit.instance = t.instance;
   hit.triangle = t.triangle;
   hit.barycentric = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
-  return emitter_of_surface(snapshot, snapshot.surface_point(hit));
+  return {triangle_point(index, snapshot.surface_point(hit)), 1.0, seen.sampled_solid_angle()};
 }
 
-EmitterPoint sample_lamp_at(const Snapshot& snapshot, uint32_t lamp, const Receiver& receiver, const Vec2& u) {
-  EmitterPoint point;
-  if (!sample_lamp(snapshot.emitters->lamps[lamp], receiver.position, u, &point)) return {};
-  point.index = lamp;
-  return point;
+EmitterSample sample_lamp_at(const Snapshot& snapshot, uint32_t lamp, const Receiver& receiver, const Vec2& u) {
+  EmitterSample sample;
+  if (!sample_lamp(snapshot.emitters->lamps[lamp], receiver.position, u, &sample.point, &sample.solid_angle)) return {};
+  sample.point.index = lamp;
+  return sample;
 }
 
-EmitterPoint sample_tree(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, double* probability) {
+EmitterSample sample_tree(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
   const EmitterTable& table = *snapshot.emitters;
-  const uint32_t light = table.tree.sample(receiver, choice, probability);
-  if (light < table.tree_lamps.size()) return sample_lamp_at(snapshot, table.tree_lamps[light], receiver, u);
-  return sample_triangle(snapshot, light - uint32_t(table.tree_lamps.size()), receiver, u);
+  double probability;
+  const uint32_t light = table.tree.sample(receiver, choice, &probability);
+  const auto lamps = uint32_t(table.tree_lamps.size());
+  EmitterSample sample = light < lamps ? sample_lamp_at(snapshot, table.tree_lamps[light], receiver, u)
+                                       : sample_triangle(snapshot, light - lamps, receiver, u);
+  sample.probability = probability;
+  return sample;
 }
 
-EmitterPoint sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, double* probability) {
+EmitterSample sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
   const EmitterTable& table = *snapshot.emitters;
   size_t sun = 0;
-  double below = 0.0;
+  double below = 0.0, probability;
   for (;; ++sun) {
-    *probability = table.sun_probability(sun, receiver);
-    below += *probability;
+    probability = table.sun_probability(sun, receiver);
+    below += probability;
     if (choice < below || sun + 1 == table.suns.size()) break;
   }
-  return sample_lamp_at(snapshot, table.suns[sun], receiver, u);
+  EmitterSample sample = sample_lamp_at(snapshot, table.suns[sun], receiver, u);
+  sample.probability = probability;
+  return sample;
 }
 
-// The point, and the probability with which its emitter was chosen.
-EmitterPoint sample_any(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, double* probability) {
+EmitterSample sample_world(const Snapshot& snapshot, const Vec2& u) {
+  EmitterSample sample;
+  sample.point.kind = EmitterKind::World;
+  sample.point.direction = snapshot.emitters->world.sample(u, &sample.point.barycentric);
+  return sample;
+}
+
+EmitterSample sample_any(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
   const GroupChoice group = snapshot.emitters->choose_group(receiver);
-  EmitterPoint point;
-  double within = 1.0, of_group = 0.0;
+  EmitterSample sample;
+  double of_group = 0.0;
   const double rest = choice - group.tree;
   if (group.tree > 0.0 && (rest < 0.0 || group.suns + group.world <= 0.0)) {
     of_group = group.tree;
-    point = sample_tree(snapshot, receiver, std::min(choice / group.tree, 1.0 - 1e-12), u, &within);
+    sample = sample_tree(snapshot, receiver, std::min(choice / group.tree, 1.0 - 1e-12), u);
   } else if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) {
     of_group = group.suns;
-    point = sample_suns(snapshot, receiver, rest / group.suns, u, &within);
+    sample = sample_suns(snapshot, receiver, rest / group.suns, u);
   } else if (group.world > 0.0) {
     of_group = group.world;
-    point = emitter_of_world(snapshot, snapshot.emitters->world.sample(u));
+    sample = sample_world(snapshot, u);
   }
-  *probability = of_group * within;
-  return point;
+  sample.probability *= of_group;
+  return sample;
 }
 
 // Probability that the emitter of the point is chosen.
@@ -125,8 +159,12 @@ Rgb lamp_emission(const Snapshot& snapshot, const Lamp& lamp, const EmitterPoint
   return shade_lamp(snapshot, lamp.material, at, light_ray(view.distance));
 }
 
+float triangle_solid_angle(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
+  return SphericalTriangle(snapshot.corners(point.instance, point.triangle), receiver.position).sampled_solid_angle();
+}
+
 // Geometry and solid angle density of an emissive triangle.
-EmitterView view_triangle(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
+EmitterView view_triangle(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver, const float* solid_angle) {
   EmitterView view;
   view.visibility = snapshot.instances[point.instance].visibility & GRADUS_VISIBLE_ALL;
   const Vec3 to_light = point.position - receiver.position;
@@ -136,8 +174,8 @@ EmitterView view_triangle(const Snapshot& snapshot, const EmitterPoint& point, c
   view.direction = to_light / view.distance;
   view.cosine = std::fabs(glm::dot(point.normal, view.direction));
   if (!(view.cosine > 0.0f)) return view;
-  const SphericalTriangle seen(snapshot.corners(point.instance, point.triangle), receiver.position);
-  view.pdf = seen.usable() ? 1.0f / seen.solid_angle() : distance2 / (view.cosine * snapshot.emitters->triangles[point.index].area);
+  const float angle = solid_angle != nullptr ? *solid_angle : triangle_solid_angle(snapshot, point, receiver);
+  view.pdf = angle > 0.0f ? 1.0f / angle : distance2 / (view.cosine * snapshot.emitters->triangles[point.index].area);
   return view;
 }
 
@@ -145,14 +183,16 @@ EmitterView view_world(const Snapshot& snapshot, const EmitterPoint& point) {
   EmitterView view;
   view.direction = point.direction;
   view.visibility = snapshot.world.visibility;
-  view.pdf = snapshot.emitters->world.density(point.direction);
+  view.pdf = snapshot.emitters->world.density(point.direction, point.barycentric);
   return view;
 }
 
-// All but the radiance of triangles and world, and the lamp's program; the density without the choice.
-EmitterView view_geometry(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
-  if (point.kind == EmitterKind::Lamp) return view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position);
-  if (point.kind == EmitterKind::Triangle) return view_triangle(snapshot, point, receiver);
+// All but the radiance of triangles and world, and the lamp's program; the density without the choice. solid_angle: in which the point was
+// sampled from there, if that is known.
+EmitterView view_geometry(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver,
+                          const float* solid_angle = nullptr) {
+  if (point.kind == EmitterKind::Lamp) return view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position, solid_angle);
+  if (point.kind == EmitterKind::Triangle) return view_triangle(snapshot, point, receiver, solid_angle);
   return point.kind == EmitterKind::World ? view_world(snapshot, point) : EmitterView();
 }
 
@@ -165,6 +205,10 @@ bool depends_on_kind(const Snapshot& snapshot, const EmitterPoint& point) {
   const uint32_t material =
       point.kind == EmitterKind::World ? snapshot.world_material : snapshot.material_of(point.instance, point.triangle);
   return material < snapshot.materials.size() && snapshot.materials[material]->depends_on_kind;
+}
+
+bool comes_from_behind(const Receiver& receiver, const Vec3& direction) {
+  return !receiver.transmits && glm::dot(receiver.normal, direction) < 0.0f;
 }
 
 void shade_view(const Snapshot& snapshot, const EmitterPoint& point, EmitterView* view) {
@@ -185,17 +229,19 @@ Rgb emitter_radiance(const Snapshot& snapshot, const EmitterPoint& point, const 
 }
 
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u) {
-  double probability;
-  return sample_any(snapshot, receiver, choice, u, &probability);
+  return sample_any(snapshot, receiver, choice, u).point;
 }
 
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterView* view) {
-  double probability;
-  const EmitterPoint point = sample_any(snapshot, receiver, choice, u, &probability);
-  *view = view_geometry(snapshot, point, receiver);
-  multiply_choice(probability, view);
-  if (view->pdf > 0.0f) shade_view(snapshot, point, view);
-  return point;
+  const EmitterSample sample = sample_any(snapshot, receiver, choice, u);
+  *view = view_geometry(snapshot, sample.point, receiver, &sample.solid_angle);
+  multiply_choice(sample.probability, view);
+  if (!(view->pdf > 0.0f)) return sample.point;
+  if (comes_from_behind(receiver, view->direction))
+    view->radiance = Rgb(0.0f);
+  else
+    shade_view(snapshot, sample.point, view);
+  return sample.point;
 }
 
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
@@ -212,18 +258,8 @@ float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Rec
 }
 
 EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& surface) {
-  EmitterPoint point;
   const uint32_t index = snapshot.emitters->find_triangle(surface.hit.instance, surface.hit.triangle);
-  if (index == UINT32_MAX) return point;
-  point.kind = EmitterKind::Triangle;
-  point.index = index;
-  point.instance = surface.hit.instance;
-  point.triangle = surface.hit.triangle;
-  point.barycentric = surface.hit.barycentric;
-  point.position = surface.position;
-  point.normal = surface.geometric_normal;
-  point.error = surface.error;
-  return point;
+  return index != UINT32_MAX ? triangle_point(index, surface) : EmitterPoint();
 }
 
 EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction) {
@@ -231,6 +267,7 @@ EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction) {
   if (snapshot.emitters->world.black()) return point;
   point.kind = EmitterKind::World;
   point.direction = direction;
+  point.barycentric = snapshot.emitters->world.place_of(direction);
   return point;
 }
 

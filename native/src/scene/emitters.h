@@ -22,7 +22,7 @@ struct EmitterPoint {
   uint32_t index = 0;              // lamp, or emissive triangle
   uint32_t instance = UINT32_MAX;  // of an emissive triangle
   uint32_t triangle = UINT32_MAX;
-  Vec2 barycentric = Vec2(0.0f);  // on the triangle; of a lamp that is a facing disk: coordinates on the unit disk
+  Vec2 barycentric = Vec2(0.0f);  // on the triangle; facing disk: coordinates on the unit disk; world: Environment's place
   Vec3 position = Vec3(0.0f);     // finite emitters; a facing disk turns with its receiver: take direction and distance of the view
   Vec3 normal = Vec3(0.0f);       // geometric; 0 for points
   Vec3 direction = Vec3(0.0f);    // towards the emitter: world and suns
@@ -54,7 +54,8 @@ struct Receiver {
 
 // Samples a point on some emitter. choice: which one; u: where. kind None if there is nothing to sample from here.
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u);
-// The same, with the view that view_emitter() would give: cheaper, because the choice is made and its probability found in one go.
+// The same, with the view that view_emitter() would give: cheaper, because the choice is made and its probability found in one go. Only
+// the radiance is left out, as 0, where the light comes from behind a receiver that does not transmit.
 EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterView* view);
 // The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine there.
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);

@@ -105,18 +105,21 @@ void Environment::build(const Radiance& radiance, const Resolution& resolution, 
   if (mean_ > 0.0f && !is_constant(values)) map_ = std::make_shared<Distribution2D>(width, width / 2, weights(values, width, mean_));
 }
 
-Vec3 Environment::sample(const Vec2& u) const {
-  if (map_) return to_direction(map_->sample(u));
+Vec3 Environment::sample(const Vec2& u, Vec2* place) const {
+  *place = u;
+  if (map_) return to_direction(*place = map_->sample(u));
   const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
   return {r * std::cos(2.0f * kPi * u.y), r * std::sin(2.0f * kPi * u.y), z};
 }
 
-float Environment::density(const Vec3& direction) const {
+Vec2 Environment::place_of(const Vec3& direction) const { return map_ ? to_map(direction) : Vec2(0.0f); }
+
+float Environment::density(const Vec3& direction, const Vec2& place) const {
   if (black()) return 0.0f;
   if (!map_) return 0.25f * kInvPi;
   const float sine = std::sqrt(std::max(0.0f, 1.0f - direction.z * direction.z));
   if (sine <= 0.0f) return 0.0f;
-  return map_->density(to_map(direction)) / (2.0f * kPi * kPi * sine);
+  return map_->density(place) / (2.0f * kPi * kPi * sine);
 }
 
 }  // namespace gradus

@@ -29,9 +29,12 @@ class Environment {
   // Null: directions are chosen uniformly. Copies share it.
   const Distribution2D* map() const { return map_.get(); }
 
-  Vec3 sample(const Vec2& u) const;
+  // place: of the direction on the map, worth keeping: density() is cheap with it. Without a map it means nothing.
+  Vec3 sample(const Vec2& u, Vec2* place) const;
+  Vec2 place_of(const Vec3& direction) const;
   // Solid angle density.
-  float density(const Vec3& direction) const;
+  float density(const Vec3& direction, const Vec2& place) const;
+  float density(const Vec3& direction) const { return density(direction, place_of(direction)); }
 
  private:
   std::shared_ptr<const Distribution2D> map_;  // x: longitude, y: colatitude from +Z

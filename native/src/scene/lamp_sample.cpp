@@ -77,8 +77,9 @@ SphericalRectangle seen_from(const Lamp& lamp, const Vec3& from) {
   return SphericalRectangle(lamp.position, lamp.axis_x, lamp.axis_y, lamp.half_width, lamp.half_height, from);
 }
 
-Vec3 sample_rectangle(const Lamp& lamp, const Vec3& from, const Vec2& u) {
+Vec3 sample_rectangle(const Lamp& lamp, const Vec3& from, const Vec2& u, float* solid_angle) {
   const SphericalRectangle seen = seen_from(lamp, from);
+  *solid_angle = seen.sampled_solid_angle();
   if (seen.usable()) return seen.sample(u);
   return lamp.position + lamp.axis_x * (lamp.half_width * (2.0f * u.x - 1.0f)) + lamp.axis_y * (lamp.half_height * (2.0f * u.y - 1.0f));
 }
@@ -87,7 +88,8 @@ bool in_front(const Lamp& lamp, const Vec3& from) { return glm::dot(from - lamp.
 
 }  // namespace
 
-bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point) {
+bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point, float* solid_angle) {
+  *solid_angle = 0.0f;
   point->kind = EmitterKind::Lamp;
   point->dirac = !lamp.found_by_rays();
   switch (lamp.shape) {
@@ -104,7 +106,7 @@ bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint
       return true;
     case Lamp::Shape::Rectangle:
       if (!in_front(lamp, from)) return false;
-      point->position = sample_rectangle(lamp, from, u);
+      point->position = sample_rectangle(lamp, from, u, solid_angle);
       point->normal = lamp.shine;
       return true;
     case Lamp::Shape::Ellipse: {
@@ -157,21 +159,21 @@ void view_sphere(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, 
   view->radiance = lamp.intensity * spot_falloff(lamp, -view->direction);
 }
 
-void view_flat(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, EmitterView* view) {
+void view_flat(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle, EmitterView* view) {
   const float cosine = -glm::dot(point.normal, view->direction);
   if (!(cosine > 0.0f) || (lamp.shape != Lamp::Shape::FacingDisk && !in_front(lamp, from))) return;
   view->cosine = cosine;
   view->pdf = view->distance * view->distance / (cosine * lamp.area);
   if (lamp.shape == Lamp::Shape::Rectangle) {
-    const SphericalRectangle seen = seen_from(lamp, from);
-    if (seen.usable()) view->pdf = 1.0f / seen.solid_angle();
+    const float angle = solid_angle != nullptr ? *solid_angle : seen_from(lamp, from).sampled_solid_angle();
+    if (angle > 0.0f) view->pdf = 1.0f / angle;
   }
   view->radiance = lamp.intensity * spread_falloff(lamp, cosine) * spot_falloff(lamp, -view->direction);
 }
 
 }  // namespace
 
-EmitterView view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from) {
+EmitterView view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle) {
   EmitterView view;
   view.casts_shadow = lamp.casts_shadow;
   view.visibility = lamp.visibility;
@@ -193,7 +195,7 @@ EmitterView view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& f
   } else if (lamp.shape == Lamp::Shape::Sphere) {
     view_sphere(lamp, here, from, &view);
   } else {
-    view_flat(lamp, here, from, &view);
+    view_flat(lamp, here, from, solid_angle, &view);
   }
   return view;
 }

@@ -14,6 +14,8 @@ class SphericalRectangle {
   static constexpr float kSmallestSolidAngle = 1e-3f;
   bool usable() const { return solid_angle_ > kSmallestSolidAngle; }
   float solid_angle() const { return solid_angle_; }
+  // In which sample() is uniform; 0: not usable.
+  float sampled_solid_angle() const { return usable() ? solid_angle_ : 0.0f; }
   // Position on the rectangle.
   Vec3 sample(const Vec2& u) const;
 

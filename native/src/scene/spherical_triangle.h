@@ -14,6 +14,8 @@ class SphericalTriangle {
   // Small solid angles are as well sampled by area; near a half space the point lies almost in the triangle's plane.
   bool usable() const { return solid_angle_ > 1e-3f && solid_angle_ < 6.2f; }
   float solid_angle() const { return solid_angle_; }
+  // In which sample() is uniform; 0: not usable.
+  float sampled_solid_angle() const { return usable() ? solid_angle_ : 0.0f; }
   // Unit direction from the point.
   Vec3 sample(const Vec2& u) const;
 

@@ -111,7 +111,8 @@ TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 d = snapshot->emitters->world.sample({uniform(random), uniform(random)});
+    Vec2 place;
+    const Vec3 d = snapshot->emitters->world.sample({uniform(random), uniform(random)}, &place);
     hits += shade_world(*snapshot, d, RayState()).x > 1.0f;
   }
   // The sun gives 5000 of about 5800 parts of the light.
