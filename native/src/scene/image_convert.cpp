@@ -132,35 +132,34 @@ void clean_tile(ImageTile* tile) {
   }
 }
 
+template <class T>
+const T* as(const uint8_t* pixels) {
+  return reinterpret_cast<const T*>(pixels);
+}
+
+// One texel of 1 to 4 channels, without a loop over them: the most frequent read of all.
+template <class T, class ToFloat>
+Vec4 expand(const T* v, uint32_t channels, ToFloat&& to_float) {
+  const float first = to_float(v[0]);
+  if (channels <= 2) return Vec4(first, first, first, channels == 2 ? to_float(v[1]) : 1.0f);
+  return Vec4(first, to_float(v[1]), to_float(v[2]), channels == 4 ? to_float(v[3]) : 1.0f);
+}
+
 }  // namespace
 
 Vec4 ImageTile::texel(uint32_t x, uint32_t y) const {
   const size_t first = (static_cast<size_t>(y) * width + x) * channels;
-  float v[4] = {0.0f, 0.0f, 0.0f, 1.0f};
   switch (format) {
     case PixelFormat::Byte:
-      for (uint32_t c = 0; c < channels; c++) {
-        v[c] = static_cast<float>(pixels[first + c]) * (1.0f / 255.0f);
-      }
-      break;
+      return expand(pixels.get() + first, channels, [](uint8_t v) { return static_cast<float>(v) * (1.0f / 255.0f); });
     case PixelFormat::Short:
-      for (uint32_t c = 0; c < channels; c++) {
-        v[c] = static_cast<float>(reinterpret_cast<const uint16_t*>(pixels.get())[first + c]) * (1.0f / 65535.0f);
-      }
-      break;
+      return expand(as<uint16_t>(pixels.get()) + first, channels, [](uint16_t v) { return static_cast<float>(v) * (1.0f / 65535.0f); });
     case PixelFormat::Half:
-      for (uint32_t c = 0; c < channels; c++) {
-        v[c] = half_to_float(reinterpret_cast<const uint16_t*>(pixels.get())[first + c]);
-      }
-      break;
+      return expand(as<uint16_t>(pixels.get()) + first, channels, half_to_float);
     case PixelFormat::Float:
-      std::memcpy(v, pixels.get() + first * 4, channels * sizeof(float));
-      break;
+      return expand(as<float>(pixels.get()) + first, channels, [](float v) { return v; });
   }
-  if (channels <= 2) {
-    return Vec4(v[0], v[0], v[0], channels == 2 ? v[1] : 1.0f);
-  }
-  return Vec4(v[0], v[1], v[2], v[3]);
+  return Vec4(0.0f);
 }
 
 ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool associate) {

@@ -61,12 +61,11 @@ std::array<Vec4, 3> corner_values(const MeshData& mesh, const MeshAttribute& att
   return values;
 }
 
-std::array<Vec3, 3> corner_generated(const MeshData& mesh, uint32_t triangle) {
+Vec3 generated_at(const MeshData& mesh, uint32_t triangle, const Vec2& barycentric) {
   std::array<Vec3, 3> p = triangle_positions(mesh, triangle);
   if (!mesh.generated_points.empty())
     for (uint32_t k = 0; k < 3; ++k) p[k] = mesh.generated_points[element(mesh, GRADUS_DOMAIN_POINT, triangle, k)];
-  for (Vec3& v : p) v = (v - mesh.generated_location) / (2.0f * mesh.generated_size) + 0.5f;
-  return p;
+  return (interpolate(p, barycentric) - mesh.generated_location) / (2.0f * mesh.generated_size) + 0.5f;
 }
 
 }  // namespace gradus

@@ -70,7 +70,7 @@ const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& nam
 const MeshAttribute* default_uv_map(const MeshData& mesh);
 // Values of an attribute at the corners of a triangle (face domain: three times the same). Channels that it lacks are 0, the fourth 1.
 std::array<Vec4, 3> corner_values(const MeshData& mesh, const MeshAttribute& attribute, uint32_t triangle);
-// Generated texture coordinates at the corners, 0..1 over the texture space.
-std::array<Vec3, 3> corner_generated(const MeshData& mesh, uint32_t triangle);
+// Generated texture coordinates, 0..1 over the texture space.
+Vec3 generated_at(const MeshData& mesh, uint32_t triangle, const Vec2& barycentric);
 
 }  // namespace gradus

@@ -7,7 +7,7 @@ namespace gradus {
 
 Vec3 generated(const ShadeContext& c) {
   if (!c.instance) return world_position(c);
-  return interpolate(corner_generated(*c.instance->mesh, c.hit.triangle), c.hit.barycentric);
+  return generated_at(*c.instance->mesh, c.hit.triangle, c.hit.barycentric);
 }
 
 // Around the z axis of the texture space.

@@ -59,7 +59,7 @@ bool every(int row, int frequency) { return frequency != 0 && row % frequency ==
 
 void checker(const OpArgs& args, Vec4* out) {
   const Vec3 p = glm::abs(glm::floor(off_border(args.v(0) * args.f(3))));
-  const auto odd = [](float x) { return std::fmod(x, 2.0f) != 0.0f; };
+  const auto odd = [](float x) { return 0.5f * x != std::floor(0.5f * x); };  // of whole numbers
   const bool first = (odd(p.x) == odd(p.y)) == odd(p.z);
   out[0] = args.in[first ? 1 : 2];
   out[1] = splat(first ? 1.0f : 0.0f);

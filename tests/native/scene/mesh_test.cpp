@@ -73,10 +73,10 @@ TEST(Mesh, DefaultUvMapIsTheNamedOne) {
 TEST(Mesh, GeneratedCoordinatesFillTheTextureSpace) {
   Quad quad;
   for (int i = 0; i < 3; ++i) quad.desc.generated_location[i] = 0.5f, quad.desc.generated_size[i] = 0.5f;
-  EXPECT_EQ(corner_generated(*make_mesh(quad.make()), 0)[2], Vec3(1, 1, 0));
+  EXPECT_EQ(generated_at(*make_mesh(quad.make()), 0, Vec2(0, 1)), Vec3(1, 1, 0));
   const float rest[12] = {0, 0, 0, 1, 0, 0, 1, 1, 1, 0, 1, 0};
   quad.desc.generated_points = rest;
-  EXPECT_EQ(corner_generated(*make_mesh(quad.make()), 0)[2], Vec3(1, 1, 1));
+  EXPECT_EQ(generated_at(*make_mesh(quad.make()), 0, Vec2(0, 1)), Vec3(1, 1, 1));
 }
 
 std::shared_ptr<const Snapshot> commit_quad(Scene* scene, const GradusMesh& mesh, const Mat4& matrix, const Mat4& previous,
