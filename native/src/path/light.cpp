@@ -54,7 +54,7 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterCl
   const EmitterView& view = light.view;
   const BsdfEval eval = closures.evaluate(c, vertex.wo, view.direction);
   lit.value = eval.value * view.radiance;
-  lit.pdf_bsdf = light.point.dirac ? 0.0f : probability * eval.pdf;
+  lit.pdf_bsdf = light.point.found_by_rays ? probability * eval.pdf : 0.0f;
   if (view.by_kind || (view.visibility & kAllBounces) != kAllBounces) {
     const std::array<Rgb, 3> parts = light_by_pass(context, vertex, c, light, ray);
     lit.value = parts[0] + parts[1] + parts[2];

@@ -18,7 +18,8 @@ enum class EmitterKind : uint8_t { None, Lamp, Triangle, World };
 
 struct EmitterPoint {
   EmitterKind kind = EmitterKind::None;
-  bool dirac = false;              // BSDF sampling can never find it: without extent, or a lamp without multiple importance
+  bool dirac = false;              // a position or direction without extent
+  bool found_by_rays = true;       // false: BSDF sampling can never find it (Dirac, or a lamp without multiple importance)
   uint32_t index = 0;              // lamp, or emissive triangle
   uint32_t instance = UINT32_MAX;  // of an emissive triangle
   uint32_t triangle = UINT32_MAX;

@@ -91,7 +91,8 @@ bool in_front(const Lamp& lamp, const Vec3& from) { return glm::dot(from - lamp.
 bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point, float* solid_angle) {
   *solid_angle = 0.0f;
   point->kind = EmitterKind::Lamp;
-  point->dirac = !lamp.found_by_rays();
+  point->dirac = lamp.dirac();
+  point->found_by_rays = lamp.found_by_rays();
   switch (lamp.shape) {
     case Lamp::Shape::Point:
       point->position = lamp.position;

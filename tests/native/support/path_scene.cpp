@@ -262,11 +262,28 @@ GradusLight point_lamp(const Vec3& position, float radius, float intensity) {
   return light;
 }
 
+// A ball and a rectangle over a glossy ball.
+void add_lamps_with_extent(PathScene* scene, uint32_t flags, float roughness) {
+  GradusLight ball = point_lamp(Vec3(0.3f, 0.2f, 0.2f), 0.15f, 0.5f);
+  ball.flags |= flags;
+  scene->light(ball);
+  GradusLight area = make_light(GRADUS_LIGHT_RECTANGLE, translation(Vec3(-0.3f, 0.9f, 0.0f)), Rgb(4.0f));
+  Mat4 down(1.0f);
+  down[1] = Vec4(0, 0, -1, 0);
+  down[2] = Vec4(0, 1, 0, 0);
+  down[3] = Vec4(-0.3f, 0.9f, 0.0f, 1.0f);
+  for (int i = 0; i < 16; ++i) area.matrix[i] = down[i / 4][i % 4];
+  area.size[0] = area.size[1] = 0.4f;
+  area.flags |= flags;
+  scene->light(area);
+  scene->ball(Vec3(0.0f, -0.5f, 0.0f), 0.4f, scene->material(glossy(roughness)), 8, true);
+}
+
 }  // namespace
 
 const char* name_of(Scenario scenario) {
-  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",      "GlossyFloor", "RoughMetal",
-                                      "Mirror",      "Glass",       "RoughGlass", "Transparent", "LampsSeen"};
+  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",       "GlossyFloor", "RoughMetal", "Mirror",
+                                      "Glass",       "RoughGlass",  "Transparent", "LampsSeen",   "LampsUnseen"};
   return names[static_cast<int>(scenario)];
 }
 
@@ -324,19 +341,12 @@ void build(Scenario scenario, PathScene* scene) {
       scene->quad(Vec3(-0.7f, -0.7f, 0.4f), Vec3(1.2f, 0, 0.3f), Vec3(0, 1.1f, -0.2f), scene->material(veil));
       break;
     }
-    case Scenario::LampsSeen: {
-      scene->light(point_lamp(Vec3(0.3f, 0.2f, 0.2f), 0.15f, 0.5f));
-      GradusLight area = make_light(GRADUS_LIGHT_RECTANGLE, translation(Vec3(-0.3f, 0.9f, 0.0f)), Rgb(4.0f));
-      Mat4 down(1.0f);
-      down[1] = Vec4(0, 0, -1, 0);
-      down[2] = Vec4(0, 1, 0, 0);
-      down[3] = Vec4(-0.3f, 0.9f, 0.0f, 1.0f);
-      for (int i = 0; i < 16; ++i) area.matrix[i] = down[i / 4][i % 4];
-      area.size[0] = area.size[1] = 0.4f;
-      scene->light(area);
-      scene->ball(Vec3(0.0f, -0.5f, 0.0f), 0.4f, scene->material(glossy(0.2f)), 8, true);
+    case Scenario::LampsSeen:
+      add_lamps_with_extent(scene, 0, 0.2f);
       break;
-    }
+    case Scenario::LampsUnseen:
+      add_lamps_with_extent(scene, GRADUS_LIGHT_NO_MIS, 0.6f);  // light sampling alone is noisy on sharper surfaces
+      break;
     case Scenario::Count:
       break;
   }

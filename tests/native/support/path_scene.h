@@ -67,7 +67,20 @@ Surface glossy(float roughness);
 Surface glass(float roughness);
 
 // Cornell-like scenes, each for one part of the shift.
-enum class Scenario { DiffuseArea, PointAndSun, World, GlossyFloor, RoughMetal, Mirror, Glass, RoughGlass, Transparent, LampsSeen, Count };
+enum class Scenario {
+  DiffuseArea,
+  PointAndSun,
+  World,
+  GlossyFloor,
+  RoughMetal,
+  Mirror,
+  Glass,
+  RoughGlass,
+  Transparent,
+  LampsSeen,
+  LampsUnseen,
+  Count
+};
 const char* name_of(Scenario scenario);
 void build(Scenario scenario, PathScene* scene);
 

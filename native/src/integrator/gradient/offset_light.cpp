@@ -44,7 +44,7 @@ void OffsetPaths::light_own(int k, const LightSample& sample, ScatterClass scatt
   OffsetPath& o = offsets_[k];
   const EmitterView& view = o.light.view;
   const LitClass lit = light_class(context_, *o.here, scatter_class, LightSample{sample.point, view}, base_state_.ray.state);
-  const bool all = joint(view) && reconnects(scatter_class) && !sample.point.dirac;
+  const bool all = joint(view) && reconnects(scatter_class) && sample.point.found_by_rays;
   const float pdf = all ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
   if (is_black(lit.value) || is_black(o.light.transmittance) || !(pdf > 0.0f)) {
@@ -69,7 +69,7 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
     alone(k, c);
     return;
   }
-  const bool all = joint(sample.view) && reconnects(scatter_class) && !sample.point.dirac;
+  const bool all = joint(sample.view) && reconnects(scatter_class) && sample.point.found_by_rays;
   const float ratio = all ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
   pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), o.link.ratio * o.link.kind_ratio * ratio);
 }
