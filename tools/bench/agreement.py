@@ -28,6 +28,7 @@ NAMED_DIFFERENCES: dict[str, str] = {
     "floor, which are gone when the floor is lifted by 2 mm",
     "bathroom": "inner and outer faces of the wash basin lie in one plane: Cycles loses light between them (the basin alone, white in a "
     "white world, shows 0.96 in place of 1; here 1.00)",
+    "moving-light": "the walls are double, in one plane: black in Cycles, where each layer shades the other; lit here",
 }
 
 
