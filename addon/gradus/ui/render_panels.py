@@ -39,8 +39,10 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
             column.prop(settings, "reconstruction_alpha")
         if settings.integrator == "PATH" and settings.reconstruction in ("L2", "L1"):
             layout.label(text="Plain paths have no gradients to reconstruct from", icon="ERROR")
-        elif settings.reconstruction == "L1" or settings.noise_threshold > 0.0:
-            layout.label(text="Biased or consistent; L2 at noise threshold 0 is unbiased", icon="INFO")
+        elif settings.reconstruction == "L1":
+            layout.label(text="Consistent", icon="INFO")
+        elif settings.noise_threshold > 0.0:
+            layout.label(text="Unbiased at threshold 0", icon="INFO")
         else:
             layout.label(text="Unbiased", icon="CHECKMARK")
 
