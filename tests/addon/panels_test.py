@@ -44,7 +44,10 @@ def context(scene: bpy.types.Scene, light: str) -> SimpleNamespace:
     data = bpy.data.lights.new("L", light)
     layer = scene.view_layers[0]
     obj = bpy.data.objects.new("O", bpy.data.meshes.new("O"))
-    return SimpleNamespace(scene=scene, view_layer=layer, material=material, world=world, light=data, object=obj, engine="GRADUS")
+    return SimpleNamespace(
+        scene=scene, view_layer=layer, material=material, world=world, light=data, object=obj, engine="GRADUS",
+        region=SimpleNamespace(width=200), preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("light", ["POINT", "SUN", "SPOT", "AREA"])
@@ -97,6 +100,20 @@ def test_what_the_export_reads_can_be_set_somewhere(scene: bpy.types.Scene) -> N
     assert wanted <= names.drawn
 
 
+class Labels(Layout):
+    """Writes down the labels."""
+
+    def __init__(self) -> None:
+        self.texts: list[str] = []
+
+    def label(self, text: str = "", icon: str = "NONE") -> None:
+        super().label(text, icon)
+        self.texts.append(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *_, **__: self
+
+
 def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:
     summary = {
         "frame": 3,
@@ -112,9 +129,11 @@ def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:
         "Skipped: lens samples: the camera is a pinhole",
     ]
     store.summaries[(scene.name, scene.view_layers[0].name)] = summary
-    instance = SimpleNamespace(layout=Layout())
-    render_panels.GRADUS_RENDER_PT_plan.draw(instance, context(scene, "POINT"))
+    labels = Labels()
+    render_panels.GRADUS_RENDER_PT_plan.draw(SimpleNamespace(layout=labels), context(scene, "POINT"))
     store.summaries.clear()
+    assert " ".join(text.strip() for text in labels.texts).endswith("Skipped: lens samples: the camera is a pinhole image missing")
+    assert max(map(len, labels.texts)) < 32
 
 
 def test_presets_set_what_they_name_and_reset_the_rest(scene: bpy.types.Scene) -> None:

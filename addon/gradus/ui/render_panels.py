@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import bpy
@@ -110,10 +111,19 @@ class GRADUS_RENDER_PT_plan(RenderPanel, bpy.types.Panel):
         if summary is None:
             layout.label(text="Nothing was rendered yet")
             return
+        column, width = layout.column(align=True), characters(context)
         for line in plan_lines(summary):
-            layout.label(text=line)
+            for part in textwrap.wrap(line, width, subsequent_indent="    "):
+                column.label(text=part)
         for text in summary.get("warnings", []):
-            layout.label(text=text, icon="ERROR")
+            for index, part in enumerate(textwrap.wrap(text, width)):
+                column.label(text=part, icon="BLANK1" if index else "ERROR")
+
+
+def characters(context: Any) -> int:
+    """How many fit into a line of the panel; labels do not wrap by themselves."""
+    per_character = 6.5 * context.preferences.system.ui_scale  # pixels, on average
+    return max(20, int(context.region.width / per_character) - 6)
 
 
 def plan_lines(summary: dict[str, Any]) -> list[str]:
