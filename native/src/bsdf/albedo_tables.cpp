@@ -122,14 +122,15 @@ const MomentTable& moment_table() {
 
 // One table for eta above 1, one for its inverses: the critical angle makes them different functions.
 struct GlassTable {
-  std::vector<GlassAlbedo> values;
+  std::vector<Vec4> values;  // reflected, transmitted, crossing: mixed as one vector
   static size_t at(int i, int a, int c) { return static_cast<size_t>((i * kAlphas + a) * kCosines + c); }
   explicit GlassTable(bool inverse) : values(static_cast<size_t>(kIors * kAlphas * kCosines)) {
     for (int i = 0; i < kIors; i++) {
       const float eta = eta_at(i);
       for (int a = 0; a < kAlphas; a++) {
         for (int c = 0; c < kCosines; c++) {
-          values[at(i, a, c)] = compute_glass(axis_value(a, kAlphas), axis_value(c, kCosines), inverse ? 1.0f / eta : eta);
+          const GlassAlbedo g = compute_glass(axis_value(a, kAlphas), axis_value(c, kCosines), inverse ? 1.0f / eta : eta);
+          values[at(i, a, c)] = Vec4(g.reflected, g.transmitted, g.crossing, 0.0f);
         }
       }
     }
@@ -157,10 +158,7 @@ T bilinear(const T* row0, const T* row1, const Cell& a, const Cell& c, Mix mix) 
 GgxMoments mix_moments(const GgxMoments& a, const GgxMoments& b, float t) {
   return {a.one + (b.one - a.one) * t, a.schlick + (b.schlick - a.schlick) * t, a.f82 + (b.f82 - a.f82) * t};
 }
-GlassAlbedo mix_glass(const GlassAlbedo& a, const GlassAlbedo& b, float t) {
-  return {a.reflected + (b.reflected - a.reflected) * t, a.transmitted + (b.transmitted - a.transmitted) * t,
-          a.crossing + (b.crossing - a.crossing) * t};
-}
+Vec4 mix_glass(const Vec4& a, const Vec4& b, float t) { return a + (b - a) * t; }
 
 }  // namespace
 
@@ -185,10 +183,11 @@ GlassAlbedo glass_albedo(float alpha, float cosine, float eta) {
   const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
   const Cell c = locate(std::sqrt(std::max(0.0f, cosine)), kCosines);
   const auto plane = [&](int k) {
-    const GlassAlbedo* row = table.values.data() + GlassTable::at(k, a.index, 0);
+    const Vec4* row = table.values.data() + GlassTable::at(k, a.index, 0);
     return bilinear(row, row + kCosines, a, c, mix_glass);
   };
-  return mix_glass(plane(i.index), plane(i.index + 1), i.fraction);
+  const Vec4 mixed = mix_glass(plane(i.index), plane(i.index + 1), i.fraction);
+  return {mixed.x, mixed.y, mixed.z};
 }
 
 }  // namespace gradus

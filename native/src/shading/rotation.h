@@ -9,6 +9,7 @@ namespace gradus {
 
 // Euler angles in order X, Y, Z: R = Rz·Ry·Rx.
 inline Mat3 euler_matrix(const Vec3& angles) {
+  if (angles == Vec3(0.0f)) return Mat3(1.0f);  // what most nodes are left at
   const float cx = std::cos(angles.x), sx = std::sin(angles.x);
   const float cy = std::cos(angles.y), sy = std::sin(angles.y);
   const float cz = std::cos(angles.z), sz = std::sin(angles.z);

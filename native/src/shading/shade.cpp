@@ -17,12 +17,19 @@ void clear(ShadeResult* result) {
   result->fallback = result->complete = false;
 }
 
+// Where a program's closures are not wanted; large, so that it is made once.
+ShadeResult* scratch() {
+  thread_local ShadeResult result;
+  clear(&result);
+  return &result;
+}
+
 Rgb emission_of(const MaterialData& material, const ShadeContext& context) {
   if (!material.emits) return Rgb(0.0f);
   if (material.emission_is_constant) return material.constant_emission;
-  ShadeResult result;
-  run_program(material.emission, context, &result);
-  return result.emission;
+  ShadeResult* result = scratch();
+  run_program(material.emission, context, result);
+  return result->emission;
 }
 
 }  // namespace
@@ -61,9 +68,9 @@ Rgb shade_transparency(const Snapshot& snapshot, const SurfacePoint& point, cons
   const MaterialData& material = material_of(snapshot, point.material);
   if (!material.may_be_transparent || ((ray.flags & kRayShadow) && !material.transparent_shadow)) return Rgb(0.0f);
   if (material.transparency_is_constant) return material.constant_transparency;
-  ShadeResult result;
-  run_program(material.transparency, surface_context(snapshot, point, wo, ray), &result);
-  return result.transparency;
+  ShadeResult* result = scratch();
+  run_program(material.transparency, surface_context(snapshot, point, wo, ray), result);
+  return result->transparency;
 }
 
 Rgb shade_world(const Snapshot& snapshot, const Vec3& direction, const RayState& ray) {
