@@ -104,6 +104,7 @@ void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, 
 
 void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
   seen_ += Radiance(c.clamped, 0.0f);
+  const EmitterView base = source.vertex != nullptr ? view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex)) : EmitterView{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
@@ -112,9 +113,8 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
     if (o.stage == OffsetStage::Dead) {
       alone(k, c);
     } else if (o.stage == OffsetStage::Linked) {
-      found_linked(k, c, lamp.weight, joint(view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex))));
+      found_linked(k, c, lamp.weight, joint(base));
     } else if (o.stage == OffsetStage::Pending) {
-      const EmitterView base = view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex));
       const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
       copy_emitter(k, c, lamp.point, base, view, lamp.probability);
     }

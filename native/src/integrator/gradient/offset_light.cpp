@@ -3,25 +3,45 @@
 
 namespace gradus {
 
-// The copied emitter point as seen from the offsets that stand at vertices of their own; shadow rays together.
-void OffsetPaths::light_all(const LightSample& sample) {
+namespace {
+
+// A point of the world shines from the same direction, with the same radiance, wherever one looks from.
+EmitterView view_from(const PathContext& context, const LightSample& sample, const Vertex& vertex) {
+  if (sample.point.kind != EmitterKind::World) {
+    return view_emitter(context.scene, sample.point, receiver_of(vertex));
+  }
+  EmitterView view = sample.view;
+  view.pdf = emitter_pdf(context.scene, sample.point, receiver_of(vertex));
+  return view;
+}
+
+}  // namespace
+
+// The copied emitter point as seen from the offsets that stand at vertices of their own; shadow rays together, and none where nothing would
+// be scattered.
+void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_class) {
   Ray rays[kOffsets];
   bool wanted[kOffsets];
   bool blocked[kOffsets] = {};
   bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
+    OffsetLight& light = o.light;
     rays[k] = Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
-    wanted[k] = o.stage == OffsetStage::Traced && !o.light.known;
-    if (!wanted[k]) {
+    wanted[k] = false;
+    if (o.stage != OffsetStage::Traced) {
       continue;
     }
-    o.light.known = true;
-    o.light.view = view_emitter(context_.scene, sample.point, receiver_of(*o.here));
-    o.light.transmittance = Rgb(0.0f);
-    wanted[k] = !is_black(o.light.view.radiance);
+    if (!light.known) {
+      light = OffsetLight{};
+      light.known = true;
+      light.view = view_from(context_, sample, *o.here);
+    }
+    light.lit = light_class(context_, *o.here, scatter_class, LightSample{sample.point, light.view}, base_state_.ray.state);
+    wanted[k] = !light.traced && !is_black(light.lit.value);
     if (wanted[k]) {
-      rays[k] = shadow_ray(o.here->point, sample.point, o.light.view);
+      light.traced = true;
+      rays[k] = shadow_ray(o.here->point, sample.point, light.view);
       ++counters_.rays_shift_shadow;
       any = true;
     }
@@ -43,7 +63,7 @@ void OffsetPaths::light_all(const LightSample& sample) {
 void OffsetPaths::light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
   OffsetPath& o = offsets_[k];
   const EmitterView& view = o.light.view;
-  const LitClass lit = light_class(context_, *o.here, scatter_class, LightSample{sample.point, view}, base_state_.ray.state);
+  const LitClass& lit = o.light.lit;
   const bool all = joint(view) && reconnects(scatter_class) && sample.point.found_by_rays;
   const float pdf = all ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
@@ -76,7 +96,7 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
 
 void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
   link_all(vertex);
-  light_all(sample);
+  light_all(sample, scatter_class);
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.stage == OffsetStage::Dead) {

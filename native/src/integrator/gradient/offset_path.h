@@ -32,14 +32,16 @@ struct OffsetLink {
   float ratio = 0.0f;
   float kind_ratio = 0.0f;  // for light and paths that go on; emission looks at `ratio` alone (ShiftedEvent)
   uint16_t transparent_depth = 0;
-  float pdf = 0.0f;         // of the direction to the shared vertex
+  float pdf = 0.0f;  // of the direction to the shared vertex
 };
 
 // A light sample seen from an offset's own vertex.
 struct OffsetLight {
   bool known = false;
   EmitterView view;
+  bool traced = false;  // the shadow ray, for the first class that scatters the light
   Rgb transmittance = Rgb(0.0f);
+  LitClass lit;  // of the class at hand
 };
 
 struct OffsetPath {

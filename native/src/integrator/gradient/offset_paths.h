@@ -41,7 +41,7 @@ class OffsetPaths {
   // From here on the path depends on the kind of its last bounce.
   void include_kind(OffsetPath* offset);
   void leave(OffsetPath* offset, const ShiftedEvent& event, const PathState& state);
-  void trace_all(const bool wanted[kOffsets]);
+  void trace(OffsetPath* offset, const Hit* first);
 
   // Reconnection (offset_link.cpp).
   void link_all(const Vertex& vertex);
@@ -50,7 +50,7 @@ class OffsetPaths {
 
   // Emitters (offset_emission.cpp, offset_light.cpp).
   Radiance see(OffsetPath* offset) const;
-  void light_all(const LightSample& sample);
+  void light_all(const LightSample& sample, ScatterClass scatter_class);
   void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void found_linked(int k, const Contribution& c, const Rgb& weight, bool joint);

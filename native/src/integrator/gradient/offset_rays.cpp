@@ -5,44 +5,36 @@
 
 namespace gradus {
 
-// Traces the rays of the offsets in `wanted`, the first hit of all four together. To go on, both paths must have met a surface; what the
-// two segments show is compared in any case, see seen().
-void OffsetPaths::trace_all(const bool wanted[kOffsets]) {
-  Ray rays[kOffsets];
-  Hit hits[kOffsets];
-  uint32_t visibility = 0;
-  for (int k = 0; k < kOffsets; ++k) {
-    rays[k] = wanted[k] ? offsets_[k].state.ray.ray : Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
-    visibility |= wanted[k] ? offsets_[k].state.ray.visibility : 0u;  // the same for all: that of the base
-  }
-  if (visibility != 0) {
-    context_.scene.intersect4(rays, visibility, hits);
-  }
-  for (int k = 0; k < kOffsets; ++k) {
-    if (wanted[k]) {
-      OffsetPath& o = offsets_[k];
-      ++counters_.rays_shift;
-      std::swap(o.here, o.previous);
-      trace_segment(context_, *sampler_, base_state_.depth, &hits[k], &o.state.ray, o.here, &o.segment);
-      o.fresh = true;
-      if (o.segment.end != base_segment_->end) {
-        fail(&o, ShiftFailure::Missed);
-      }
-    }
+// Traces an offset's ray. first: its nearest hit if it is known. To go on, both paths must have met a surface; what the two segments show
+// is compared in any case, see seen().
+void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
+  ++counters_.rays_shift;
+  std::swap(o->here, o->previous);
+  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->segment);
+  o->fresh = true;
+  if (o->segment.end != base_segment_->end) {
+    fail(o, ShiftFailure::Missed);
   }
 }
 
-// Same position in the pixel, same point of the lens: the camera's part of r is 1.
+// Same position in the pixel, same point of the lens: the camera's part of r is 1. The rays are coherent, so their first hits are found
+// together.
 void OffsetPaths::trace_camera(const PathState& state) {
-  bool wanted[kOffsets];
+  Ray rays[kOffsets];
+  Hit hits[kOffsets];
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    wanted[k] = o.stage == OffsetStage::Traced;
     o.state.ray = PathRay{};
     o.state.ray.visibility = state.ray.visibility;
     o.state.ray.ray = context_.camera.ray(film_ + Vec2(kOffsetX[k], kOffsetY[k]), lens_);
+    rays[k] = o.stage == OffsetStage::Traced ? o.state.ray.ray : Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
   }
-  trace_all(wanted);
+  context_.scene.intersect4(rays, state.ray.visibility, hits);
+  for (int k = 0; k < kOffsets; ++k) {
+    if (offsets_[k].stage == OffsetStage::Traced) {
+      trace(&offsets_[k], &hits[k]);
+    }
+  }
 }
 
 void OffsetPaths::include_kind(OffsetPath* o) {
@@ -66,26 +58,23 @@ void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathStat
   o->from_camera = false;
 }
 
-// A class R or T event of the base at its last vertex, replayed at the offsets' last vertices.
+// A class R or T event of the base at its last vertex, replayed at the offsets' last vertices. Behind glass the rays go apart: one by one
+// they are faster than together.
 void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
-  bool wanted[kOffsets];
-  for (int k = 0; k < kOffsets; ++k) {
-    OffsetPath& o = offsets_[k];
-    wanted[k] = o.stage == OffsetStage::Traced;
-    if (!wanted[k]) {
+  for (OffsetPath& o : offsets_) {
+    if (o.stage != OffsetStage::Traced) {
       continue;
     }
     const ShiftedEvent event = copy_event(*source.vertex, *source.event, *o.here);
     if (event.failure != ShiftFailure::None) {
       fail(&o, event.failure);
-      wanted[k] = false;
       continue;
     }
     ++counters_.shifts_half_vector;
     leave(&o, event, state);
     o.event.sample.dirac = source.event->sample.dirac;
+    trace(&o, nullptr);
   }
-  trace_all(wanted);
 }
 
 // Class D before class R or T: no connection is possible, so the offset leaves in the base's direction.
