@@ -81,15 +81,22 @@ bool is_constant(const Program& p, uint32_t op) {
   return true;
 }
 
-bool looks_at_ray(const Program& p) {
+// Closures aside.
+bool values_look_at_ray(const Program& p) {
   for (const Instruction& i : p.code) {
     const bool geometry = i.op == GRADUS_OP_GEOMETRY && (i.mode == GRADUS_GEOMETRY_INCOMING || i.mode == GRADUS_GEOMETRY_BACKFACING);
     const bool reflection = i.op == GRADUS_OP_TEX_COORD && i.mode == GRADUS_TEX_COORD_REFLECTION;
     if (geometry || reflection || i.op == GRADUS_OP_LIGHT_PATH || i.op == GRADUS_OP_LAYER_WEIGHT || i.op == GRADUS_OP_FRESNEL ||
-        i.op == GRADUS_OP_LIGHT_FALLOFF || i.op == GRADUS_OP_PRINCIPLED)
+        i.op == GRADUS_OP_LIGHT_FALLOFF)
       return true;
   }
   return false;
+}
+
+// Principled's coat dims its emission.
+bool emission_looks_at_ray(const Program& p) {
+  return values_look_at_ray(p) ||
+         std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) { return i.op == GRADUS_OP_PRINCIPLED; });
 }
 
 // Light sampling and BSDF sampling see the same values of the modes that are left out.
@@ -138,7 +145,7 @@ float estimate(const Program& p, const ImageStore& images) {
 void describe_emission(MaterialData* m, const ImageStore& images) {
   m->emits = !m->emission.empty();
   if (!m->emits) return;
-  m->depends_on_ray = looks_at_ray(m->emission);
+  m->depends_on_ray = emission_looks_at_ray(m->emission);
   m->emission_estimate = estimate(m->emission, images);
   if (!is_constant(m->emission, GRADUS_OP_EMISSION)) return;
   ShadeResult r;
@@ -174,6 +181,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   Analysis(m->surface, m.get()).run();
   describe_emission(m.get(), images);
   describe_transparency(m.get());
+  m->values_look_at_ray = values_look_at_ray(m->surface);
   m->depends_on_kind = looks_at_kind(m->emission) || looks_at_kind(m->transparency);
   return m;
 }

@@ -1,13 +1,12 @@
 #include "shading/interpreter.h"
 
 #include "shading/bump.h"
+#include "shading/closure_tape.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
 namespace gradus {
 namespace {
-
-constexpr int kMaxInputs = 24;
 
 class Machine {
  public:
@@ -48,7 +47,10 @@ class Machine {
       fill(&args, i, in, floats);
       args.op = i.op;
       args.weight = Rgb(at(i.weight));
-      if (result_) add_closure(args, context_, result_);
+      if (result_) {
+        add_closure(args, context_, result_);
+        if (result_->tape) result_->tape->add(args, i.input_count);
+      }
       return;
     }
     ResourceArgs args;

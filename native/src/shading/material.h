@@ -30,6 +30,7 @@ struct MaterialData {
   bool sample_as_light = true;
   bool uses_fallback = false;
   bool depends_on_ray = false;        // uses Light Path, or the direction it is seen from, in emission
+  bool values_look_at_ray = false;    // some value of `surface` does; closures aside
   bool depends_on_kind = false;       // emission or transparency look at the kind of ray beyond camera or not, or at its depth
   float min_alpha = 1.0f;             // of all lobes, where known; 0 where a texture decides
   bool emission_is_constant = false;  // over points and directions; then:

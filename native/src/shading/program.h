@@ -11,6 +11,7 @@
 namespace gradus {
 
 inline constexpr int kMaxRegisters = 256;
+inline constexpr int kMaxInputs = 24;
 inline constexpr int kMaxOutputs = 5;
 
 // Control flow and closures, beside the operations of GradusOp. Closure operations keep their numbers.

@@ -1,5 +1,6 @@
 #include "shading/shade.h"
 
+#include "shading/closure_tape.h"
 #include "shading/context.h"
 #include "shading/interpreter.h"
 #include "shading/material.h"
@@ -15,6 +16,7 @@ void clear(ShadeResult* result) {
   result->closures.clear();
   result->emission = result->transparency = result->holdout = Rgb(0.0f);
   result->fallback = result->complete = false;
+  if (result->tape) result->tape->clear();
 }
 
 // Where a program's closures are not wanted; large, so that it is made once.
@@ -41,6 +43,22 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
   result->fallback = material.uses_fallback;
   const ShadeContext context = surface_context(snapshot, point, wo, ray);
   run_program(material.surface, context, result);
+  if (result->tape) result->tape->finish();
+  result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
+  result->complete = true;
+}
+
+void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
+                 const RayState& ray, float roughness_threshold, ShadeResult* result) {
+  const MaterialData& material = material_of(snapshot, point.material);
+  const ShadeContext context = surface_context(snapshot, point, wo, ray);
+  const bool same_side = context.backfacing == (glm::dot(point.geometric_normal, known_wo) < 0.0f);
+  clear(result);
+  if (material.values_look_at_ray || !same_side || !tape.replay(context, result)) {
+    shade_surface(snapshot, point, wo, ray, roughness_threshold, result);
+    return;
+  }
+  result->fallback = material.uses_fallback;
   result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
   result->complete = true;
 }

@@ -8,6 +8,7 @@
 namespace gradus {
 
 class Snapshot;
+class ClosureTape;
 
 // Kind of ray that arrives: what the Light Path node sees.
 enum RayFlag : uint32_t {
@@ -35,8 +36,9 @@ struct ShadeResult {
   Rgb emission = Rgb(0.0f);      // radiance towards wo
   Rgb transparency = Rgb(0.0f);  // weight of the ray that goes straight on
   Rgb holdout = Rgb(0.0f);
-  bool fallback = false;  // the material holds a replaced node
-  bool complete = false;  // the closures are there
+  bool fallback = false;        // the material holds a replaced node
+  bool complete = false;        // the closures are there
+  ClosureTape* tape = nullptr;  // not owned: if there is one, shade_surface() records the closures for shade_again()
 };
 
 // wo: towards the previous vertex. roughness_threshold: alpha that separates classes.
@@ -46,6 +48,9 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
 // shade_surface() adds them.
 void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                 ShadeResult* result);
+// As shade_surface(), for a point that was shaded with a tape for `known_wo`.
+void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
+                 const RayState& ray, float roughness_threshold, ShadeResult* result);
 // Emission alone, for emitter points that light sampling chose.
 Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
 // Transparency alone, for shadow rays.

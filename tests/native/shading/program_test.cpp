@@ -4,6 +4,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "shading/closure_tape.h"
 #include "shading/op_info.h"
 #include "shading/program_builder.h"
 #include "shading/scalar.h"
@@ -116,6 +117,86 @@ TEST(NodeProgram, PartsHoldWhatTheyNeed) {
   expect_near(m->constant_emission, Rgb(0.5f));
   expect_near(m->constant_transparency, Rgb(0.375f));
   EXPECT_EQ(m->transparency.code.size(), 1u);
+}
+
+// Textured, coated and with a sheen: layers that depend on the direction, over values that do not.
+int coated_checker(ProgramBuilder* b) {
+  const int p = b->add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
+  const int checker = b->add(GRADUS_OP_CHECKER, {In::from(p), In(Vec3(0.8f, 0.3f, 0.1f)), In(Vec3(0.1f, 0.6f, 0.9f)), In(3.0f)});
+  std::vector<In> inputs(21, In(0.0f));
+  inputs[0] = In::from(checker);
+  inputs[2] = In(0.4f);                          // roughness
+  inputs[3] = In(1.5f);                          // ior
+  inputs[5] = In(0.5f);                          // specular level
+  inputs[6] = In(1.0f);                          // specular tint
+  inputs[10] = In(0.7f), inputs[12] = In(1.6f);  // coat
+  inputs[13] = In(Vec3(0.9f, 0.5f, 0.4f));
+  inputs[14] = In(0.5f), inputs[15] = In(0.3f), inputs[16] = In(1.0f);  // sheen
+  inputs[17] = In(Vec3(0.2f));                                          // emission
+  return b->add(GRADUS_OP_PRINCIPLED, inputs);
+}
+
+ShadeContext seen_from(const Vec3& wo) {
+  ShadeContext context;
+  context.position = Vec3(0.13f, 0.27f, 0.31f);
+  context.wo = glm::normalize(wo);
+  return context;
+}
+
+TEST(NodeProgram, ClosuresFromATapeAreThoseOfTheProgram) {
+  ProgramBuilder b;
+  const auto m = b.compile(coated_checker(&b));
+  ASSERT_FALSE(m->values_look_at_ray);
+  ClosureTape tape;
+  ShadeResult first;
+  first.tape = &tape;
+  const ShadeContext steep = seen_from(Vec3(0.1f, 0.2f, 1.0f)), flat = seen_from(Vec3(-1.0f, 0.3f, 0.2f));
+  run_program(m->surface, steep, &first);
+  ShadeResult replayed;
+  EXPECT_FALSE(tape.replay(flat, &replayed)) << "the run has not ended";
+  tape.finish();
+  ASSERT_TRUE(tape.replay(flat, &replayed));
+  ShadeResult full = run(m->surface, flat);
+  EXPECT_EQ(replayed.emission, full.emission);
+  EXPECT_NE(replayed.emission, first.emission) << "the coat does not look at the direction: nothing is tested";
+  replayed.closures.finish(flat.wo, flat.geometric_normal, 0.1f);
+  full.closures.finish(flat.wo, flat.geometric_normal, 0.1f);
+  ASSERT_EQ(replayed.closures.count(), full.closures.count());
+  ASSERT_GE(full.closures.count(), 4);
+  for (const Vec3& wi : {Vec3(0, 0, 1), glm::normalize(Vec3(1.0f, -0.3f, 0.2f))}) {
+    const BsdfEval a = replayed.closures.evaluate(ScatterClass::Diffuse, flat.wo, wi),
+                   e = full.closures.evaluate(ScatterClass::Diffuse, flat.wo, wi);
+    EXPECT_EQ(a.value, e.value);
+    EXPECT_EQ(a.pdf, e.pdf);
+  }
+}
+
+TEST(NodeProgram, ATapeWithoutRoomGivesNothing) {
+  ProgramBuilder b;
+  int sum = emission(&b, In(Vec3(1.0f)));
+  for (int i = 0; i < 8; i++) sum = b.add(GRADUS_OP_ADD_SHADER, {In::from(sum), In::from(emission(&b, In(float(i + 1))))});
+  const auto m = b.compile(sum);
+  ClosureTape tape;
+  ShadeResult first, replayed;
+  first.tape = &tape;
+  run_program(m->surface, seen_from(Vec3(0, 0, 1)), &first);
+  tape.finish();
+  EXPECT_FALSE(tape.replay(seen_from(Vec3(0, 0, 1)), &replayed));
+}
+
+TEST(NodeProgram, ValuesThatLookAtTheRayAreKnown) {
+  const auto looks = [](uint32_t op, std::vector<In> inputs, uint32_t mode) {
+    ProgramBuilder b;
+    const int node = b.add(op, std::move(inputs), mode);
+    return b.compile(b.add(GRADUS_OP_DIFFUSE, {In::from(node)}))->values_look_at_ray;
+  };
+  EXPECT_TRUE(looks(GRADUS_OP_FRESNEL, {In(1.5f), In(0.0f)}, 0));
+  EXPECT_TRUE(looks(GRADUS_OP_LAYER_WEIGHT, {In(0.5f), In(0.0f)}, 0));
+  EXPECT_TRUE(looks(GRADUS_OP_LIGHT_PATH, {}, GRADUS_LIGHT_PATH_LENGTH));
+  EXPECT_TRUE(looks(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_INCOMING));
+  EXPECT_TRUE(looks(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_REFLECTION));
+  EXPECT_FALSE(looks(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION));
+  EXPECT_FALSE(looks(GRADUS_OP_CAMERA_DATA, {}, 0));
 }
 
 TEST(NodeProgram, RoughnessIsKnownWhereConstant) {

@@ -3,6 +3,7 @@
 #include "integrator/gradient/offset_paths.h"
 #include "integrator/integrator.h"
 #include "integrator/pixel_loop.h"
+#include "shading/closure_tape.h"
 
 namespace gradus {
 
@@ -11,8 +12,11 @@ namespace {
 // What one worker needs; large, so kept from sample to sample.
 struct Worker {
   Worker(const PathContext& context, Frame* frame, Counters* counters)
-      : recorder(context, frame, counters), offsets(context, counters), tracer(context, &scratch, &recorder, counters, &offsets) {}
+      : recorder(context, frame, counters), offsets(context, counters), tracer(context, &scratch, &recorder, counters, &offsets) {
+    for (int i = 0; i < 2; ++i) scratch.vertices[i].shade.tape = &tapes[i];
+  }
   PathScratch scratch;
+  ClosureTape tapes[2];  // of the base's vertices, which offsets see again
   PassRecorder recorder;
   OffsetPaths offsets;
   PathTracer<OffsetPaths> tracer;

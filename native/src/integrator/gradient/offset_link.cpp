@@ -27,7 +27,8 @@ void OffsetPaths::open_link(OffsetPath* o, const Vertex& vertex, const ShiftedEv
   RayState ray = base_state_.ray.state;
   ray.transparent_depth = o->link.transparent_depth;
   ray.length = glm::length(vertex.point.position - o->here->point.position);
-  shade_surface(context_.scene, vertex.point, o->linked->wo, ray, context_.settings.roughness_threshold, &o->linked->shade);
+  shade_again(context_.scene, vertex.point, *vertex.shade.tape, vertex.wo, o->linked->wo, ray, context_.settings.roughness_threshold,
+              &o->linked->shade);
 }
 
 // Connects all pending offsets that have not tried yet.
@@ -63,7 +64,8 @@ void OffsetPaths::link_all(const Vertex& vertex) {
     if (!wanted[k]) {
       continue;
     }
-    const Rgb through = packet ? Rgb(blocked[k] ? 0.0f : 1.0f) : segment_transmittance(context_, rays[k], base_state_.ray, &offsets_[k].link.transparent_depth);
+    const Rgb through = packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
+                               : segment_transmittance(context_, rays[k], base_state_.ray, &offsets_[k].link.transparent_depth);
     if (is_black(through)) {
       ++counters_.fail_occluded;
     } else {

@@ -10,7 +10,9 @@ namespace gradus {
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
   ++counters_.rays_shift;
   std::swap(o->here, o->previous);
-  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->segment);
+  const bool goes_on = base_segment_->end == SegmentEnd::Surface && !base_state_.emission_only;
+  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->segment,
+                goes_on ? Shading::Now : Shading::Later);
   o->fresh = true;
   if (o->segment.end != base_segment_->end) {
     fail(o, ShiftFailure::Missed);
