@@ -1,0 +1,39 @@
+"""M3: bugs that were fixed stay tested; what is switched off says why and since when, and comes back within 30 days."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1]
+SWITCHED_OFF = re.compile(r"\bDISABLED_\w+|pytest\.mark\.(?:xfail|skip)\b")
+STATED = re.compile(r"(\d{4}-\d\d-\d\d): \S+")
+MOST_DAYS = 30
+
+
+def unstated(source: str, today: datetime.date) -> list[str]:
+    """Lines that switch a test off without a date of the last 30 days and a reason."""
+    found = []
+    for line in source.splitlines():
+        if not SWITCHED_OFF.search(line):
+            continue
+        stated = STATED.search(line)
+        if stated is None or (today - datetime.date.fromisoformat(stated[1])).days > MOST_DAYS:
+            found.append(line.strip())
+    return found
+
+
+def test_m3_nothing_is_switched_off_without_reason_and_date() -> None:
+    sources = [path for path in TESTS.rglob("*_test.*") if path != Path(__file__).resolve() and path.suffix in (".py", ".cpp")]
+    assert len(sources) > 80
+    found = {path.name: lines for path in sources if (lines := unstated(path.read_text(), datetime.date.today()))}
+    assert not found
+
+
+def test_m3_the_rule_itself() -> None:
+    today = datetime.date(2030, 5, 31)
+    assert unstated("TEST(A, DISABLED_B) {", today)
+    assert unstated('@pytest.mark.xfail(reason="2030-04-01: broken")', today)
+    assert not unstated('@pytest.mark.xfail(reason="2030-05-20: waits for the new solver")', today)
+    assert not unstated('@pytest.mark.skipif(OLD, reason="came with 4.1")', today)
