@@ -36,7 +36,7 @@ bench-quick:    ## the same for two scenes, in under five minutes
 	@tools/bench.sh --quick
 
 picture:        ## docs/images/hero.png, the picture of the README
-	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 256' BLENDER='$(BLENDER)' tools/render.sh
+	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 64' BLENDER='$(BLENDER)' tools/render.sh
 	@install -D -m 644 out/picture/hero_0001.png docs/images/hero.png
 
 package:        ## dist/gradus-<version>.zip, for Blender 3.4 to 5.0

@@ -128,7 +128,7 @@ def speed(table: dict, order: list[str]) -> list[str]:
 
 
 def details(scene: str, modes: dict) -> list[str]:
-    text = ["", f"## {scene}", "", f"![error against CPU time]({plot(scene, modes)})", ""]
+    text = ["", f"## {scene}", "", conditions(modes), "", f"![error against CPU time]({plot(scene, modes)})", ""]
     if picture := strip(scene):
         text += [f"![{', '.join(NAMES.get(m, m) for m in STRIP)}]({picture})", ""]
         text += [f"*{STRIP_SAMPLES} samples, from left to right: {', '.join(NAMES.get(m, m) for m in STRIP)}.*", ""]
@@ -142,6 +142,15 @@ def details(scene: str, modes: dict) -> list[str]:
                 f"| {min(errors):.5f}–{max(errors):.5f} | {median['relmse_trimmed']:.5f} | {median['smape']:.4f} |"
             )
     return text
+
+
+def conditions(modes: dict) -> str:
+    """Pixels, reference and version of a scene's runs."""
+    rows = [row for counts in modes.values() for runs in counts.values() for row in runs]
+    sizes = sorted({f"{row['width']}×{row['height']}" for row in rows})
+    references = sorted({row["reference_samples"] for row in rows if "reference_samples" in row})
+    versions = sorted({row["version"] for row in rows})
+    return f"{', '.join(sizes)} pixels; references of {', '.join(map(str, references))} samples; version {', '.join(versions)}."
 
 
 def agreement() -> list[str]:
