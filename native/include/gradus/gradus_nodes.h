@@ -150,7 +150,7 @@
   X(LIGHT_FALLOFF, 116, 2, 1, 0)   \
   X(NORMAL_DOT, 117, 1, 2, 0)
 
-#define GRADUS_OP_ENUM(name, value, inputs, outputs, closure) GRADUS_OP_##name = value,
+#define GRADUS_OP_ENUM(name, value, inputs, outputs, closure) GRADUS_OP_##name = value, /* NOLINT(bugprone-macro-parentheses) */
 typedef enum GradusOp { GRADUS_OPS(GRADUS_OP_ENUM) GRADUS_OP_LIMIT = 128 } GradusOp;
 #undef GRADUS_OP_ENUM
 

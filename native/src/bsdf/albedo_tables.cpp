@@ -91,13 +91,13 @@ GlassAlbedo compute_glass(float alpha, float cosine, float eta) {
 }
 
 struct MomentTable {
-  std::array<GgxMoments, kAlphas * kCosines> values;
+  std::array<GgxMoments, size_t(kAlphas) * kCosines> values;
   std::array<float, kAlphas> mean;
 
   MomentTable() {
     for (int a = 0; a < kAlphas; a++) {
       for (int c = 0; c < kCosines; c++) {
-        values[static_cast<size_t>(a * kCosines + c)] = compute_moments(axis_value(a, kAlphas), axis_value(c, kCosines));
+        values[size_t(a) * kCosines + size_t(c)] = compute_moments(axis_value(a, kAlphas), axis_value(c, kCosines));
       }
       mean[static_cast<size_t>(a)] = mean_of_row(a);
     }
@@ -109,7 +109,7 @@ struct MomentTable {
     for (int i = 0; i < kSteps; i++) {
       const float x = (static_cast<float>(i) + 0.5f) / kSteps;
       const Cell cell = locate(x, kCosines);
-      const size_t k = static_cast<size_t>(a * kCosines + cell.index);
+      const size_t k = size_t(a) * kCosines + size_t(cell.index);
       sum += (values[k].one + (values[k + 1].one - values[k].one) * cell.fraction) * 4.0f * x * x * x;
     }
     return sum / kSteps;
@@ -123,8 +123,8 @@ const MomentTable& moment_table() {
 // One table for eta above 1, one for its inverses: the critical angle makes them different functions.
 struct GlassTable {
   std::vector<Vec4> values;  // reflected, transmitted, crossing: mixed as one vector
-  static size_t at(int i, int a, int c) { return static_cast<size_t>((i * kAlphas + a) * kCosines + c); }
-  explicit GlassTable(bool inverse) : values(static_cast<size_t>(kIors * kAlphas * kCosines)) {
+  static size_t at(int i, int a, int c) { return (size_t(i) * kAlphas + size_t(a)) * kCosines + size_t(c); }
+  explicit GlassTable(bool inverse) : values(size_t(kIors) * kAlphas * kCosines) {
     for (int i = 0; i < kIors; i++) {
       const float eta = eta_at(i);
       for (int a = 0; a < kAlphas; a++) {
@@ -166,7 +166,7 @@ GgxMoments ggx_moments(float alpha, float cosine) {
   const MomentTable& table = moment_table();
   const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
   const Cell c = locate(std::sqrt(std::max(0.0f, cosine)), kCosines);
-  const GgxMoments* row = table.values.data() + a.index * kCosines;
+  const GgxMoments* row = table.values.data() + size_t(a.index) * kCosines;
   return bilinear(row, row + kCosines, a, c, mix_moments);
 }
 

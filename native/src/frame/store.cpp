@@ -128,7 +128,7 @@ class RowBlock {
 
 void write_rows(const Frame& frame, const std::vector<StoredPlane>& planes, const Imf::Header& header, WriterStream* stream) {
   Imf::OutputFile file(*stream, header);
-  const Imath::Box2i data = header.dataWindow();
+  const Imath::Box2i& data = header.dataWindow();
   const int width = frame.region.width(), height = frame.region.height();
   RowBlock block(planes, width, kBlockRows);
   for (int row = 0; row < height; row += kBlockRows) {
@@ -143,7 +143,7 @@ void write_rows(const Frame& frame, const std::vector<StoredPlane>& planes, cons
 Error damaged(const std::string& why) { return invalid_argument(why); }
 
 Frame make_frame(const Imf::Header& header, const json& description) {
-  const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();
+  const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
   const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
   if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxSide || display.max.y < 0 ||
       display.max.y >= kMaxSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
@@ -202,7 +202,7 @@ Frame read_frame(const std::string& path) {
   check_regions(frame);
   const std::vector<StoredPlane> planes = stored_planes(&frame);
   check_channels(header, planes);
-  const Imath::Box2i data = header.dataWindow();
+  const Imath::Box2i& data = header.dataWindow();
   const int height = frame.region.height();
   RowBlock block(planes, frame.region.width(), kBlockRows);
   for (int row = 0; row < height; row += kBlockRows) {

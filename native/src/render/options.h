@@ -13,6 +13,7 @@
 
 namespace gradus {
 
+// In the order in which one reads the table. NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct Option {
   const char* name;
   GradusOptionType type;

@@ -44,7 +44,8 @@ bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t poi
     for (uint32_t x = 0; x < width; ++x) {
       float sum = 0.0f;
       for (uint32_t k = 0; k < points * points; ++k) {
-        const Vec2 within = step * (Vec2(float(k % points), float(k / points)) + 0.5f);
+        const uint32_t column = k % points, row = k / points;
+        const Vec2 within = step * (Vec2(float(column), float(row)) + 0.5f);
         sum += measure_at(radiance, (Vec2(float(x), float(y)) + within) / Vec2(float(width), float(height)));
       }
       (*out)[size_t(y) * width + x] = step * step * sum;

@@ -12,7 +12,7 @@ bool is_lobe_op(uint32_t op) {
   return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION;
 }
 
-Vec4 operand_or(const Program& p, Operand o, const Vec4& unknown) { return o < 0 ? p.constants[static_cast<size_t>(~o)] : unknown; }
+Vec4 operand_or(const Program& p, Operand o, const Vec4& unknown) { return o < 0 ? p.constants[static_cast<uint32_t>(~o)] : unknown; }
 
 // Input of the roughness of a closure; -1: always rough.
 int roughness_input(uint32_t op) {

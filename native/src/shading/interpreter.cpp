@@ -17,7 +17,7 @@ class Machine {
     for (uint32_t pc = block.begin; pc < block.end;) pc = step(program_.code[pc], pc);
   }
 
-  const Vec4& at(Operand operand) const { return operand >= 0 ? registers_[operand] : program_.constants[static_cast<size_t>(~operand)]; }
+  const Vec4& at(Operand operand) const { return operand >= 0 ? registers_[operand] : program_.constants[static_cast<uint32_t>(~operand)]; }
 
  private:
   uint32_t step(const Instruction& i, uint32_t pc) {
