@@ -99,21 +99,30 @@ class DifferenceStatistics {
   int count_ = 0;
 };
 
+struct BothDirections {
+  DifferenceStatistics dx, dy;
+
+  void add(const GradientImages& images) {
+    dx.add(images, true);
+    dy.add(images, false);
+  }
+  void check() {
+    dx.check("dx");
+    dy.check("dy");
+  }
+};
+
 TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
-  DifferenceStatistics dx;
-  DifferenceStatistics dy;
+  BothDirections differences;
   Counters counters;
   for (uint32_t seed = 0; seed < 32; ++seed) {
     const IntegratorContext c = context(100 + seed);
     Frame frame = test::make_test_frame(c.settings, true);
     test::sample_frame(*make_gradient_integrator(c), 0, 64, &frame);
-    const GradientImages images = read_images(frame, 0, false);
-    dx.add(images, true);
-    dy.add(images, false);
+    differences.add(read_images(frame, 0, false));
     counters.add(frame.counters);
   }
-  dx.check("dx");
-  dy.check("dy");
+  differences.check();
   std::printf(
       "  shifts %lu: reconnected %lu, half-vector %lu, replayed %lu; failed: missed %lu occluded %lu class %lu tir %lu side %lu density "
       "%lu "
@@ -125,8 +134,7 @@ TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
 
 // Contract 1.5: neighbours with different counts, some with none, over two batches.
 TEST_P(Scenarios, B7_UnequalCounts) {
-  DifferenceStatistics dx;
-  DifferenceStatistics dy;
+  BothDirections differences;
   for (uint32_t seed = 0; seed < 24; ++seed) {
     const IntegratorContext c = context(500 + seed);
     Frame frame = test::make_test_frame(c.settings, true);
@@ -140,19 +148,15 @@ TEST_P(Scenarios, B7_UnequalCounts) {
       WorkUnit unit{frame.region, 64 * batch, 0, &counts};
       integrator->sample(unit, &frame, &frame.counters, stop);
     }
-    const GradientImages images = read_images(frame, 0, false);
-    dx.add(images, true);
-    dy.add(images, false);
+    differences.add(read_images(frame, 0, false));
   }
-  dx.check("dx");
-  dy.check("dy");
+  differences.check();
 }
 
 // A cancel between tiles leaves pairs whose ends took different numbers of samples; their gradients kept the norm of whole batches and
 // came out too small.
 TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
-  DifferenceStatistics dx;
-  DifferenceStatistics dy;
+  BothDirections differences;
   for (uint32_t seed = 0; seed < 24; ++seed) {
     const IntegratorContext c = context(700 + seed);
     Frame frame = test::make_test_frame(c.settings, true);
@@ -164,12 +168,9 @@ TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
         integrator->sample(WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, &frame, &frame.counters, stop);
       }
     }
-    const GradientImages images = read_images(frame, 0, false);
-    dx.add(images, true);
-    dy.add(images, false);
+    differences.add(read_images(frame, 0, false));
   }
-  dx.check("dx");
-  dy.check("dy");
+  differences.check();
 }
 
 // L3: split into batches and tiles, in any order: the same bits.

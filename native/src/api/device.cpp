@@ -24,8 +24,7 @@ GradusError gradus_device_release(GradusDevice device) {
 GradusError gradus_device_warning(GradusDevice device, const char** text) {
   return api::guard([&] {
     api::require(text, "text") = nullptr;
-    thread_local std::string taken;  // valid until the thread's next call
-    if (api::find_handle<Device>(device)->warnings().take(&taken)) *text = taken.c_str();
+    api::take_warning(&api::find_handle<Device>(device)->warnings(), text);
   });
 }
 

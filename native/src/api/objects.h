@@ -15,6 +15,12 @@ namespace gradus::api {
 
 class SceneRecorder;  // api/recorder.h
 
+// The oldest warning, or NULL; valid until the thread's next call.
+inline void take_warning(Warnings* warnings, const char** text) {
+  thread_local std::string taken;
+  *text = warnings->take(&taken) ? taken.c_str() : nullptr;
+}
+
 struct SceneObject {
   explicit SceneObject(const std::shared_ptr<Device>& device);
   ~SceneObject();

@@ -124,8 +124,7 @@ GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cance
 GradusError gradus_scene_warning(GradusScene scene, const char** text) {
   return api::guard([&] {
     api::require(text, "text") = nullptr;
-    thread_local std::string taken;  // valid until the thread's next call
-    if (api::find_handle<api::SceneObject>(scene)->warnings.take(&taken)) *text = taken.c_str();
+    api::take_warning(&api::find_handle<api::SceneObject>(scene)->warnings, text);
   });
 }
 

@@ -12,10 +12,8 @@ namespace {
 // Blender's value bounds the mean of the channels; 0 is "no limit".
 float sum_limit(float clamp) { return clamp > 0.0f ? 3.0f * clamp : kInfinity; }
 
-constexpr uint32_t kBounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION;
-
 // Hidden from some kinds of bounces and not from others.
-bool tells_kinds_apart(uint32_t visibility) { return (visibility & kBounces) != 0 && (visibility & kBounces) != kBounces; }
+bool tells_kinds_apart(uint32_t visibility) { return (visibility & kAllBounces) != 0 && (visibility & kAllBounces) != kAllBounces; }
 
 bool kinds_matter_in(const Snapshot& scene) {
   const auto any = [](const auto& list, auto&& test) { return std::any_of(list.begin(), list.end(), test); };
@@ -26,7 +24,7 @@ bool kinds_matter_in(const Snapshot& scene) {
 }
 
 bool is_uniform(const Snapshot& scene) {
-  constexpr uint32_t bounces = kBounces | GRADUS_VISIBLE_SHADOW;
+  constexpr uint32_t bounces = kAllBounces | GRADUS_VISIBLE_SHADOW;
   for (const InstanceData& instance : scene.instances) {
     const uint32_t bits = instance.visibility & bounces;
     if (bits != 0 && bits != bounces) {

@@ -9,6 +9,9 @@
 
 namespace gradus {
 
+// GradusVisibility bits of all kinds of bounces.
+inline constexpr uint32_t kAllBounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION;
+
 struct PathContext {
   PathContext(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings);
 

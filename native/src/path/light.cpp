@@ -4,8 +4,6 @@ namespace gradus {
 
 namespace {
 
-constexpr uint32_t kAllBounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION;
-
 // Which light passes an emitter with these visibility bits may be scattered by, for a direction on this side.
 bool sees(uint32_t visibility, LightPass pass, bool transmitted) { return (visibility & bounce_visibility(pass, transmitted)) != 0; }
 

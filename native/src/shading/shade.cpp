@@ -19,6 +19,12 @@ void clear(ShadeResult* result) {
   if (result->tape) result->tape->clear();
 }
 
+// Once all closures are added.
+void complete(const ShadeContext& context, const Vec3& wo, float roughness_threshold, ShadeResult* result) {
+  result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
+  result->complete = true;
+}
+
 // Where a program's closures are not wanted; large, so that it is made once.
 ShadeResult* scratch() {
   thread_local ShadeResult result;
@@ -44,8 +50,7 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
   const ShadeContext context = surface_context(snapshot, point, wo, ray);
   run_program(material.surface, context, result);
   if (result->tape) result->tape->finish();
-  result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
-  result->complete = true;
+  complete(context, wo, roughness_threshold, result);
 }
 
 void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
@@ -59,8 +64,7 @@ void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const Clos
     return;
   }
   result->fallback = material.uses_fallback;
-  result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
-  result->complete = true;
+  complete(context, wo, roughness_threshold, result);
 }
 
 void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,

@@ -16,8 +16,6 @@ namespace gradus {
 
 namespace {
 
-constexpr uint32_t kAllBounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION;
-
 // From the ratio of BSDF densities, which r holds already, to that of all techniques.
 float all_techniques(const Contribution& base, float pdf_light, float pdf_bsdf) {
   return (1.0f + pdf_light / pdf_bsdf) / (1.0f + base.pdf_light / base.pdf_bsdf);
