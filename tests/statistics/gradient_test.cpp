@@ -215,6 +215,7 @@ GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
   GradusSettings settings = test::test_settings(4, 1);
   settings.seed = seed;
   settings.max_bounces = 1;
+  test::sample_at_pixel_centres(&settings);
   const IntegratorContext c = scene.context(settings);
   Frame frame = test::make_test_frame(c.settings, true);
   test::sample_frame(*make_gradient_integrator(c), 0, 8192, &frame);

@@ -68,6 +68,7 @@ Comparison compare(Scenario scenario) {
   test::build(scenario, &scene);
   GradusSettings settings = test::test_settings(kWidth, kHeight);
   settings.max_bounces = 4;
+  test::sample_at_pixel_centres(&settings);
   const IntegratorContext context = scene.context(settings);
   const int seeds = test::full_run() ? 64 : 32, samples = test::full_run() ? 5 : 1;
   std::vector<std::vector<float>> path(static_cast<size_t>(seeds)), l2(path.size());

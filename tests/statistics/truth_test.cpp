@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include "sampling/lattice.h"
 #include "shading/program_builder.h"
 #include "support/bsdf_only.h"
 #include "support/path_scene.h"
@@ -80,19 +81,34 @@ void build(Truth truth, PathScene* scene) {
 
 enum class Estimator { Path, Gradient, BsdfOnly };
 
+// Means over runs of `side` pixels of a row.
+std::vector<float> run_means(const std::vector<float>& image, uint32_t side) {
+  std::vector<float> means(image.size() / side, 0.0f);
+  for (size_t i = 0; i < image.size(); ++i) means[i / 3 / side * 3 + i % 3] += image[i] / float(side);
+  return means;
+}
+
+// Neighbours of a row share their sub-pixel jitter (contract 1.6), so that variances of sums are those of whole runs; rows do not, because
+// they take other sample numbers.
+struct Statistics {
+  test::Moments pixels, cell_runs, lattice_runs;
+};
+
 // Samples of all pixels as images, one by one, spread over the threads by rows.
 template <class SampleRow>
-test::Moments sample_images(int count, const SampleRow& sample_row) {
-  test::Moments moments;
+Statistics sample_images(int count, const SampleRow& sample_row) {
+  Statistics moments;
   std::vector<float> image(size_t(kPixels) * 3);
   for (int i = 0; i < count; ++i) {
     tbb::parallel_for(0, int(kHeight), [&](int y) { sample_row(i, y, image.data() + size_t(y) * kWidth * 3); });
-    moments.add(image);
+    moments.pixels.add(image);
+    moments.cell_runs.add(run_means(image, cell_side()));
+    moments.lattice_runs.add(run_means(image, kLattice));
   }
   return moments;
 }
 
-test::Moments estimate(const IntegratorContext& context, Estimator estimator) {
+Statistics estimate(const IntegratorContext& context, Estimator estimator) {
   if (estimator == Estimator::BsdfOnly) {
     return sample_images(reference_samples(), [&](int i, int y, float* row) {
       testing::Random random(uint64_t(i) * kHeight + uint64_t(y) + 1);
@@ -106,7 +122,7 @@ test::Moments estimate(const IntegratorContext& context, Estimator estimator) {
   return sample_images(samples(), [&](int i, int y, float* row) {
     // Rows above and below are in the frame, so that all pairs of pixels are present.
     Frame frame(kWidth, kHeight, Region{0, y - 1, int32_t(kWidth), y + 2}, 3, 1, estimator == Estimator::Gradient);
-    WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1}, uint32_t(2 * i), 1, nullptr};
+    WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1}, uint32_t(2 * (i * kLattice + y % kLattice)), 1, nullptr};
     integrator->sample(unit, &frame, &frame.counters, std::atomic<bool>{false});
     for (int x = 0; x < int(kWidth); ++x) {
       for (int c = 0; c < 3; ++c) row[3 * x + c] = frame.components[0].primal[0][frame.index(x, y)][c];
@@ -115,8 +131,8 @@ test::Moments estimate(const IntegratorContext& context, Estimator estimator) {
 }
 
 // Made once for all tests.
-const test::Moments& moments(Truth truth, Estimator estimator) {
-  static std::map<std::pair<Truth, Estimator>, test::Moments> made;
+const Statistics& moments(Truth truth, Estimator estimator) {
+  static std::map<std::pair<Truth, Estimator>, Statistics> made;
   const auto key = std::make_pair(truth, estimator);
   if (const auto found = made.find(key); found != made.end()) return found->second;
   PathScene scene;
@@ -134,8 +150,9 @@ struct CellTest {
   size_t tests = 0, failed = 0;
 };
 
-// z-tests of cells and channels, with the pixels' variances pooled.
-CellTest test_cells(const test::Moments& image, const test::Moments& truth, double factor) {
+// z-tests of cells and channels, with the variances of their runs pooled.
+CellTest test_cells(const Statistics& image, const Statistics& truth, double factor) {
+  const test::Moments &runs = image.cell_runs, &true_runs = truth.cell_runs;
   const uint32_t side = cell_side();
   const size_t tests = size_t(kWidth / side) * (kHeight / side) * 3;
   const double level = test::sidak(tests * 2 * size_t(Truth::Count));
@@ -144,11 +161,9 @@ CellTest test_cells(const test::Moments& image, const test::Moments& truth, doub
     const uint32_t channel = cell % 3, column = cell / 3 % (kWidth / side), row = cell / 3 / (kWidth / side);
     double difference = 0.0, variance = 0.0;
     for (uint32_t y = row * side; y < (row + 1) * side; ++y) {
-      for (uint32_t x = column * side; x < (column + 1) * side; ++x) {
-        const size_t i = 3 * (size_t(y) * kWidth + x) + channel;
-        difference += factor * image.mean(i) - truth.mean(i);
-        variance += std::max(image.variance_of_mean(i), 1e-4 / image.count()) + truth.variance_of_mean(i);
-      }
+      const size_t i = 3 * (size_t(y) * (kWidth / side) + column) + channel;
+      difference += factor * runs.mean(i) - true_runs.mean(i);
+      variance += std::max(runs.variance_of_mean(i), 1e-4 / side / runs.count()) + true_runs.variance_of_mean(i);
     }
     ++result.tests;
     result.failed += test::normal_p(difference / std::sqrt(variance)) < level ? 1 : 0;
@@ -162,18 +177,21 @@ struct Bias {
   bool passes() const { return std::fabs(mean - truth) <= 4.0 * deviation && sign_ratio <= 0.1; }
 };
 
-Bias measure_bias(const test::Moments& image, const test::Moments& truth, double factor) {
+Bias measure_bias(const Statistics& all, const Statistics& all_true, double factor) {
+  const test::Moments &image = all.pixels, &truth = all_true.pixels;
   Bias bias;
   double variance = 0.0;
   std::vector<double> difference(kPixels);
   for (size_t i = 0; i < image.size(); ++i) {
     bias.mean += factor * image.mean(i) / double(image.size());
     bias.truth += truth.mean(i) / double(image.size());
-    variance += factor * factor * image.variance_of_mean(i) + truth.variance_of_mean(i);
     difference[i / 3] += factor * image.mean(i) - truth.mean(i);
   }
+  for (size_t i = 0; i < all.lattice_runs.size(); ++i) {
+    variance += factor * factor * all.lattice_runs.variance_of_mean(i) + all_true.lattice_runs.variance_of_mean(i);
+  }
   // Channels of a pixel come from the same paths: as if they were fully correlated.
-  bias.deviation = std::sqrt(3.0 * variance) / double(image.size());
+  bias.deviation = std::sqrt(3.0 * variance) / double(all.lattice_runs.size());
   test::SignRatio ratio;
   ratio.add(difference, int(kWidth), int(kHeight));
   bias.sign_ratio = ratio.value();

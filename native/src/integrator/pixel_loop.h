@@ -1,7 +1,10 @@
 // From units of work to samples of pixels; the same for all camera-path integrators.
 #pragma once
 
+#include <algorithm>
+
 #include "frame/gate.h"
+#include "integrator/camera_vertices.h"
 #include "integrator/integrator.h"
 #include "path/trace.h"
 
@@ -14,6 +17,7 @@ struct PixelSample {
   int half = 0;         // even numbers A, odd ones B (contract 1.2)
   Sampler sampler;
   Vec2 film = Vec2(0.0f);
+  CameraVertex* first = nullptr;  // what the camera ray meets; nullptr with a lens, which sets the rays of neighbours apart
 };
 
 // Samples that a unit takes of a pixel.
@@ -26,20 +30,44 @@ inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
   return first_is_even == (half == 0) ? (count + 1) / 2 : count / 2;
 }
 
+// Cells of the lattice, cut to the tile.
+std::vector<Region> cells_of(const Region& tile);
+// Most samples that the unit takes of a pixel of the cell.
+uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& cell);
+// Offset from the centres of a cell's pixels, by the filter.
+Vec2 cell_jitter(const PathContext& context, const Region& cell, uint32_t number);
+// That of a pixel by itself.
+inline Vec2 own_jitter(const PathContext& context, const Sampler& sampler) { return context.filter.sample(sampler.get2(dimension::kFilm)); }
+// All but its place on the film.
 PixelSample make_pixel_sample(const PathContext& context, const Frame& frame, int32_t x, int32_t y, uint32_t number);
 
-// Calls body(PixelSample) for each sample of the unit, pixel by pixel, in order of their numbers, until `stop`. Sums thus do not depend on
-// tiles, threads, or how samples were split over units.
+// Calls body(PixelSample) for each sample of the unit, until `stop`: cell by cell, in order of sample numbers, over the cell's pixels. Sums
+// of pixels thus do not depend on tiles, threads, or how samples were split over units.
 template <class Body>
-void for_each_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, const std::atomic<bool>& stop, Body&& body) {
-  for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
-    for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
-      const uint32_t count = unit_count(unit, frame.index(x, y));
-      for (uint32_t i = 0; i < count; ++i) {
-        if (stop.load(std::memory_order_relaxed)) {
-          return;
+void for_each_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, CameraVertices* vertices,
+                     const std::atomic<bool>& stop, Body&& body) {
+  const bool shares_rays = !context.camera.has_lens();
+  for (const Region& cell : cells_of(unit.tile)) {
+    const uint32_t most = most_samples(unit, frame, cell);
+    for (uint32_t i = 0; i < most; ++i) {
+      const uint32_t number = unit.first_sample + i;
+      const Vec2 jitter = cell_jitter(context, cell, number);
+      vertices->begin(jitter);
+      for (int32_t y = cell.y0; y < cell.y1; ++y) {
+        for (int32_t x = cell.x0; x < cell.x1; ++x) {
+          if (i >= unit_count(unit, frame.index(x, y))) {
+            continue;
+          }
+          if (stop.load(std::memory_order_relaxed)) {
+            return;
+          }
+          PixelSample sample = make_pixel_sample(context, frame, x, y, number);
+          if (shares_rays) {
+            sample.first = vertices->at(x, y, sample.sampler);
+          }
+          sample.film = pixel_centre(x, y) + (shares_rays ? jitter : own_jitter(context, sample.sampler));
+          body(sample);
         }
-        body(make_pixel_sample(context, frame, x, y, unit.first_sample + i));
       }
     }
   }

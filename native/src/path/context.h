@@ -31,6 +31,8 @@ struct PathContext {
   bool kinds_matter = false;
 };
 
+inline Vec2 pixel_centre(int32_t x, int32_t y) { return Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f); }
+
 // A contribution, clamped by the rule of its kind; keeps the hue (Cycles' film_clamp_light; a user's value bounds the channels' mean).
 inline Rgb clamp_contribution(const PathContext& context, const Rgb& value, bool indirect) {
   const float limit = indirect ? context.clamp_indirect : context.clamp_direct;

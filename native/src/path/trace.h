@@ -4,6 +4,7 @@
 // bits whatever observer looks on.
 #pragma once
 
+#include "path/camera_vertex.h"
 #include "path/contribution.h"
 #include "path/recorder.h"
 
@@ -43,32 +44,48 @@ class PathTracer {
   PathTracer(const PathContext& context, PathScratch* scratch, PassRecorder* recorder, Counters* counters, Observer* observer)
       : context_(context), s_(*scratch), recorder_(recorder->active() ? recorder : nullptr), counters_(*counters), observer_(*observer) {}
 
-  // film: position on the full frame's film, filter offset included.
-  PathResult trace(const Sampler& sampler, const Vec2& film) {
+  // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is known.
+  PathResult trace(const Sampler& sampler, const Vec2& film, CameraVertex* first = nullptr) {
     result_ = PathResult{};
     result_.radiance.w = 1.0f;
     state_ = PathState{};
     const Vec2 lens = context_.camera.has_lens() ? sampler.get2(dimension::kLens) : Vec2(0.0f);
-    state_.ray.ray = context_.camera.ray(film, lens);
     observer_.begin(sampler, film, lens);
-    RaySource source;
-    Vertex* vertex = &s_.vertices[0];
     ++counters_.rays_primary;
+    Vertex* vertex = &s_.vertices[0];
+    segment_ = &s_.segment;
+    if (first != nullptr && first->shared) {
+      vertex = &first->vertex;
+      segment_ = &first->segment;
+      state_.ray = first->ray;
+      if (records()) shade_vertex(context_, state_.ray.state, vertex);
+    } else {
+      state_.ray.ray = context_.camera.ray(film, lens);
+      extend(sampler, first != nullptr ? &first->hit : nullptr, vertex);
+    }
+    RaySource source;
     while (step(sampler, source, vertex)) {
       source = RaySource{vertex, &s_.event};
       vertex = vertex == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
+      segment_ = &s_.segment;
       ++counters_.rays_bounce;
+      extend(sampler, nullptr, vertex);
     }
     return result_;
   }
 
  private:
-  // One segment and what is seen at its end. False: the path has ended.
+  // The recorder looks at the closures of the next vertex.
+  bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
+
+  // The next segment. first: its nearest hit if it is known.
+  void extend(const Sampler& sampler, const Hit* first, Vertex* vertex) {
+    trace_segment(context_, sampler, state_.depth, first, &state_.ray, vertex, &s_.segment, records() ? Shading::Now : Shading::Later);
+  }
+
+  // What a segment shows, and scattering at its end. False: the path has ended.
   bool step(const Sampler& sampler, const RaySource& source, Vertex* vertex) {
-    const bool record = recorder_ != nullptr && recorder_->needs_closures(state_.depth);
-    const Shading shading = record ? Shading::Now : Shading::Later;
-    trace_segment(context_, sampler, state_.depth, nullptr, &state_.ray, vertex, &s_.segment, shading);
-    observer_.arrive(source, state_, s_.segment, *vertex);
+    observer_.arrive(source, state_, *segment_, *vertex);
     const bool goes_on = see(sampler, source, *vertex);
     observer_.seen();
     if (!goes_on || state_.emission_only) {
@@ -96,12 +113,12 @@ class PathTracer {
   // Emitters along the segment and at its end. False: there is no surface to scatter from.
   bool see(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
     add_lamps(source);
-    apply_segment(s_.segment, &state_);
-    observer_.passed(s_.segment);
-    if (s_.segment.end == SegmentEnd::Escaped) {
+    apply_segment(*segment_, &state_);
+    observer_.passed(*segment_);
+    if (segment_->end == SegmentEnd::Escaped) {
       add_world(source);
     }
-    if (s_.segment.end != SegmentEnd::Surface) {
+    if (segment_->end != SegmentEnd::Surface) {
       return false;
     }
     result_.fallback |= vertex.shade.fallback;
@@ -111,7 +128,7 @@ class PathTracer {
   void add(const Rgb& value) { result_.radiance += Radiance(value, 0.0f); }
 
   void add_lamps(const RaySource& source) {
-    for (const LampSighting& lamp : s_.segment.lamps) {
+    for (const LampSighting& lamp : segment_->lamps) {
       const Contribution c = lamp_contribution(context_, source, state_, lamp);
       if (!is_black(c.clamped)) {
         add(c.clamped);
@@ -148,7 +165,7 @@ class PathTracer {
       }
       add_transparent(held_out(state_.throughput, vertex.shade.holdout));
     }
-    if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, s_.segment);
+    if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, *segment_);
     const Contribution c = emission_contribution(context_, source, state_, vertex);
     if (!is_black(c.clamped)) {
       add(c.clamped);
@@ -182,6 +199,7 @@ class PathTracer {
   Counters& counters_;
   Observer& observer_;
   PathState state_;
+  const Segment* segment_ = nullptr;  // the path's last
   PathResult result_;
 };
 

@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "sampling/lattice.h"
 
 namespace gradus {
-
-// Side of the lattice on which sub-pixel jitter is shared and noise is judged (contract 1.6, 5.3).
-inline constexpr int kLattice = 16;
 
 // Cells of `side` pixels, aligned to multiples of it, cut to the region; row by row.
 std::vector<Region> make_tiles(const Region& region, int side);

@@ -70,8 +70,9 @@ TEST_P(B8_Double, ImagesDifferByLessThanOnePercentOfTheirNoise) {
   PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &frame.counters, &observer);
   std::vector<DVec3> sum(size_t(width) * height, DVec3(0.0)), squares(sum);
   const WorkUnit unit{frame.region, 0, samples, nullptr};
-  for_each_sample(path, unit, frame, std::atomic<bool>{false}, [&](const PixelSample& s) {
-    add_primal(tracer.trace(s.sampler, s.film), s, &frame, &frame.counters);
+  const auto vertices = std::make_unique<CameraVertices>(path);
+  for_each_sample(path, unit, frame, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
+    add_primal(tracer.trace(s.sampler, s.film, s.first), s, &frame, &frame.counters);
     sum[s.pixel] += observer.radiance;
     squares[s.pixel] += observer.radiance * observer.radiance;
   });

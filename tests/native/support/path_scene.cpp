@@ -202,6 +202,11 @@ GradusSettings test_settings(uint32_t width, uint32_t height) {
   return s;
 }
 
+void sample_at_pixel_centres(GradusSettings* settings) {
+  settings->pixel_filter = GRADUS_FILTER_GAUSSIAN;
+  settings->filter_width = 1e-4f;
+}
+
 void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame) {
   WorkUnit unit;
   unit.tile = frame->region;

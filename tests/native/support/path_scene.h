@@ -54,6 +54,8 @@ class PathScene {
 
 // Small, independent random numbers, bounces without limit.
 GradusSettings test_settings(uint32_t width, uint32_t height);
+// Pixels of a cell share their sub-pixel jitter (contract 1.6); without any, their errors are independent.
+void sample_at_pixel_centres(GradusSettings* settings);
 
 // All pixels with samples [first, first + count).
 void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame);

@@ -12,12 +12,16 @@ namespace {
 // What one worker needs; large, so kept from sample to sample.
 struct Worker {
   Worker(const PathContext& context, Frame* frame, Counters* counters)
-      : recorder(context, frame, counters), offsets(context, counters), tracer(context, &scratch, &recorder, counters, &offsets) {
+      : recorder(context, frame, counters),
+        vertices(context),
+        offsets(context, counters, &vertices),
+        tracer(context, &scratch, &recorder, counters, &offsets) {
     for (int i = 0; i < 2; ++i) scratch.vertices[i].shade.tape = &tapes[i];
   }
   PathScratch scratch;
   ClosureTape tapes[2];  // of the base's vertices, which offsets see again
   PassRecorder recorder;
+  CameraVertices vertices;
   OffsetPaths offsets;
   PathTracer<OffsetPaths> tracer;
 };
@@ -43,11 +47,11 @@ class GradientIntegrator final : public Integrator {
 
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto worker = std::make_unique<Worker>(path_, frame, counters);
-    for_each_sample(path_, unit, *frame, stop, [&](const PixelSample& s) {
+    for_each_sample(path_, unit, *frame, &worker->vertices, stop, [&](const PixelSample& s) {
       worker->recorder.begin_sample(s.pixel, s.number == path_.settings.first_sample);
       const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, s.x, s.y, s.half);
-      worker->offsets.start(pairs);
-      add_primal(worker->tracer.trace(s.sampler, s.film), s, frame, counters);
+      worker->offsets.start(pairs, s);
+      add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, frame, counters);
       for (int k = 0; k < kOffsets; ++k) {
         Radiance gradient = worker->offsets.gradient(k);
         if (frame->channels < 4) {

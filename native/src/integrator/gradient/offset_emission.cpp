@@ -36,14 +36,14 @@ bool OffsetPaths::joint(const EmitterView& view) const {
 // What the offset's own segment shows; alpha is 1 − what the camera sees through. Brings its throughput to the end of the segment.
 Radiance OffsetPaths::see(OffsetPath* o) const {
   Radiance seen(0.0f);
-  for (const LampSighting& lamp : o->segment.lamps) {
+  for (const LampSighting& lamp : o->segment->lamps) {
     seen += Radiance(lamp_contribution(context_, o->source(), o->state, lamp).clamped, 0.0f);
   }
-  o->state.throughput *= o->segment.weight;
+  o->state.throughput *= o->segment->weight;
   const float all = mean_component(o->state.throughput);
-  if (o->segment.end == SegmentEnd::Escaped) {
+  if (o->segment->end == SegmentEnd::Escaped) {
     seen += Radiance(world_contribution(context_, o->source(), o->state).clamped, o->from_camera ? -all : 0.0f);
-  } else if (o->segment.end == SegmentEnd::Surface) {
+  } else if (o->segment->end == SegmentEnd::Surface) {
     const ShadeResult& shade = o->here->shade;
     if (o->from_camera && (context_.scene.instances[o->here->point.hit.instance].visibility & GRADUS_HOLDOUT) != 0) {
       return seen - Radiance(0.0f, 0.0f, 0.0f, all);

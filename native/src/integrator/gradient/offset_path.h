@@ -49,7 +49,7 @@ struct OffsetPath {
   float ratio = 1.0f;
   float kind_ratio = 1.0f;  // of the last event (ShiftedEvent); in `ratio` once the emission behind that event has been seen
   PathState state;          // throughput, and the ray of the last segment that it traced
-  Segment segment;          // that segment
+  const Segment* segment = nullptr;  // that segment: its own, or what it shares with the path of its pixel
   ScatterEvent event;       // density and kind of the event that began it
   bool from_camera = true;  // there was no such event
   bool fresh = false;       // it traced its own ray for the base's current segment
@@ -61,6 +61,14 @@ struct OffsetPath {
   Vertex* previous = nullptr;
   Vertex* linked = nullptr;
   Vertex storage[3];
+  Segment own_segment;
+
+  // To the next vertex of its own. The current one may belong to the path of its pixel.
+  void advance() {
+    previous = here;
+    here = here == &storage[0] ? &storage[1] : &storage[0];
+    segment = &own_segment;
+  }
 
   // Where its last segment came from.
   RaySource source() const { return from_camera ? RaySource{} : RaySource{previous, &event}; }

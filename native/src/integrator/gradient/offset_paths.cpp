@@ -33,8 +33,11 @@ void count_failure(Counters* counters, ShiftFailure cause) {
   }
 }
 
-OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters)
-    : context_(context), counters_(*counters), joint_(!context.has_transparency && context.uniform_visibility && !context.kinds_matter) {
+OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraVertices* vertices)
+    : context_(context),
+      counters_(*counters),
+      vertices_(*vertices),
+      joint_(!context.has_transparency && context.uniform_visibility && !context.kinds_matter) {
   for (OffsetPath& o : offsets_) {
     o.here = &o.storage[0];
     o.previous = &o.storage[1];
@@ -42,8 +45,9 @@ OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters)
   }
 }
 
-void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs) {
+void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample) {
   pairs_ = pairs;
+  sample_ = &sample;
   gradient_.fill(Radiance(0.0f));
 }
 

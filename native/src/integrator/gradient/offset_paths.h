@@ -3,15 +3,17 @@
 
 #include "integrator/gradient/offset_path.h"
 #include "integrator/gradient/pair.h"
+#include "integrator/pixel_loop.h"
 
 namespace gradus {
 
 class OffsetPaths {
  public:
-  OffsetPaths(const PathContext& context, Counters* counters);
+  // vertices: of the cell that is being sampled.
+  OffsetPaths(const PathContext& context, Counters* counters, CameraVertices* vertices);
 
   // Before each sample.
-  void start(const std::array<PairCount, kOffsets>& pairs);
+  void start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample);
   // After it: the weighted gradient sample of a pair, alpha included.
   const Radiance& gradient(int offset) const { return gradient_[offset]; }
 
@@ -36,12 +38,15 @@ class OffsetPaths {
 
   // Rays of their own (offset_rays.cpp).
   void trace_camera(const PathState& state);
+  CameraVertex* known_vertex(int k) const;
+  void share(OffsetPath* offset, CameraVertex* vertex);
   void copy_events(const RaySource& source, const PathState& state);
   void copy_direction(OffsetPath* offset);
   // From here on the path depends on the kind of its last bounce.
   void include_kind(OffsetPath* offset);
   void leave(OffsetPath* offset, const ShiftedEvent& event, const PathState& state);
   void trace(OffsetPath* offset, const Hit* first);
+  void compare_ends(OffsetPath* offset);
 
   // Reconnection (offset_link.cpp).
   void link_all(const Vertex& vertex);
@@ -60,6 +65,8 @@ class OffsetPaths {
 
   const PathContext& context_;
   Counters& counters_;
+  CameraVertices& vertices_;
+  const PixelSample* sample_ = nullptr;
   const Sampler* sampler_ = nullptr;
   Vec2 film_ = Vec2(0.0f);
   Vec2 lens_ = Vec2(0.0f);

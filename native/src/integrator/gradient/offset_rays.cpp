@@ -9,31 +9,69 @@ namespace gradus {
 // is compared in any case, see seen().
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
   ++counters_.rays_shift;
-  std::swap(o->here, o->previous);
+  o->advance();
   const bool goes_on = base_segment_->end == SegmentEnd::Surface && !base_state_.emission_only;
-  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->segment,
+  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment,
                 goes_on ? Shading::Now : Shading::Later);
+  compare_ends(o);
+}
+
+void OffsetPaths::compare_ends(OffsetPath* o) {
   o->fresh = true;
-  if (o->segment.end != base_segment_->end) {
+  if (o->segment->end != base_segment_->end) {
     fail(o, ShiftFailure::Missed);
   }
 }
 
-// Same position in the pixel, same point of the lens: the camera's part of r is 1. The rays are coherent, so their first hits are found
-// together.
+// In the base's cell of the lattice an offset's camera ray is that of its pixel's base path.
+CameraVertex* OffsetPaths::known_vertex(int k) const {
+  const int32_t x = sample_->x + kOffsetX[k], y = sample_->y + kOffsetY[k];
+  const bool same_cell = lattice_cell(x) == lattice_cell(sample_->x) && lattice_cell(y) == lattice_cell(sample_->y);
+  return sample_->first != nullptr && same_cell ? vertices_.at(x, y, *sampler_) : nullptr;
+}
+
+void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
+  if (base_segment_->end == SegmentEnd::Surface && v->segment.end == SegmentEnd::Surface && !base_state_.emission_only) {
+    shade_vertex(context_, v->ray.state, &v->vertex);
+  }
+  o->here = &v->vertex;
+  o->segment = &v->segment;
+  o->state.ray = v->ray;
+  compare_ends(o);
+}
+
+// Same position in the pixel, same point of the lens: the camera's part of r is 1. The rays are coherent, so first hits that nobody has
+// found yet are found together.
 void OffsetPaths::trace_camera(const PathState& state) {
   Ray rays[kOffsets];
   Hit hits[kOffsets];
+  bool unknown[kOffsets];
+  bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
+    rays[k] = Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
+    unknown[k] = false;
+    if (o.stage != OffsetStage::Traced) {
+      continue;
+    }
     o.state.ray = PathRay{};
     o.state.ray.visibility = state.ray.visibility;
     o.state.ray.ray = context_.camera.ray(film_ + Vec2(kOffsetX[k], kOffsetY[k]), lens_);
-    rays[k] = o.stage == OffsetStage::Traced ? o.state.ray.ray : Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
+    CameraVertex* known = known_vertex(k);
+    if (known == nullptr) {
+      rays[k] = o.state.ray.ray;
+      any = unknown[k] = true;
+    } else if (known->shared) {
+      share(&o, known);
+    } else {
+      trace(&o, &known->hit);
+    }
   }
-  context_.scene.intersect4(rays, state.ray.visibility, hits);
+  if (any) {
+    context_.scene.intersect4(rays, state.ray.visibility, hits);
+  }
   for (int k = 0; k < kOffsets; ++k) {
-    if (offsets_[k].stage == OffsetStage::Traced) {
+    if (unknown[k]) {
       trace(&offsets_[k], &hits[k]);
     }
   }
@@ -90,13 +128,13 @@ void OffsetPaths::copy_direction(OffsetPath* o) {
   ++counters_.rays_shift;
   leave(o, event, base_state_);
   o->event.sample.dirac = false;
-  std::swap(o->here, o->previous);
-  trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->segment);
-  if (o->segment.end != SegmentEnd::Surface) {
+  o->advance();
+  trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->own_segment);
+  if (o->segment->end != SegmentEnd::Surface) {
     fail(o, ShiftFailure::Missed);
     return;
   }
-  o->state.throughput *= o->segment.weight;
+  o->state.throughput *= o->segment->weight;
   o->stage = OffsetStage::Traced;
   include_kind(o);
 }

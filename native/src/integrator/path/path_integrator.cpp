@@ -16,9 +16,10 @@ class PathIntegrator final : public Integrator {
     PassRecorder recorder(path_, frame, counters);
     NoObserver observer;
     PathTracer<NoObserver> tracer(path_, scratch.get(), &recorder, counters, &observer);
-    for_each_sample(path_, unit, *frame, stop, [&](const PixelSample& s) {
+    const auto vertices = std::make_unique<CameraVertices>(path_);
+    for_each_sample(path_, unit, *frame, vertices.get(), stop, [&](const PixelSample& s) {
       recorder.begin_sample(s.pixel, s.number == path_.settings.first_sample);
-      add_primal(tracer.trace(s.sampler, s.film), s, frame, counters);
+      add_primal(tracer.trace(s.sampler, s.film, s.first), s, frame, counters);
     });
   }
 

@@ -1,0 +1,44 @@
+#include "integrator/camera_vertices.h"
+
+namespace gradus {
+
+void CameraVertices::begin(const Vec2& filter_offset) {
+  filter_offset_ = filter_offset;
+  ++cell_sample_;
+}
+
+// Always the same rays together, wherever a tile or a border cuts the cell, so that hits have the same bits.
+void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
+  Ray rays[kTogether];
+  Hit hits[kTogether];
+  for (int i = 0; i < kTogether; ++i) {
+    rays[i] = context_.camera.ray(pixel_centre(x + i, y) + filter_offset_, Vec2(0.0f));
+  }
+  context_.scene.intersect4(rays, GRADUS_VISIBLE_CAMERA, hits);
+  for (size_t i = 0; i < kTogether; ++i) {
+    packet->vertices[i].hit = hits[i];
+    packet->vertices[i].ray = PathRay{};
+    packet->vertices[i].ray.ray = rays[i];
+  }
+  packet->cell_sample = cell_sample_;
+  packet->y = y;
+  packet->met.fill(false);
+}
+
+CameraVertex* CameraVertices::at(int32_t x, int32_t y, const Sampler& sampler) {
+  const int32_t column = x - lattice_begin(x);
+  const size_t i = static_cast<size_t>(column % kTogether);
+  Packet& packet = packets_[static_cast<size_t>(y & (kRows - 1))][static_cast<size_t>(column / kTogether)];
+  if (packet.cell_sample != cell_sample_ || packet.y != y) {
+    trace(x - column % kTogether, y, &packet);
+  }
+  CameraVertex& v = packet.vertices[i];
+  if (!packet.met[i]) {
+    packet.met[i] = true;
+    trace_segment(context_, sampler, 0, &v.hit, &v.ray, &v.vertex, &v.segment, Shading::Later);
+    v.shared = v.segment.probability == 1.0f;
+  }
+  return &v;
+}
+
+}  // namespace gradus

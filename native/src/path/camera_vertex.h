@@ -1,0 +1,17 @@
+// What a camera ray meets first, where more than one path may begin with it.
+#pragma once
+
+#include "path/segment.h"
+#include "path/vertex.h"
+
+namespace gradus {
+
+struct CameraVertex {
+  Hit hit;              // the nearest
+  bool shared = false;  // no random decision lay on the way: what follows is the same for every path
+  PathRay ray;          // as it arrived
+  Segment segment;
+  Vertex vertex;  // closures may still be missing
+};
+
+}  // namespace gradus

@@ -1,0 +1,15 @@
+// The lattice of cells of 16×16 pixels, fixed to the full frame, on which sub-pixel jitter is shared and noise is judged (contract 1.6,
+// 5.3).
+#pragma once
+
+#include <cstdint>
+
+namespace gradus {
+
+inline constexpr int32_t kLattice = 16;
+
+// Cell that holds a coordinate; below 0, too, towards minus infinity.
+inline int32_t lattice_cell(int32_t x) { return x >= 0 ? x / kLattice : -((-x + kLattice - 1) / kLattice); }
+inline int32_t lattice_begin(int32_t x) { return lattice_cell(x) * kLattice; }
+
+}  // namespace gradus

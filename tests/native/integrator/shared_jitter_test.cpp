@@ -1,0 +1,88 @@
+// Sub-pixel jitter of a cell of the lattice (contract 1.6), and camera vertices that paths share by it.
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "integrator/pixel_loop.h"
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+using test::Scenario;
+
+struct Jitter {
+  int32_t x, y;
+  uint32_t number;
+  Vec2 offset;
+};
+
+// From the centres of all pixels, in a frame of more than one cell.
+std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
+  PathScene scene;
+  test::build(Scenario::DiffuseArea, &scene);
+  scene.camera_desc.aperture_radius = aperture;
+  const IntegratorContext context = scene.context(test::test_settings(size, size));
+  const PathContext path(*context.snapshot, context.camera, context.settings);
+  const Frame frame = test::make_test_frame(context.settings, false);
+  const auto vertices = std::make_unique<CameraVertices>(path);
+  std::vector<Jitter> found;
+  for_each_sample(path, WorkUnit{frame.region, 0, samples, nullptr}, frame, vertices.get(), std::atomic<bool>{false},
+                  [&](const PixelSample& s) { found.push_back({s.x, s.y, s.number, s.film - pixel_centre(s.x, s.y)}); });
+  EXPECT_EQ(found.size(), size_t(size) * size * samples);
+  return found;
+}
+
+TEST(SharedJitter, IsThatOfItsCellAndSampleNumber) {
+  std::map<std::tuple<int, int, uint32_t>, Vec2> of_cell;
+  for (const Jitter& j : jitters(0.0f, 40, 3)) {
+    const auto key = std::make_tuple(lattice_cell(j.x), lattice_cell(j.y), j.number);
+    const Vec2 first = of_cell.emplace(key, j.offset).first->second;
+    EXPECT_NEAR(glm::length(first - j.offset), 0.0f, 1e-5f);
+  }
+  ASSERT_EQ(of_cell.size(), 27u);
+  for (auto a = of_cell.begin(); a != of_cell.end(); ++a) {
+    for (auto b = std::next(a); b != of_cell.end(); ++b) EXPECT_GT(glm::length(a->second - b->second), 1e-4f);
+  }
+}
+
+// A lens sets the rays of neighbours apart in any case.
+TEST(SharedJitter, PixelsBehindALensHaveTheirOwn) {
+  const std::vector<Jitter> found = jitters(0.1f, 2, 1);
+  EXPECT_GT(glm::length(found[0].offset - found[1].offset), 1e-4f);
+}
+
+TEST(SharedJitter, FillsThePixel) {
+  double sum = 0.0, squares = 0.0;
+  const std::vector<Jitter> found = jitters(0.0f, 1, 4096);
+  for (const Jitter& j : found) {
+    sum += j.offset.x + j.offset.y;
+    squares += j.offset.x * j.offset.x + j.offset.y * j.offset.y;
+  }
+  const double n = 2.0 * double(found.size());
+  EXPECT_NEAR(sum / n, 0.0, 4.0 / std::sqrt(12.0 * n));
+  EXPECT_NEAR(squares / n, 1.0 / 12.0, 0.005);
+}
+
+uint64_t shift_rays(float aperture, uint32_t size) {
+  PathScene scene;
+  test::build(Scenario::DiffuseArea, &scene);
+  scene.camera_desc.aperture_radius = aperture;
+  const IntegratorContext context = scene.context(test::test_settings(size, size));
+  Frame frame = test::make_test_frame(context.settings, true);
+  test::sample_frame(*make_gradient_integrator(context), 0, 1, &frame);
+  return frame.counters.rays_shift;
+}
+
+// An offset of an opaque, diffuse scene needs no ray of its own but where its pixel lies in another cell: 4·16 pairs of two cells side by
+// side and two above, from both ends.
+TEST(SharedJitter, OffsetsTakeTheCameraRaysOfTheirPixels) {
+  EXPECT_EQ(shift_rays(0.0f, 16), 0u);
+  EXPECT_EQ(shift_rays(0.0f, 32), 2u * 4u * 16u);
+  EXPECT_EQ(shift_rays(0.1f, 16), 4u * 16u * 15u);
+}
+
+}  // namespace
+}  // namespace gradus
