@@ -8,14 +8,15 @@
 namespace gradus {
 namespace {
 
-using Sums = std::vector<double>;
+// Rows at a time: direct() makes two rows around each piece once more.
+constexpr int kGrain = 64;
 
 Sums dot(const Field& a, const Field& b) {
   return sum_rows(a.height(), a.channels(), [&](int y, int c) { return dot_row(a.row(y, c), b.row(y, c), a.width()); });
 }
 
 // r = b - A x; returns r·r.
-Sums residual(const WeightedSystem& a, const Field& b, const Field& x, Field* r) {
+Sums residual(const Stencil& a, const Field& b, const Field& x, Field* r) {
   return sum_rows(a.height(), b.channels(), [&](int y, int c) {
     float* to = r->row(y, c);
     apply_row(a, x, y, c, to);
@@ -25,41 +26,61 @@ Sums residual(const WeightedSystem& a, const Field& b, const Field& x, Field* r)
   });
 }
 
-// out = A p; returns p·Ap.
-Sums product(const WeightedSystem& a, const Field& p, Field* out) {
-  return sum_rows(a.height(), p.channels(), [&](int y, int c) {
-    float* to = out->row(y, c);
-    apply_row(a, p, y, c, to);
-    return dot_row(to, p.row(y, c), a.width());
-  });
+// The next direction: p = z + factor before; returns p·Ap.
+Sums direct(const Stencil& a, const Field& z, const Sums& factor, const Field& before, Field* p) {
+  const int w = a.width(), channels = z.channels();
+  const auto add = [&](int y, int c, float* to) {
+    const auto f = static_cast<float>(factor[c]);
+    const float *from = z.row(y, c), *old = before.row(y, c);  // beyond the border 0
+    for (int i = 0; i < w; ++i) to[i] = from[i] + f * old[i];
+  };
+  RowSums sums(a.height(), channels);
+  for_pieces(
+      a.height(),
+      [&](int begin, int end) {
+        // The rows around the piece are another one's to write.
+        RollingRows outer(w, channels);
+        std::vector<float> product(static_cast<size_t>(w));
+        for (int c = 0; c < channels; ++c) {
+          add(begin - 1, c, outer.row(0, c));
+          add(end, c, outer.row(1, c));
+          add(begin, c, p->row(begin, c));
+        }
+        for (int y = begin; y < end; ++y) {
+          for (int c = 0; c < channels; ++c) {
+            const bool last = y + 1 == end;
+            if (!last) add(y + 1, c, p->row(y + 1, c));
+            const float *here = p->row(y, c), *below = y == begin ? outer.row(0, c) : p->row(y - 1, c);
+            apply_row(a, y, below, here, last ? outer.row(1, c) : p->row(y + 1, c), product.data());
+            sums.at(y, c) = dot_row(here, product.data(), w);
+          }
+        }
+      },
+      kGrain);
+  return sums.total();
 }
 
-// x += step p; r -= step q; returns r·r.
-Sums advance(const Sums& step, const Field& p, const Field& q, Field* x, Field* r) {
-  return sum_rows(x->height(), x->channels(), [&](int y, int c) {
-    const auto s = static_cast<float>(step[c]);
-    float* to_x = x->row(y, c);
-    float* to_r = r->row(y, c);
-    const float* from_p = p.row(y, c);
-    const float* from_q = q.row(y, c);
-    for (int i = 0; i < x->width(); ++i) {
-      to_x[i] += s * from_p[i];
-      to_r[i] -= s * from_q[i];
-    }
-    return dot_row(to_r, to_r, x->width());
-  });
-}
-
-// p = z + factor p
-void turn(const Field& z, const Sums& factor, Field* p) {
-  for_rows(z.height(), [&](int y) {
-    for (int c = 0; c < z.channels(); ++c) {
-      const auto f = static_cast<float>(factor[c]);
-      const float* from = z.row(y, c);
-      float* to = p->row(y, c);
-      for (int i = 0; i < z.width(); ++i) to[i] = from[i] + f * to[i];
+// x += step p; r -= step A p; returns r·r. A p is made anew: that takes less time than to store and load it.
+Sums advance(const Stencil& a, const Sums& step, const Field& p, Field* x, Field* r) {
+  const int w = a.width(), channels = p.channels();
+  RowSums sums(a.height(), channels);
+  for_pieces(a.height(), [&](int begin, int end) {
+    std::vector<float> product(static_cast<size_t>(w));
+    for (int y = begin; y < end; ++y) {
+      for (int c = 0; c < channels; ++c) {
+        apply_row(a, p, y, c, product.data());
+        const auto s = static_cast<float>(step[c]);
+        float *to_x = x->row(y, c), *to_r = r->row(y, c);
+        const float* from = p.row(y, c);
+        for (int i = 0; i < w; ++i) {
+          to_x[i] += s * from[i];
+          to_r[i] -= s * product[i];
+        }
+        sums.at(y, c) = dot_row(to_r, to_r, w);
+      }
     }
   });
+  return sums.total();
 }
 
 Sums quotient(const Sums& a, const Sums& b) {
@@ -78,19 +99,18 @@ float worst(const Sums& rr, const Sums& bb) {
 
 CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, float tolerance, int most_steps,
                             const CancelTest& cancel) {
-  const WeightedSystem& a = preconditioner->system();
-  auto& [r, z, p, q] = *fields;
+  const Stencil& a = preconditioner->matrix();
+  auto& [r, z, p, next_p] = *fields;
   const Sums bb = dot(b, b);
   CgReport report;
   report.residual = worst(residual(a, b, *x, &r), bb);
   Sums rz_before(bb.size(), 0.0);
   for (; report.steps < most_steps && report.residual > tolerance && !cancel(); ++report.steps) {
-    preconditioner->cycle(r, &z);
-    const Sums rz = dot(r, z);
-    turn(z, quotient(rz, rz_before), &p);
+    const Sums rz = preconditioner->cycle(r, &z);
+    const Sums pap = direct(a, z, quotient(rz, rz_before), p, &next_p);
+    std::swap(p, next_p);
     rz_before = rz;
-    const Sums step = quotient(rz, product(a, p, &q));
-    report.residual = worst(advance(step, p, q, x, &r), bb);
+    report.residual = worst(advance(a, quotient(rz, pap), p, x, &r), bb);
   }
   return report;
 }

@@ -13,8 +13,8 @@ struct CgReport {
 
 // Work space, kept from solve to solve.
 struct CgFields {
-  CgFields(int width, int height, int channels) : r(width, height, channels), z(r), p(r), q(r) {}
-  Field r, z, p, q;
+  CgFields(int width, int height, int channels) : r(width, height, channels), z(r), p(r), next_p(r) {}
+  Field r, z, p, next_p;
 };
 
 // Improves x until the residual is below `tolerance` or `most_steps` are done. Floats with sums in double.

@@ -1,5 +1,6 @@
 // Images of the iterative solver: rows of one channel after another ([y][channel][x]), so that weights are read once for all channels and
-// inner loops run over contiguous floats. Rows have zeroed padding on both sides, which stencils may read.
+// inner loops run over contiguous floats. A rim of zeros, some pixels left and right and the rows -1 and height, is there for stencils to
+// read.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +16,16 @@ class Field {
         height_(height),
         channels_(channels),
         stride_((size_t(width) + 2 * kPad - 1) / kPad * kPad + kPad),
-        values_(stride_ * size_t(height) * size_t(channels) + kPad, 0.0f) {}
+        values_(stride_ * (size_t(height) + 2) * size_t(channels) + kPad, 0.0f) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
   int channels() const { return channels_; }
-  float* row(int y, int channel = 0) { return values_.data() + kPad + stride_ * (size_t(y) * size_t(channels_) + size_t(channel)); }
-  const float* row(int y, int channel = 0) const {
-    return values_.data() + kPad + stride_ * (size_t(y) * size_t(channels_) + size_t(channel));
-  }
+  float* row(int y, int channel = 0) { return values_.data() + first(y, channel); }
+  const float* row(int y, int channel = 0) const { return values_.data() + first(y, channel); }
 
  private:
+  size_t first(int y, int channel) const { return kPad + stride_ * ((size_t(y) + 1) * size_t(channels_) + size_t(channel)); }
   static constexpr size_t kPad = 8;
   int width_ = 0, height_ = 0, channels_ = 0;
   size_t stride_ = 0;

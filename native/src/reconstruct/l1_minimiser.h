@@ -17,7 +17,8 @@ class L1Minimiser {
   void apply(const PoissonPlanes& planes, float* out) const;
 
  private:
-  Multigrid multigrid_;  // holds the weights
+  Multigrid multigrid_;  // of the matrix, which holds the weights of the differences
+  Field data_weights_;
   Field solution_;
   float alpha_;
 };

@@ -25,6 +25,16 @@ struct RowNorm {
 // What stands for a value that is missing; its row's weight is 0, so any finite value would do.
 float finite_or_zero(float v) { return is_finite(v) ? v : 0.0f; }
 
+// Of A = W_d + Dᵀ W_g D.
+void fill_diagonal(const Field& data_weights, Stencil* matrix) {
+  for_rows(matrix->height(), [&](int y) {
+    const float *data = data_weights.row(y), *right = matrix->right.row(y), *up = matrix->up.row(y), *down = matrix->up.row(y - 1);
+    float* diagonal = matrix->diagonal.row(y);
+    for (int x = 0; x < matrix->width(); ++x) diagonal[x] = data[x] + right[x] + right[x - 1] + up[x] + down[x];
+  });
+  matrix->finish();
+}
+
 }  // namespace
 
 L1Planes load_planes(const PoissonPlanes& planes, int width, int height, int channels) {
@@ -63,13 +73,13 @@ float robust_scale(const L1Planes& planes) {
   return *middle;
 }
 
-void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor, WeightedSystem* system) {
+void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor, Field* data_weights, Stencil* matrix) {
   const int w = x.width(), h = x.height(), channels = x.channels();
 
   const RowNorm norm{1.0f / (static_cast<float>(channels) * scale * scale), floor * floor};
   const RowNorm data_norm{norm.factor * alpha * alpha, norm.floor_squared};
   for_rows(h, [&](int y) {
-    float *data = system->data.row(y), *right = system->right.row(y), *up = system->up.row(y);
+    float *data = data_weights->row(y), *right = matrix->right.row(y), *up = matrix->up.row(y);
     for (float* sums : {data, right, up}) std::fill_n(sums, w, 0.0f);
     for (int c = 0; c < channels; ++c) {
       const float *here = x.row(y, c), *primal = planes.primal.row(y, c), *dx = planes.dx.row(y, c), *dy = planes.dy.row(y, c);
@@ -89,15 +99,15 @@ void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, 
     right[w - 1] = 0.0f;  // the last column and row carry no difference
     if (y == h - 1) std::fill_n(up, w, 0.0f);
   });
-  system->finish();
+  fill_diagonal(*data_weights, matrix);
 }
 
-void right_side(const WeightedSystem& weights, const L1Planes& planes, Field* b) {
-  const int w = weights.width(), h = weights.height(), channels = planes.primal.channels();
+void right_side(const Field& data_weights, const Stencil& matrix, const L1Planes& planes, Field* b) {
+  const int w = data_weights.width(), h = data_weights.height(), channels = planes.primal.channels();
 
   for_rows(h, [&](int y) {
-    const float *data = weights.data.row(y), *right = weights.right.row(y), *up = weights.up.row(y);
-    const float* down = y > 0 ? weights.up.row(y - 1) : nullptr;
+    const float *data = data_weights.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y);
+    const float* down = y > 0 ? matrix.up.row(y - 1) : nullptr;
     for (int c = 0; c < channels; ++c) {
       const float *primal = planes.primal.row(y, c), *dx = planes.dx.row(y, c), *dy = planes.dy.row(y, c);
       const float* below = y > 0 ? planes.dy.row(y - 1, c) : nullptr;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reconstruct/solver.h"
-#include "reconstruct/weighted_system.h"
+#include "reconstruct/stencil.h"
 
 namespace gradus {
 
@@ -20,8 +20,9 @@ float robust_scale(const L1Planes& planes);
 
 // Weights 1/√(e² + floor²) of every row of the system at x, e being the row's residual over the scale: the Huber floor keeps the systems
 // solvable, and less of it makes the result worse (measured). Rows that are not finite get weight 0.
-void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor, WeightedSystem* system);
+// The data rows' weights W_d go to `data`, those of the differences W_g to `matrix`, which becomes A = W_d + Dᵀ W_g D.
+void reweight(const L1Planes& planes, const Field& x, float alpha, float scale, float floor, Field* data, Stencil* matrix);
 // W_d I + Dᵀ W_g g
-void right_side(const WeightedSystem& weights, const L1Planes& planes, Field* b);
+void right_side(const Field& data, const Stencil& matrix, const L1Planes& planes, Field* b);
 
 }  // namespace gradus

@@ -2,69 +2,116 @@
 
 #include <algorithm>
 
-#include "reconstruct/rows.h"
-
 namespace gradus {
 namespace {
 
 // The coarsest grid is small enough that these sweeps of Jacobi solve it well enough; a polynomial of A, so the cycle stays symmetric.
 constexpr int kCoarsestSide = 2;
 constexpr int kCoarsestSweeps = 8;
+// Rows at a time: the passes below make some rows around each piece once more.
+constexpr int kGrain = 64;
 
-void smooth_from_zero(const WeightedSystem& a, const Field& b, Field* x) {
-  for_rows(a.height(), [&](int y) {
-    const float* s = a.smoothing.row(y);
-    for (int c = 0; c < b.channels(); ++c) {
-      const float* from = b.row(y, c);
-      float* to = x->row(y, c);
-      for (int i = 0; i < a.width(); ++i) to[i] = s[i] * from[i];
+// x = S b: what one sweep makes of 0. Rows beyond the grid are 0.
+void smooth_zero(const Stencil& a, const Field& b, int y, RollingRows* x) {
+  for (int c = 0; c < b.channels(); ++c) {
+    float* to = x->row(y, c);
+    if (y < 0 || y >= a.height()) {
+      std::fill_n(to, a.width(), 0.0f);
+      continue;
     }
-  });
+    const float *s = a.smoothing.row(y), *from = b.row(y, c);
+    for (int i = 0; i < a.width(); ++i) to[i] = s[i] * from[i];
+  }
 }
 
-// to = x + damping/diagonal (b - A x)
-void smooth(const WeightedSystem& a, const Field& b, const Field& x, Field* to) {
-  for_rows(a.height(), [&](int y) {
-    const float* s = a.smoothing.row(y);
-    for (int c = 0; c < b.channels(); ++c) {
-      float* out = to->row(y, c);
-      apply_row(a, x, y, c, out);
-      const float* right_side = b.row(y, c);
-      const float* here = x.row(y, c);
-      for (int i = 0; i < a.width(); ++i) out[i] = here[i] + s[i] * (right_side[i] - out[i]);
-    }
-  });
+// b - A x of a row
+void subtract_product(const Stencil& a, const Field& b, int y, int c, RollingRows* x, float* out) {
+  apply_row(a, y, x->row(y - 1, c), x->row(y, c), x->row(y + 1, c), out);
+  const float* from = b.row(y, c);
+  for (int i = 0; i < a.width(); ++i) out[i] = from[i] - out[i];
 }
 
-// coarse = sum over 2×2 of b - A x: the transpose of constant interpolation.
-void restrict_residual(const WeightedSystem& a, const Field& b, const Field& x, Field* coarse) {
-  const int w = a.width(), h = a.height();
-  for_rows(
+// coarse = Pᵀ(b - A S b)
+void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b, Field* coarse) {
+  for_pieces(
       coarse->height(),
-      [&](int y) {
-        std::vector<float> residual(size_t(w) + 1), product(static_cast<size_t>(w));
-        for (int c = 0; c < b.channels(); ++c) {
-          std::fill(residual.begin(), residual.end(), 0.0f);
-          for (int fy = 2 * y; fy < std::min(2 * y + 2, h); ++fy) {
-            apply_row(a, x, fy, c, product.data());
-            const float* right_side = b.row(fy, c);
-            for (int i = 0; i < w; ++i) residual[i] += right_side[i] - product[i];
+      [&](int begin, int end) {
+        RollingRows x(a.width(), b.channels()), residual(a.width(), b.channels());
+        const auto add_row = [&](int y) {
+          smooth_zero(a, b, y + 1, &x);
+          for (int c = 0; c < b.channels(); ++c) {
+            float* to = residual.row(y, c);
+            if (y < 0 || y >= a.height()) {
+              std::fill_n(to, a.width(), 0.0f);
+            } else {
+              subtract_product(a, b, y, c, &x, to);
+            }
           }
-          float* to = coarse->row(y, c);
-          for (int i = 0; i < coarse->width(); ++i) to[i] = residual[2 * i] + residual[2 * i + 1];
+        };
+        smooth_zero(a, b, 2 * begin - 2, &x);
+        smooth_zero(a, b, 2 * begin - 1, &x);
+        add_row(2 * begin - 1);
+        for (int y = begin; y < end; ++y) {
+          add_row(2 * y);
+          add_row(2 * y + 1);
+          for (int c = 0; c < b.channels(); ++c) {
+            p.restrict_rows(y, residual.row(2 * y - 1, c), residual.row(2 * y, c), residual.row(2 * y + 1, c), coarse->row(y, c));
+          }
         }
       },
-      16);
+      kGrain / 2);
 }
 
-void add_interpolated(const Field& coarse, Field* x) {
-  for_rows(x->height(), [&](int y) {
-    for (int c = 0; c < x->channels(); ++c) {
-      const float* from = coarse.row(y / 2, c);
-      float* to = x->row(y, c);
-      for (int i = 0; i < x->width(); ++i) to[i] += from[i / 2];
+// z = x + S(b - A x) with x = S b + P coarse; returns b·z.
+Sums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* z) {
+  const int w = a.width();
+  RowSums sums(a.height(), b.channels());
+  for_pieces(
+      a.height(),
+      [&](int begin, int end) {
+        RollingRows x(w, b.channels());
+        std::vector<float> correction(size_t(w) + 1);
+        const auto add_row = [&](int y) {
+          smooth_zero(a, b, y, &x);
+          if (y < 0 || y >= a.height()) return;
+          for (int c = 0; c < b.channels(); ++c) {
+            p.interpolate_row(y, coarse.row(y / 2, c), coarse.row(y / 2 + 1, c), correction.data());
+            float* to = x.row(y, c);
+            for (int i = 0; i < w; ++i) to[i] += correction[i];
+          }
+        };
+        add_row(begin - 1);
+        add_row(begin);
+        for (int y = begin; y < end; ++y) {
+          add_row(y + 1);
+          const float* s = a.smoothing.row(y);
+          for (int c = 0; c < b.channels(); ++c) {
+            float* to = z->row(y, c);
+            subtract_product(a, b, y, c, &x, to);
+            const float* here = x.row(y, c);
+            for (int i = 0; i < w; ++i) to[i] = here[i] + s[i] * to[i];
+            sums.at(y, c) = dot_row(to, b.row(y, c), w);
+          }
+        }
+      },
+      kGrain);
+  return sums.total();
+}
+
+// Sweeps of Jacobi from 0.
+Sums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
+  Field x(a.width(), a.height(), b.channels());
+  for (int sweep = 0; sweep < kCoarsestSweeps; ++sweep) {
+    for (int y = 0; y < a.height(); ++y) {
+      for (int c = 0; c < b.channels(); ++c) {
+        float* to = z->row(y, c);
+        apply_row(a, x, y, c, to);
+        for (int i = 0; i < a.width(); ++i) to[i] = x.row(y, c)[i] + a.smoothing.row(y)[i] * (b.row(y, c)[i] - to[i]);
+      }
     }
-  });
+    x = *z;
+  }
+  return sum_rows(a.height(), b.channels(), [&](int y, int c) { return dot_row(z->row(y, c), b.row(y, c), a.width()); });
 }
 
 }  // namespace
@@ -72,35 +119,27 @@ void add_interpolated(const Field& coarse, Field* x) {
 Multigrid::Multigrid(int width, int height, int channels) {
   for (;; width = (width + 1) / 2, height = (height + 1) / 2) {
     Level& level = levels_.emplace_back();
-    level.system = WeightedSystem(width, height);
-    level.x = Field(width, height, channels);
-    if (levels_.size() > 1) level.b = level.z = level.x;
+    level.matrix = Stencil(width, height, levels_.size() > 1);
+    if (levels_.size() > 1) level.b = level.z = Field(width, height, channels);
     if (std::max(width, height) <= kCoarsestSide) break;
+    level.interpolation = Interpolation(width, height);
   }
 }
 
 void Multigrid::update() {
-  for (size_t i = 0; i + 1 < levels_.size(); ++i) coarsen(levels_[i].system, &levels_[i + 1].system);
+  for (size_t i = 0; i + 1 < levels_.size(); ++i) {
+    levels_[i].interpolation.update(levels_[i].matrix);
+    levels_[i].interpolation.coarsen(levels_[i].matrix, &levels_[i + 1].matrix);
+  }
 }
 
-void Multigrid::cycle(const Field& b, Field* z) { cycle(0, b, z); }
-
-void Multigrid::cycle(size_t level, const Field& b, Field* z) {
+Sums Multigrid::cycle(size_t level, const Field& b, Field* z) {
   Level& here = levels_[level];
-  smooth_from_zero(here.system, b, &here.x);
-  if (level + 1 == levels_.size()) {
-    for (int sweep = 0; sweep < kCoarsestSweeps; ++sweep) {
-      smooth(here.system, b, here.x, z);
-      std::swap(here.x, *z);
-    }
-    smooth(here.system, b, here.x, z);
-    return;
-  }
+  if (level + 1 == levels_.size()) return solve_coarsest(here.matrix, b, z);
   Level& next = levels_[level + 1];
-  restrict_residual(here.system, b, here.x, &next.b);
+  restrict_residual(here.matrix, here.interpolation, b, &next.b);
   cycle(level + 1, next.b, &next.z);
-  add_interpolated(next.z, &here.x);
-  smooth(here.system, b, here.x, z);
+  return interpolate_and_smooth(here.matrix, here.interpolation, b, next.z, z);
 }
 
 }  // namespace gradus

@@ -1,29 +1,32 @@
-// One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Damped Jacobi once before and once after, cells of 2×2, constant interpolation.
+// One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Damped Jacobi once before and once after, black-box interpolation.
 #pragma once
 
 #include <vector>
 
-#include "reconstruct/weighted_system.h"
+#include "reconstruct/interpolation.h"
+#include "reconstruct/rows.h"
 
 namespace gradus {
 
 class Multigrid {
  public:
   Multigrid(int width, int height, int channels);
-  // The finest system, to be filled; then update().
-  WeightedSystem& system() { return levels_.front().system; }
-  const WeightedSystem& system() const { return levels_.front().system; }
-  // Makes the coarse systems from the finest.
+  // The finest matrix, to be filled; then update().
+  Stencil& matrix() { return levels_.front().matrix; }
+  const Stencil& matrix() const { return levels_.front().matrix; }
+  // Makes the coarse matrices from the finest.
   void update();
-  // Overwrites z; b must have the grid's size and the multigrid's channels. Not for two threads at once: work space is its own.
-  void cycle(const Field& b, Field* z);
+  // Overwrites z and returns b·z; b must have the grid's size and the multigrid's channels. Not for two threads at once: work space is its
+  // own.
+  Sums cycle(const Field& b, Field* z) { return cycle(0, b, z); }
 
  private:
   struct Level {
-    WeightedSystem system;
-    Field b, x, z;  // of coarse levels; of the finest one only x
+    Stencil matrix;
+    Interpolation interpolation;  // from the next one
+    Field b, z;                   // of coarse levels
   };
-  void cycle(size_t level, const Field& b, Field* z);
+  Sums cycle(size_t level, const Field& b, Field* z);
   std::vector<Level> levels_;
 };
 

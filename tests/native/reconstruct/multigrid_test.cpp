@@ -1,0 +1,128 @@
+// The preconditioner of the L1 solver: what conjugate gradients ask of it, and how far it gets.
+#include <gtest/gtest.h>
+
+#include "reconstruct/conjugate_gradient.h"
+#include "reconstruct/l1_weights.h"
+#include "reconstruct/test_images.h"
+
+namespace gradus {
+namespace {
+
+using test::never;
+
+constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 3}, {33, 17}, {160, 90}};
+
+Field random_field(int width, int height, int channels, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  Field field(width, height, channels);
+  for (int y = 0; y < height; ++y) {
+    for (int c = 0; c < channels; ++c) {
+      for (int x = 0; x < width; ++x) field.row(y, c)[x] = normal(random);
+    }
+  }
+  return field;
+}
+
+// Difference weights of three decades, without any order, as they are for a noisy image.
+void fill(Stencil* a) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> exponent(-0.5f, 2.5f);
+  const int w = a->width(), h = a->height();
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) {
+      a->right.row(y)[x] = x + 1 < w ? std::pow(10.0f, exponent(random)) : 0.0f;
+      a->up.row(y)[x] = y + 1 < h ? std::pow(10.0f, exponent(random)) : 0.0f;
+    }
+  }
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) {
+      a->diagonal.row(y)[x] = 0.02f + a->right.row(y)[x] + a->right.row(y)[x - 1] + a->up.row(y)[x] + a->up.row(y - 1)[x];
+    }
+  }
+  a->finish();
+}
+
+double dot(const Field& a, const Field& b) {
+  double sum = 0.0;
+  for (int y = 0; y < a.height(); ++y) sum += dot_row(a.row(y), b.row(y), a.width());
+  return sum;
+}
+
+Field product(const Stencil& a, const Field& x) {
+  Field result(x.width(), x.height(), 1);
+  for (int y = 0; y < x.height(); ++y) apply_row(a, x, y, 0, result.row(y));
+  return result;
+}
+
+Field interpolated(const Interpolation& p, const Field& coarse, int width, int height) {
+  Field fine(width, height, 1);
+  std::vector<float> row(size_t(width) + 1);
+  for (int y = 0; y < height; ++y) {
+    p.interpolate_row(y, coarse.row(y / 2), coarse.row(y / 2 + 1), row.data());
+    std::copy_n(row.begin(), width, fine.row(y));
+  }
+  return fine;
+}
+
+Field restricted(const Interpolation& p, const Field& fine) {
+  Field coarse((fine.width() + 1) / 2, (fine.height() + 1) / 2, 1);
+  for (int y = 0; y < coarse.height(); ++y) {
+    p.restrict_rows(y, fine.row(2 * y - 1), fine.row(2 * y), fine.row(2 * y + 1), coarse.row(y));
+  }
+  return coarse;
+}
+
+// Two levels: the first one's matrix has no corners, the second one's has.
+TEST(B2_Multigrid, CoarseMatrixIsTheFineOneBetweenInterpolations) {
+  for (const auto& [w, h] : kSizes) {
+    Stencil fine(w, h, false);
+    fill(&fine);
+    for (int level = 0; level < 2; ++level) {
+      const int fw = fine.width(), fh = fine.height(), cw = (fw + 1) / 2, ch = (fh + 1) / 2;
+      Interpolation p(fw, fh);
+      p.update(fine);
+      Stencil coarse(cw, ch, true);
+      p.coarsen(fine, &coarse);
+      const Field u = random_field(cw, ch, 1, 2), v = random_field(cw, ch, 1, 3);
+      const Field pu = interpolated(p, u, fw, fh), pv = interpolated(p, v, fw, fh);
+      const double scale = dot(u, product(coarse, u)) + dot(v, product(coarse, v));
+      EXPECT_NEAR(dot(u, product(coarse, v)), dot(pu, product(fine, pv)), 1e-5 * scale) << w << "x" << h << " level " << level;
+      EXPECT_NEAR(dot(u, product(coarse, u)), dot(pu, product(fine, pu)), 1e-5 * scale) << w << "x" << h << " level " << level;
+      const Field f = random_field(fw, fh, 1, 4);
+      EXPECT_NEAR(dot(u, restricted(p, f)), dot(pu, f), 1e-5 * (dot(f, f) + dot(u, u)));
+      fine = coarse;
+    }
+  }
+}
+
+TEST(B2_Multigrid, CycleIsSymmetricAndPositive) {
+  for (const auto& [w, h] : kSizes) {
+    Multigrid multigrid(w, h, 1);
+    fill(&multigrid.matrix());
+    multigrid.update();
+    const Field a = random_field(w, h, 1, 2), b = random_field(w, h, 1, 3);
+    Field za(w, h, 1), zb(w, h, 1);
+    const double aa = multigrid.cycle(a, &za)[0], bb = multigrid.cycle(b, &zb)[0];
+    EXPECT_GT(aa, 0.0);
+    EXPECT_NEAR(aa, dot(a, za), 1e-5 * aa);
+    EXPECT_NEAR(dot(a, zb), dot(b, za), 1e-4 * (aa + bb)) << w << "x" << h;
+  }
+}
+
+// With cells of 2×2 whose weights are those of the fine differences in series, which is weaker than the fine matrix where weights jump, it
+// took 136 steps.
+TEST(B2_Multigrid, WeightsWithoutOrderTakeFewSteps) {
+  constexpr int w = 320, h = 180;
+  Multigrid multigrid(w, h, 1);
+  fill(&multigrid.matrix());
+  multigrid.update();
+  const Field b = random_field(w, h, 1, 2);
+  Field x(w, h, 1);
+  CgFields fields(w, h, 1);
+  const CgReport report = conjugate_gradient(&multigrid, b, &x, &fields, 1e-4f, 200, never);
+  EXPECT_LE(report.steps, 40);
+}
+
+}  // namespace
+}  // namespace gradus
