@@ -54,17 +54,19 @@ void OffsetPaths::trace_camera(const PathState& state) {
     if (o.stage != OffsetStage::Traced) {
       continue;
     }
+    CameraVertex* known = known_vertex(k);
+    if (known != nullptr && known->shared) {
+      share(&o, known);
+      continue;
+    }
     o.state.ray = PathRay{};
     o.state.ray.visibility = state.ray.visibility;
     o.state.ray.ray = context_.camera.ray(film_ + Vec2(kOffsetX[k], kOffsetY[k]), lens_);
-    CameraVertex* known = known_vertex(k);
-    if (known == nullptr) {
+    if (known != nullptr) {
+      trace(&o, &known->hit);
+    } else {
       rays[k] = o.state.ray.ray;
       any = unknown[k] = true;
-    } else if (known->shared) {
-      share(&o, known);
-    } else {
-      trace(&o, &known->hit);
     }
   }
   if (any) {
