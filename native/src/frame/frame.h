@@ -90,6 +90,16 @@ class Frame {
   int32_t frame_number = 0;
 };
 
+// Which halves an image is read from: [first, last).
+struct HalfRange {
+  int first = 0;
+  int last = kHalves;
+};
+
+// Rows of what read_images() gives, y counted from the region's first row. `offset`: kRight for dx, kUp for dy.
+void read_primal_row(const Frame& frame, int component, HalfRange halves, int y, float* row);
+void read_difference_row(const Frame& frame, int component, Offset offset, HalfRange halves, int y, float* row);
+
 // Images read from a frame: planes of the region, channels interleaved (Frame::channels each).
 struct GradientImages {
   int width = 0, height = 0, channels = 3;

@@ -34,7 +34,7 @@ void store(const Field& from, int channel, size_t stride, float* out) {
 }
 
 // The exact L2 solution: where the reweighting starts.
-Field solve_l2(const PoissonPlanes& planes, int width, int height, int channels, float alpha) {
+Field start_from_l2(const PoissonPlanes& planes, int width, int height, int channels, float alpha) {
   Field x(width, height, channels);
   const std::unique_ptr<LinearOperator> l2 = make_l2(width, height, alpha);
   std::vector<float> plane(size_t(width) * height * planes.stride);
@@ -57,7 +57,7 @@ L1Minimiser::L1Minimiser(const GradientImages& images, float alpha, const Cancel
   const int channels = std::min(images.channels, 3);
   const PoissonPlanes interleaved{images.primal.data(), images.dx.data(), images.dy.data(), size_t(images.channels)};
   const L1Planes planes = load_planes(interleaved, images.width, images.height, channels);
-  solution_ = solve_l2(interleaved, images.width, images.height, channels, alpha);
+  solution_ = start_from_l2(interleaved, images.width, images.height, channels, alpha);
   const float scale = robust_scale(planes);
   CgFields fields(images.width, images.height, channels);
   Field b(images.width, images.height, channels);
@@ -81,7 +81,7 @@ L1Minimiser::L1Minimiser(const GradientImages& images, float alpha, const Cancel
 void L1Minimiser::apply(const PoissonPlanes& planes, float* out) const {
   const int w = data_weights_.width(), h = data_weights_.height();
   const L1Planes loaded = load_planes(planes, w, h, 1);
-  Field x = solve_l2(planes, w, h, 1, alpha_);
+  Field x = start_from_l2(planes, w, h, 1, alpha_);
   Multigrid multigrid(w, h, 1);
   multigrid.matrix() = multigrid_.matrix();
   multigrid.update();

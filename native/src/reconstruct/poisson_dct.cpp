@@ -30,16 +30,17 @@ using Range = tbb::blocked_range<int>;
 
 // Calls body(y, row y, row y + 1, whether that one exists, scratch) for every second row: one complex transform serves two rows.
 template <class Body>
-void for_row_pairs(int w, int h, float* work, const Body& body) {
+void for_row_pairs(int w, int h, int channels, float* work, const Body& body) {
+  const size_t row = size_t(w) * size_t(channels);
   tbb::parallel_for(Range(0, (h + 1) / 2, kRowGrain), [&](const Range& range) {
     const FlushDenormals flush;
     Dct::Scratch scratch(w);
-    std::vector<float> spare(static_cast<size_t>(w));
+    std::vector<float> spare(row);
     for (int pair = range.begin(); pair < range.end(); ++pair) {
       const int y = 2 * pair;
       const bool both = y + 1 < h;
-      float* const a = work + size_t(y) * w;
-      body(y, a, both ? a + w : spare.data(), both, &scratch);
+      float* const a = work + size_t(y) * row;
+      body(y, a, both ? a + row : spare.data(), both, &scratch);
     }
   });
 }
@@ -49,55 +50,60 @@ void for_row_pairs(int w, int h, float* work, const Body& body) {
 PoissonDct::PoissonDct(int width, int height)
     : row_(width), column_(height), eigenvalue_x_(eigenvalues(width)), eigenvalue_y_(eigenvalues(height)) {}
 
-void PoissonDct::solve(float data_weight, const FillRow& fill, const Sum& sum, const TakeRow& take, float* work) const {
-  rows_forward(fill, work);
-  const double known = sum ? sum() : 0.0;
-  columns(data_weight, sum ? &known : nullptr, work);
-  rows_inverse(take, work);
+void PoissonDct::solve(float data_weight, int channels, const FillRow& fill, const Sum& sum, const TakeRow& take, float* work) const {
+  rows_forward(channels, fill, work);
+  std::vector<double> sums;
+  for (int c = 0; c < channels && sum; ++c) sums.push_back(sum(c));
+  columns(data_weight, channels, sum ? sums.data() : nullptr, work);
+  rows_inverse(channels, take, work);
 }
 
-void PoissonDct::rows_forward(const FillRow& fill, float* work) const {
-  for_row_pairs(width(), height(), work, [&](int y, float* a, float* b, bool both, Dct::Scratch* scratch) {
+void PoissonDct::rows_forward(int channels, const FillRow& fill, float* work) const {
+  const int w = width();
+  for_row_pairs(w, height(), channels, work, [&](int y, float* a, float* b, bool both, Dct::Scratch* scratch) {
     fill(y, a);
     if (both) fill(y + 1, b);
-    row_.forward(a, b, scratch);
+    for (int c = 0; c < channels; ++c) row_.forward(a + size_t(c) * w, b + size_t(c) * w, scratch);
   });
 }
 
-void PoissonDct::columns(float data_weight, const double* sum, float* work) const {
-  const int w = width(), h = height();
+void PoissonDct::columns(float data_weight, int channels, const double* sums, float* work) const {
+  const int w = width(), h = height(), blocks = (w + kColumnBlock - 1) / kColumnBlock;
+  const size_t row = size_t(w) * size_t(channels);
   // Both transforms forth and back multiply by the lengths.
   const float scale = 1.0f / (static_cast<float>(w) * static_cast<float>(h));
-  tbb::parallel_for(Range(0, (w + kColumnBlock - 1) / kColumnBlock, 1), [&](const Range& range) {
+  tbb::parallel_for(Range(0, blocks * channels, 1), [&](const Range& range) {
     const FlushDenormals flush;
     Dct::Scratch scratch(h);
     std::vector<float> block(size_t(kColumnBlock) * h);
     for (int part = range.begin(); part < range.end(); ++part) {
-      const int x0 = part * kColumnBlock, n = std::min(kColumnBlock, w - x0);
+      const int channel = part / blocks, x0 = part % blocks * kColumnBlock, n = std::min(kColumnBlock, w - x0);
+      float* const first = work + size_t(channel) * w + x0;
       for (int y = 0; y < h; ++y) {
-        for (int i = 0; i < n; ++i) block[size_t(i) * h + y] = work[size_t(y) * w + x0 + i];
+        for (int i = 0; i < n; ++i) block[size_t(i) * h + y] = first[size_t(y) * row + i];
       }
       for (int i = 0; i < kColumnBlock; i += 2) {
         if (i >= n) break;
         float* const a = block.data() + size_t(i) * h;
         float* const b = a + h;
         column_.forward(a, b, &scratch);
-        if (x0 + i == 0 && sum) a[0] = static_cast<float>(4.0 * *sum);
+        if (x0 + i == 0 && sums) a[0] = static_cast<float>(4.0 * sums[channel]);
         const float base_a = data_weight + eigenvalue_x_[x0 + i], base_b = data_weight + eigenvalue_x_[std::min(x0 + i + 1, w - 1)];
         for (int y = 0; y < h; ++y) a[y] *= scale / (base_a + eigenvalue_y_[y]);
         for (int y = 0; y < h; ++y) b[y] *= scale / (base_b + eigenvalue_y_[y]);
         column_.inverse(a, b, &scratch);
       }
       for (int y = 0; y < h; ++y) {
-        for (int i = 0; i < n; ++i) work[size_t(y) * w + x0 + i] = block[size_t(i) * h + y];
+        for (int i = 0; i < n; ++i) first[size_t(y) * row + i] = block[size_t(i) * h + y];
       }
     }
   });
 }
 
-void PoissonDct::rows_inverse(const TakeRow& take, float* work) const {
-  for_row_pairs(width(), height(), work, [&](int y, float* a, float* b, bool both, Dct::Scratch* scratch) {
-    row_.inverse(a, b, scratch);
+void PoissonDct::rows_inverse(int channels, const TakeRow& take, float* work) const {
+  const int w = width();
+  for_row_pairs(w, height(), channels, work, [&](int y, float* a, float* b, bool both, Dct::Scratch* scratch) {
+    for (int c = 0; c < channels; ++c) row_.inverse(a + size_t(c) * w, b + size_t(c) * w, scratch);
     take(y, a);
     if (both) take(y + 1, b);
   });

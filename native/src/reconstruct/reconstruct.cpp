@@ -1,5 +1,10 @@
+#include <tbb/enumerable_thread_specific.h>
+
+#include <functional>
+
 #include "base/error.h"
 #include "reconstruct/l1.h"
+#include "reconstruct/l2.h"
 #include "reconstruct/solver.h"
 
 namespace gradus {
@@ -9,27 +14,69 @@ PoissonPlanes planes_of(const GradientImages& images, int channel) {
   return {images.primal.data() + channel, images.dx.data() + channel, images.dy.data() + channel, size_t(images.channels)};
 }
 
+// Rows of images that are there.
+L2Rows rows_of(const GradientImages& images) {
+  return [&images](int y, const L2Use& use) {
+    const size_t step = size_t(images.width) * size_t(images.channels), first = size_t(y) * step;
+    use({images.primal.data() + first, images.dx.data() + first, images.dy.data() + first,
+         y > 0 ? images.dy.data() + (first - step) : nullptr});
+  };
+}
+
+// Rows of a frame, which its images would take longer to write down than to make. A thread goes from one row to the next, so the row below
+// is often there already.
+class FrameRows {
+ public:
+  FrameRows(const Frame& frame, int component) : frame_(frame), component_(component) {}
+
+  void operator()(int y, const L2Use& use) {
+    Rows& rows = rows_.local();
+    const size_t size = size_t(frame_.region.width()) * size_t(frame_.channels);
+    for (auto* row : {&rows.primal, &rows.dx, &rows.dy, &rows.dy_below}) row->resize(size);
+    std::swap(rows.dy, rows.dy_below);
+    if (y > 0 && rows.y != y - 1) read_difference_row(frame_, component_, kUp, {}, y - 1, rows.dy_below.data());
+    read_primal_row(frame_, component_, {}, y, rows.primal.data());
+    read_difference_row(frame_, component_, kRight, {}, y, rows.dx.data());
+    read_difference_row(frame_, component_, kUp, {}, y, rows.dy.data());
+    rows.y = y;
+    use({rows.primal.data(), rows.dx.data(), rows.dy.data(), rows.dy_below.data()});
+  }
+
+ private:
+  struct Rows {
+    int y = -2;  // of dy
+    std::vector<float> primal, dx, dy, dy_below;
+  };
+  const Frame& frame_;
+  int component_;
+  tbb::enumerable_thread_specific<Rows> rows_;
+};
+
 }  // namespace
 
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report) {
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2) return solve_l2(images.width, images.height, images.channels, alpha, rows_of(images));
+  if (reconstruction != GRADUS_RECONSTRUCTION_L1) throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   std::vector<float> result(images.primal.size());
-  if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
-    const std::unique_ptr<LinearOperator> l2 = make_l2(images.width, images.height, alpha);
-    for (int c = 0; c < images.channels && !cancel(); ++c) l2->apply(planes_of(images, c), result.data() + c);
-  } else if (reconstruction == GRADUS_RECONSTRUCTION_L1) {
-    const L1Solver l1(images, alpha, cancel, report);
-    for (int c = 0; c < images.channels && !cancel(); ++c) {
-      if (c < l1.solved_channels()) {
-        l1.read_solution(planes_of(images, c), c, result.data() + c);
-      } else {
-        l1.apply(planes_of(images, c), result.data() + c);  // alpha, by the same weights
-      }
+  const L1Solver l1(images, alpha, cancel, report);
+  for (int c = 0; c < images.channels && !cancel(); ++c) {
+    if (c < l1.solved_channels()) {
+      l1.read_solution(planes_of(images, c), c, result.data() + c);
+    } else {
+      l1.apply(planes_of(images, c), result.data() + c);  // alpha, by the same weights
     }
-  } else {
-    throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   }
   return result;
+}
+
+std::vector<float> reconstruct(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                               SolveReport* report) {
+  if (reconstruction != GRADUS_RECONSTRUCTION_L2) {
+    return reconstruct(read_images(frame, component, false), reconstruction, alpha, cancel, report);
+  }
+  FrameRows rows(frame, component);
+  return solve_l2(frame.region.width(), frame.region.height(), frame.channels, alpha, std::ref(rows));
 }
 
 }  // namespace gradus

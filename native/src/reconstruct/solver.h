@@ -42,9 +42,12 @@ std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
 // L1 by IRLS with weights estimated from `images` (all channels together) and then frozen. Consistent, not unbiased.
 std::unique_ptr<LinearOperator> make_l1(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
 
-// Reconstructs all channels of a frame's component; returns width·height·channels. L2 or L1 by `reconstruction`
-// (GradusReconstruction, never AUTO).
+// Reconstructs all channels; returns width·height·channels. L2 or L1 by `reconstruction` (GradusReconstruction, never AUTO).
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                               SolveReport* report);
+
+// The same of the images that read_images() makes of a frame's component.
+std::vector<float> reconstruct(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report);
 
 }  // namespace gradus

@@ -90,7 +90,7 @@ void Twicing::apply(const PoissonPlanes& planes, float* values) const {
     for (int x = 0; x < w; ++x, value += stride) *value += row[x];
   };
   const std::unique_ptr<float[]> work(new float[size_t(w) * weights_.height()]);
-  dct_.solve(data_weight_, fill, {}, take, work.get());
+  dct_.solve(data_weight_, 1, fill, {}, take, work.get());
 }
 
 }  // namespace gradus

@@ -12,7 +12,7 @@ std::vector<float> solve_components(const Frame& frame, uint32_t reconstruction,
                                     SolveReport* report) {
   std::vector<float> sum;
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    std::vector<float> image = reconstruct(read_images(frame, component, false), reconstruction, alpha, cancel, report);
+    std::vector<float> image = reconstruct(frame, component, reconstruction, alpha, cancel, report);
     if (sum.empty()) {
       sum = std::move(image);
     } else {

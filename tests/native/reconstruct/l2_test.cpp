@@ -135,5 +135,48 @@ TEST(B2_Solver, L2IsLinear) {
   EXPECT_LT(max_difference(x, solve(sum)), 1e-5);
 }
 
+// Sums of noise; some pixels without samples.
+Frame noisy_frame(int width, int height, int channels) {
+  Frame frame(uint32_t(width), uint32_t(height), {0, 0, width, height}, channels, 1, true);
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  std::uniform_int_distribution<uint32_t> samples(0, 3);
+  const auto fill = [&](std::vector<Radiance>* plane) {
+    for (Radiance& value : *plane) value = {normal(random), normal(random), normal(random), normal(random)};
+  };
+  for (int h = 0; h < kHalves; ++h) {
+    fill(&frame.components[0].primal[h]);
+    for (uint32_t& count : frame.count[h]) count = samples(random);
+    for (int offset = 0; offset < kOffsets; ++offset) {
+      fill(&frame.components[0].gradient[h][offset]);
+      for (float& count : frame.pair_count[h][offset]) count = static_cast<float>(samples(random));
+    }
+  }
+  return frame;
+}
+
+// A frame's rows are read while they are needed, and its channels solved side by side.
+TEST(B2_Solver, L2OfAFrameHasTheBitsOfItsImagesChannelByChannel) {
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  for (const Size s : kSizes) {
+    for (const int channels : {3, 4}) {
+      const Frame frame = noisy_frame(s.width, s.height, channels);
+      const GradientImages images = read_images(frame, 0, false);
+      std::vector<float> expected(images.primal.size());
+      for (int c = 0; c < channels; ++c) {
+        const PoissonPlanes planes{images.primal.data() + c, images.dx.data() + c, images.dy.data() + c, size_t(channels)};
+        make_l2(s.width, s.height, 0.2f)->apply(planes, expected.data() + c);
+      }
+      EXPECT_EQ(solve(images), expected);
+      for (const int threads : {1, 3}) {
+        SolveReport report;
+        std::vector<float> x;
+        tbb::task_arena(threads).execute([&] { x = reconstruct(frame, 0, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report); });
+        EXPECT_EQ(x, expected) << s.width << "x" << s.height << ", " << threads << " threads";
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gradus

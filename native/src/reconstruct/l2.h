@@ -1,0 +1,22 @@
+// The exact L2 solution of an image whose rows are made as they are needed.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "reconstruct/solver.h"
+
+namespace gradus {
+
+// One row of the planes, channels interleaved, and of dy the row below, which the first row has not.
+struct L2Row {
+  const float *primal, *dx, *dy, *dy_below;
+};
+using L2Use = std::function<void(const L2Row& row)>;
+// Lets `use` see row y; called from several threads, each row once.
+using L2Rows = std::function<void(int y, const L2Use& use)>;
+
+// All channels at once; each has the bits that make_l2() gives.
+std::vector<float> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows);
+
+}  // namespace gradus
