@@ -11,6 +11,7 @@ namespace {
 
 using test::PathScene;
 using test::Scenario;
+using test::Surface;
 
 constexpr uint32_t kWidth = 12;
 constexpr uint32_t kHeight = 10;
@@ -301,6 +302,73 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Kinds,
                                          KindCase{"EmissionForGlossyRays", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_GLOSSY},
                                          KindCase{"EmissionByDepth", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_DIFFUSE_DEPTH}),
                          [](const testing::TestParamInfo<KindCase>& info) { return std::string(info.param.name); });
+
+// Two pixels, left and right, that look straight at a plane of two halves, lit by a lamp. right: no material, no surface.
+struct Halves {
+  const char* name;
+  Surface left;
+  bool has_right;
+  Surface right;
+};
+
+class Edges : public testing::TestWithParam<Halves> {
+ protected:
+  GradientImages image(uint32_t seed) const {
+    PathScene scene;
+    Surface light;
+    light.emission = Rgb(6.0f);
+    scene.quad(Vec3(-1, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), scene.material(GetParam().left));
+    if (GetParam().has_right) {
+      scene.quad(Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), scene.material(GetParam().right));
+    }
+    scene.quad(Vec3(-1, -1, 2), Vec3(0, 2, 0), Vec3(2, 0, 0), scene.material(test::matte(Rgb(0.6f))),
+               GRADUS_VISIBLE_ALL & ~GRADUS_VISIBLE_CAMERA);
+    scene.quad(Vec3(-0.3f, 1.2f, 0.7f), Vec3(0.6f, 0, 0), Vec3(0, 0, 0.6f), scene.material(light));
+    scene.camera(Vec3(0, 0, 3), Vec3(0, 0, 0), 0.4f);
+    GradusSettings settings = test::test_settings(2, 1);
+    settings.seed = seed;
+    settings.max_bounces = 4;
+    const IntegratorContext c = scene.context(settings);
+    Frame frame = test::make_test_frame(c.settings, true);
+    test::sample_frame(*make_gradient_integrator(c), 0, 64, &frame);
+    return read_images(frame, 0, false);
+  }
+};
+
+// Where nothing could be shared behind the edge, a path's contribution came back from the reconstruction as the spike that it was.
+TEST_P(Edges, B7_ADifferenceAcrossAnEdgeHasLessNoiseThanThatOfTheImage) {
+  constexpr int renders = 400;
+  double sum[3] = {}, squares[3] = {};
+  for (uint32_t seed = 0; seed < renders; ++seed) {
+    const GradientImages images = image(seed);
+    const double sampled = images.dx[0], of_image = double(images.primal[3]) - double(images.primal[0]);
+    const double values[3] = {sampled, of_image, sampled - of_image};
+    for (int i = 0; i < 3; ++i) {
+      sum[i] += values[i];
+      squares[i] += values[i] * values[i];
+    }
+  }
+  const auto variance = [&](int i) { return squares[i] / renders - (sum[i] / renders) * (sum[i] / renders); };
+  EXPECT_LT(variance(0), 0.75 * variance(1));  // a half, but for what the two sides share
+  EXPECT_LT(std::fabs(sum[2] / renders), 4.0 * std::sqrt(variance(2) / renders));
+  std::printf("  variance %.3f of the image's, difference of means %.2f sigma\n", variance(0) / variance(1),
+              sum[2] / renders / std::sqrt(variance(2) / renders));
+}
+
+Surface half_mirror() {
+  Surface s = test::glossy(0.0f);
+  s.glossy = Rgb(0.5f);
+  s.diffuse = Rgb(0.3f);
+  return s;
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Edges,
+                         testing::Values(Halves{"OfTheScene", test::matte(Rgb(0.8f)), false, {}},
+                                         Halves{"OfAMirror", test::glossy(0.0f), true, test::matte(Rgb(0.8f))},
+                                         Halves{"OfAPolish", half_mirror(), true, test::matte(Rgb(0.8f))},
+                                         Halves{"OfARoughness", test::glossy(0.0f), true, test::glossy(0.2f)},
+                                         Halves{"OfGlass", test::glass(0.0f), true, test::matte(Rgb(0.8f))}),
+                         [](const testing::TestParamInfo<Halves>& info) { return std::string(info.param.name); });
 
 std::vector<Scenario> all_scenarios() {
   std::vector<Scenario> all;

@@ -74,6 +74,10 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
   return c;
 }
 
+bool is_hole(const PathContext& context, const Vertex& vertex) {
+  return (context.scene.instances[vertex.point.hit.instance].visibility & GRADUS_HOLDOUT) != 0;
+}
+
 float held_out(const Rgb& throughput, const Rgb& holdout) { return is_black(holdout) ? 0.0f : mean_component(throughput * holdout); }
 
 }  // namespace gradus

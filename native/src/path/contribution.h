@@ -30,6 +30,8 @@ bool light_classes(const PathContext& context, const Vertex& vertex, const Light
 Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, const LitClass& lit,
                                 const Rgb& transmittance);
 
+// The surface is cut out of the film.
+bool is_hole(const PathContext& context, const Vertex& vertex);
 // Part of the film that a surface with holdout leaves transparent.
 float held_out(const Rgb& throughput, const Rgb& holdout);
 

@@ -7,8 +7,6 @@
 
 namespace gradus {
 
-namespace {
-
 bool choose_class(const Closures& closures, float u, ScatterClass* chosen) {
   float sum = 0.0f;
   bool found = false;
@@ -25,6 +23,8 @@ bool choose_class(const Closures& closures, float u, ScatterClass* chosen) {
   }
   return found;
 }
+
+namespace {
 
 // A limit of n bounces lets a path see what its n + 1st bounce hits emit, as next-event estimation at that vertex does.
 bool reaches_limit(const GradusSettings& settings, const PathState& state) {

@@ -33,6 +33,9 @@ uint32_t bounce_visibility(LightPass pass, bool transmitted);
 // 0: the path ends; otherwise the probability, by which the throughput was divided.
 float survive(const VertexSample& u, PathState* state);
 
+// The class that a vertex scatters by for a random number; false: it scatters nothing.
+bool choose_class(const Closures& closures, float u, ScatterClass* chosen);
+
 // Samples the next direction. False: absorbed. Otherwise state->ray, throughput and depth are those of the new
 // segment.
 bool scatter(const PathContext& context, const VertexSample& u, const Vertex& vertex, PathState* state, ScatterEvent* event);

@@ -33,16 +33,22 @@ struct NoObserver {
   void emission(const RaySource&, const Contribution&, const Vertex&) {}
   void seen() {}  // all that the segment shows has been told
   void transparent(float) {}
-  void survived(float) {}
+  void survived(float, const Vertex&) {}
   void light(const Vertex&, const LightSample&, ScatterClass, const Contribution&) {}
-  void scatter(const Vertex&, const ScatterEvent&) {}
+  void scatter(const Vertex&, const VertexSample&, const ScatterEvent&) {}
+  void absorbed(const Vertex&, const VertexSample&) {}
 };
 
 template <class Observer>
 class PathTracer {
  public:
+  // recorder: nullptr where no pass looks on.
   PathTracer(const PathContext& context, PathScratch* scratch, PassRecorder* recorder, Counters* counters, Observer* observer)
-      : context_(context), s_(*scratch), recorder_(recorder->active() ? recorder : nullptr), counters_(*counters), observer_(*observer) {}
+      : context_(context),
+        s_(*scratch),
+        recorder_(recorder != nullptr && recorder->active() ? recorder : nullptr),
+        counters_(*counters),
+        observer_(*observer) {}
 
   // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is known.
   PathResult trace(const Sampler& sampler, const Vec2& film, CameraVertex* first = nullptr) {
@@ -63,18 +69,36 @@ class PathTracer {
       state_.ray.ray = context_.camera.ray(film, lens);
       extend(sampler, first != nullptr ? &first->hit : nullptr, vertex);
     }
-    RaySource source;
-    while (step(sampler, source, vertex)) {
-      source = RaySource{vertex, &s_.event};
-      vertex = vertex == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
-      segment_ = &s_.segment;
-      ++counters_.rays_bounce;
-      extend(sampler, nullptr, vertex);
+    if (step(sampler, RaySource{}, vertex)) {
+      follow_rays(sampler, vertex);
     }
     return result_;
   }
 
+  // What a path adds that stands at a vertex whose emission was seen. state: its segment's weight included. leaves: the vertex was lit,
+  // too.
+  Rgb go_on(const Sampler& sampler, const PathState& state, Vertex* vertex, bool leaves) {
+    result_ = PathResult{};
+    state_ = state;
+    if (leaves ? leave(sampler.vertex(state_.depth), *vertex) : light_and_leave(sampler, vertex)) {
+      follow_rays(sampler, vertex);
+    }
+    return Rgb(result_.radiance);
+  }
+
  private:
+  // From a vertex that the path has left to the path's end.
+  void follow_rays(const Sampler& sampler, const Vertex* from) {
+    segment_ = &s_.segment;
+    for (bool goes_on = true; goes_on;) {
+      Vertex* vertex = from == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
+      ++counters_.rays_bounce;
+      extend(sampler, nullptr, vertex);
+      goes_on = step(sampler, RaySource{from, &s_.event}, vertex);
+      from = vertex;
+    }
+  }
+
   // The recorder looks at the closures of the next vertex.
   bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
 
@@ -88,25 +112,32 @@ class PathTracer {
     observer_.arrive(source, state_, *segment_, *vertex);
     const bool goes_on = see(sampler, source, *vertex);
     observer_.seen();
-    if (!goes_on || state_.emission_only) {
-      return false;
-    }
+    return goes_on && !state_.emission_only && light_and_leave(sampler, vertex);
+  }
+
+  // False: the path has ended.
+  bool light_and_leave(const Sampler& sampler, Vertex* vertex) {
     const VertexSample u = sampler.vertex(state_.depth);
     const float survival = survive(u, &state_);
     if (!(survival > 0.0f)) {
       return false;
     }
-    observer_.survived(survival);
     shade_vertex(context_, state_.ray.state, vertex);
+    observer_.survived(survival, *vertex);
     add_light(u, *vertex);
+    return leave(u, *vertex);
+  }
+
+  bool leave(const VertexSample& u, const Vertex& vertex) {
     const int depth = state_.depth;
-    if (!scatter(context_, u, *vertex, &state_, &s_.event)) {
+    if (!scatter(context_, u, vertex, &state_, &s_.event)) {
+      observer_.absorbed(vertex, u);
       return false;
     }
     if (recorder_ != nullptr) {
-      recorder_->scattered(depth, *vertex, s_.event);
+      recorder_->scattered(depth, vertex, s_.event);
     }
-    observer_.scatter(*vertex, s_.event);
+    observer_.scatter(vertex, u, s_.event);
     return true;
   }
 
@@ -159,7 +190,7 @@ class PathTracer {
   // False: the surface is a hole in the film.
   bool add_surface(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
     if (state_.depth == 0) {
-      if ((context_.scene.instances[vertex.point.hit.instance].visibility & GRADUS_HOLDOUT) != 0) {
+      if (is_hole(context_, vertex)) {
         add_transparent(mean_component(state_.throughput));
         return false;
       }

@@ -35,12 +35,12 @@ class DoubleObserver : public NoObserver {
   void passed(const Segment& segment) { throughput_ *= to_double(segment.weight); }
   void world(const RaySource&, const Contribution& c) { add(found(c)); }
   void emission(const RaySource&, const Contribution& c, const Vertex&) { add(found(c)); }
-  void survived(float probability) { throughput_ /= double(probability); }
+  void survived(float probability, const Vertex&) { throughput_ /= double(probability); }
   void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
     const LitClass lit = light_class(context_, vertex, scatter_class, sample, kAnyRay);
     add(to_double(lit.value) * to_double(c.light) / (double(c.pdf_light) + double(lit.pdf_bsdf)));
   }
-  void scatter(const Vertex& vertex, const ScatterEvent& event) {
+  void scatter(const Vertex& vertex, const VertexSample&, const ScatterEvent& event) {
     const double pdf = double(vertex.shade.closures.class_probability(event.scatter_class)) * double(event.sample.pdf);
     throughput_ *= to_double(event.sample.value) / pdf;
   }

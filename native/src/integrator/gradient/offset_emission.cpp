@@ -29,8 +29,9 @@ float copy_jacobian(const EmitterPoint& point, const EmitterView& base, const Em
   return copied ? 1.0f : emitter_jacobian(base.cosine, base.distance, offset.cosine, offset.distance);
 }
 
-bool OffsetPaths::joint(const EmitterView& view) const {
-  return joint_ && view.casts_shadow && (view.visibility & kAllBounces) == kAllBounces;
+// Where the classes of the two vertices differ, BSDF samples share the random number of the class, which light samples do not have.
+bool OffsetPaths::joint(const EmitterView& view, const OffsetPath& offset) const {
+  return joint_ && !offset.mixed && view.casts_shadow && (view.visibility & kAllBounces) == kAllBounces;
 }
 
 // What the offset's own segment shows; alpha is 1 − what the camera sees through. Brings its throughput to the end of the segment.
@@ -45,7 +46,7 @@ Radiance OffsetPaths::see(OffsetPath* o) const {
     seen += Radiance(world_contribution(context_, o->source(), o->state).clamped, o->from_camera ? -all : 0.0f);
   } else if (o->segment->end == SegmentEnd::Surface) {
     const ShadeResult& shade = o->here->shade;
-    if (o->from_camera && (context_.scene.instances[o->here->point.hit.instance].visibility & GRADUS_HOLDOUT) != 0) {
+    if (o->from_camera && is_hole(context_, *o->here)) {
       return seen - Radiance(0.0f, 0.0f, 0.0f, all);
     }
     const float hole = o->from_camera ? held_out(o->state.throughput, shade.holdout) : 0.0f;
@@ -62,6 +63,9 @@ void OffsetPaths::seen() {
     }
     if (o.stage == OffsetStage::Traced || o.stage == OffsetStage::Linked) {
       include_kind(&o);
+    }
+    if (o.fresh && o.stage == OffsetStage::Traced && goes_on(o) != base_goes_on()) {
+      part(k, ShiftFailure::Missed, goes_on(o), false);
     }
   }
 }
@@ -85,7 +89,7 @@ void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint&
     return;
   }
   const Rgb value = o.state.throughput * event.factor * offset.radiance * through * (bsdf_weight(offset.pdf, event.pdf) / probability);
-  pair(k, c, value, o.ratio * event.ratio * (joint(base) ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
+  pair(k, c, value, o.ratio * event.ratio * (joint(base, o) ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
 }
 
 // An emitter that the shared path found; weight: of the segment up to it. Straight after the first shared vertex the offset scattered with
@@ -108,10 +112,11 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Dead) {
-      alone(k, c);
-    } else if (o.stage == OffsetStage::Linked) {
-      found_linked(k, c, lamp.weight, joint(base));
+    if (separate(k, c)) {
+      continue;
+    }
+    if (o.stage == OffsetStage::Linked) {
+      found_linked(k, c, lamp.weight, joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
       copy_emitter(k, c, lamp.point, base, view, lamp.probability);
@@ -127,12 +132,13 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Dead) {
-      alone(k, c);
-    } else if (o.stage == OffsetStage::Linked) {
+    if (separate(k, c)) {
+      continue;
+    }
+    if (o.stage == OffsetStage::Linked) {
       EmitterView view;
       view.visibility = context_.scene.world.visibility;
-      found_linked(k, c, Rgb(1.0f), joint(view));
+      found_linked(k, c, Rgb(1.0f), joint(view, o));
     } else if (o.stage == OffsetStage::Pending) {
       // The same direction, so the same radiance.
       EmitterView base;
@@ -156,9 +162,10 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Dead) {
-      alone(k, c);
-    } else if (o.stage == OffsetStage::Linked) {
+    if (separate(k, c)) {
+      continue;
+    }
+    if (o.stage == OffsetStage::Linked) {
       found_linked(k, c, Rgb(1.0f), joint_);
     } else if (o.stage == OffsetStage::Pending) {
       if (!o.link.open || is_black(o.linked->shade.emission)) {
@@ -167,7 +174,7 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
       }
       const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, emitter_of_surface(context_.scene, vertex.point));
       const Rgb value = o.link.throughput * o.linked->shade.emission * bsdf_weight(pdf_light, o.link.pdf);
-      pair(k, c, value, o.link.ratio * (joint_ ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
+      pair(k, c, value, o.link.ratio * (joint_ && !o.mixed ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
     }
   }
 }

@@ -64,7 +64,7 @@ void OffsetPaths::light_own(int k, const LightSample& sample, ScatterClass scatt
   OffsetPath& o = offsets_[k];
   const EmitterView& view = o.light.view;
   const LitClass& lit = o.light.lit;
-  const bool all = joint(view) && reconnects(scatter_class) && sample.point.found_by_rays;
+  const bool all = joint(view, o) && reconnects(scatter_class) && sample.point.found_by_rays;
   const float pdf = all ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
   if (is_black(lit.value) || is_black(o.light.transmittance) || !(pdf > 0.0f)) {
@@ -89,7 +89,7 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
     alone(k, c);
     return;
   }
-  const bool all = joint(sample.view) && reconnects(scatter_class) && sample.point.found_by_rays;
+  const bool all = joint(sample.view, o) && reconnects(scatter_class) && sample.point.found_by_rays;
   const float ratio = all ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
   pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), o.link.ratio * o.link.kind_ratio * ratio);
 }
@@ -99,9 +99,10 @@ void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, Scatter
   light_all(sample, scatter_class);
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    if (o.stage == OffsetStage::Dead) {
-      alone(k, c);
-    } else if (o.stage == OffsetStage::Linked) {
+    if (separate(k, c)) {
+      continue;
+    }
+    if (o.stage == OffsetStage::Linked) {
       pair(k, c, o.state.throughput * c.tail, o.ratio);
     } else if (o.stage == OffsetStage::Pending) {
       light_linked(k, vertex, sample, scatter_class, c);

@@ -74,7 +74,8 @@ void OffsetPaths::link_all(const Vertex& vertex) {
   }
 }
 
-void OffsetPaths::scatter(const Vertex& vertex, const ScatterEvent& event) {
+void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const ScatterEvent& event) {
+  part_by_class(vertex, u);
   bool pending = false;
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Linked) {

@@ -22,6 +22,7 @@ enum class OffsetStage : uint8_t {
   Traced,   // stands at a vertex of its own that corresponds to the base's
   Pending,  // the base left in class D: stands where it was until it is known what the next vertex is used for
   Linked,   // shares the base's vertices from here on
+  Parted,   // the two have no vertex in common any more: each goes on by itself, what it finds is paired with nothing
 };
 
 // Connection from an offset's vertex to the base's next one.
@@ -47,12 +48,13 @@ struct OffsetLight {
 struct OffsetPath {
   OffsetStage stage = OffsetStage::Absent;
   float ratio = 1.0f;
-  float kind_ratio = 1.0f;  // of the last event (ShiftedEvent); in `ratio` once the emission behind that event has been seen
-  PathState state;          // throughput, and the ray of the last segment that it traced
+  float kind_ratio = 1.0f;           // of the last event (ShiftedEvent); in `ratio` once the emission behind that event has been seen
+  PathState state;                   // throughput, and the ray of the last segment that it traced
   const Segment* segment = nullptr;  // that segment: its own, or what it shares with the path of its pixel
-  ScatterEvent event;       // density and kind of the event that began it
-  bool from_camera = true;  // there was no such event
-  bool fresh = false;       // it traced its own ray for the base's current segment
+  ScatterEvent event;                // density and kind of the event that began it
+  bool from_camera = true;           // there was no such event
+  bool fresh = false;                // it traced its own ray for the base's current segment
+  bool mixed = false;                // it left its vertex, or will, by the class of the base's random number (shift/class_match.h)
   float shared_pdf = 0.0f;  // Linked: its density of the event that it linked by, until the next one; then 0: the base's is its own
   OffsetLink link;
   OffsetLight light;

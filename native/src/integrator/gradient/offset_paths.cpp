@@ -1,4 +1,5 @@
 #include "integrator/gradient/offset_paths.h"
+#include "shift/class_match.h"
 
 namespace gradus {
 
@@ -37,7 +38,8 @@ OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraV
     : context_(context),
       counters_(*counters),
       vertices_(*vertices),
-      joint_(!context.has_transparency && context.uniform_visibility && !context.kinds_matter) {
+      joint_(!context.has_transparency && context.uniform_visibility && !context.kinds_matter),
+      own_tracer_(context, &own_scratch_, nullptr, &own_rays_, &nobody_) {
   for (OffsetPath& o : offsets_) {
     o.here = &o.storage[0];
     o.previous = &o.storage[1];
@@ -54,6 +56,18 @@ void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const Pixe
 void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
   offset->stage = OffsetStage::Dead;
   count_failure(&counters_, cause);
+}
+
+bool OffsetPaths::separate(int k, const Contribution& c) {
+  if (offsets_[k].stage == OffsetStage::Parted) {
+    gradient_[k] += pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(0.0f), offsets_[k].ratio);
+    return true;
+  }
+  if (offsets_[k].stage == OffsetStage::Dead) {
+    alone(k, c);
+    return true;
+  }
+  return false;
 }
 
 void OffsetPaths::pair(int k, const Contribution& c, const Rgb& offset_value, float ratio) {
@@ -80,9 +94,10 @@ void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& le
   }
 }
 
-void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex&) {
+void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
   base_segment_ = &segment;
   base_state_ = state;
+  base_in_hole_ = source.vertex == nullptr && segment.end == SegmentEnd::Surface && is_hole(context_, vertex);
   seen_ = Radiance(0.0f);
   for (OffsetPath& o : offsets_) {
     o.light.known = false;
@@ -121,12 +136,15 @@ void OffsetPaths::passed(const Segment& segment) {
 }
 
 // Roulette is the base's decision; both contributions are divided by its probability and r leaves it out.
-void OffsetPaths::survived(float probability) {
+void OffsetPaths::survived(float probability, const Vertex& vertex) {
   const float factor = 1.0f / probability;
   for (OffsetPath& o : offsets_) {
     o.state.throughput *= factor;
     if (o.stage == OffsetStage::Pending) {
       o.link.throughput *= factor;  // a connection that emission already asked for
+    }
+    if (o.stage == OffsetStage::Traced) {
+      o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);
     }
   }
 }

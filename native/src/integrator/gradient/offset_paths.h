@@ -26,15 +26,24 @@ class OffsetPaths {
   void emission(const RaySource& source, const Contribution& c, const Vertex& vertex);
   void transparent(float value) { seen_.w -= value; }
   void seen();
-  void survived(float probability);
+  void survived(float probability, const Vertex& vertex);
   void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
-  void scatter(const Vertex& vertex, const ScatterEvent& event);
+  void scatter(const Vertex& vertex, const VertexSample& u, const ScatterEvent& event);
+  void absorbed(const Vertex& vertex, const VertexSample& u) { part_by_class(vertex, u); }
 
  private:
   // Adds the gradient sample of one contribution: with the offset's, or alone.
   void pair(int k, const Contribution& c, const Rgb& offset_value, float ratio);
   void alone(int k, const Contribution& c) { gradient_[k] += pairs_[k].unpaired(Radiance(c.clamped, 0.0f)); }
+  // The offset shares nothing with this contribution; false: it may.
+  bool separate(int k, const Contribution& c);
   void fail(OffsetPath* offset, ShiftFailure cause);
+
+  // Parting (offset_part.cpp).
+  void part(int k, ShiftFailure cause, bool goes_on, bool leaves);
+  void part_by_class(const Vertex& vertex, const VertexSample& u);
+  bool base_goes_on() const;
+  bool goes_on(const OffsetPath& offset) const;
 
   // Rays of their own (offset_rays.cpp).
   void trace_camera(const PathState& state);
@@ -46,7 +55,6 @@ class OffsetPaths {
   void include_kind(OffsetPath* offset);
   void leave(OffsetPath* offset, const ShiftedEvent& event, const PathState& state);
   void trace(OffsetPath* offset, const Hit* first);
-  void compare_ends(OffsetPath* offset);
 
   // Reconnection (offset_link.cpp).
   void link_all(const Vertex& vertex);
@@ -61,7 +69,7 @@ class OffsetPaths {
   void found_linked(int k, const Contribution& c, const Rgb& weight, bool joint);
   void copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,
                     float probability);
-  bool joint(const EmitterView& view) const;
+  bool joint(const EmitterView& view, const OffsetPath& offset) const;
 
   const PathContext& context_;
   Counters& counters_;
@@ -77,11 +85,17 @@ class OffsetPaths {
   Radiance seen_ = Radiance(0.0f);
   // Of the base: what its last ray met, and if that ray left in class D, from where and how.
   const Segment* base_segment_ = nullptr;
+  bool base_in_hole_ = false;
   const Vertex* base_from_ = nullptr;
   ScatterEvent base_event_;
   PathState base_state_;
   // Light and BSDF sampling see the same integrand, so that all four strategies can be weighed together.
   bool joint_ = false;
+  // Traces what parted offsets find.
+  PathScratch own_scratch_;
+  Counters own_rays_;
+  NoObserver nobody_;
+  PathTracer<NoObserver> own_tracer_;
 };
 
 void count_failure(Counters* counters, ShiftFailure cause);

@@ -5,22 +5,14 @@
 
 namespace gradus {
 
-// Traces an offset's ray. first: its nearest hit if it is known. To go on, both paths must have met a surface; what the two segments show
-// is compared in any case, see seen().
+// Traces an offset's ray. first: its nearest hit if it is known. What the two segments show is compared in any case, see seen().
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
   ++counters_.rays_shift;
   o->advance();
   const bool goes_on = base_segment_->end == SegmentEnd::Surface && !base_state_.emission_only;
   trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment,
                 goes_on ? Shading::Now : Shading::Later);
-  compare_ends(o);
-}
-
-void OffsetPaths::compare_ends(OffsetPath* o) {
   o->fresh = true;
-  if (o->segment->end != base_segment_->end) {
-    fail(o, ShiftFailure::Missed);
-  }
 }
 
 // In the base's cell of the lattice an offset's camera ray is that of its pixel's base path.
@@ -37,7 +29,7 @@ void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
   o->here = &v->vertex;
   o->segment = &v->segment;
   o->state.ray = v->ray;
-  compare_ends(o);
+  o->fresh = true;
 }
 
 // Same position in the pixel, same point of the lens: the camera's part of r is 1. The rays are coherent, so first hits that nobody has
@@ -138,6 +130,7 @@ void OffsetPaths::copy_direction(OffsetPath* o) {
   }
   o->state.throughput *= o->segment->weight;
   o->stage = OffsetStage::Traced;
+  o->mixed = false;
   include_kind(o);
 }
 

@@ -1,0 +1,56 @@
+// Where base and offset cannot go on together, although each goes on.
+//
+// Their common part is a pair like any other, with its ratio r; what follows is not needed for it. So each goes on by itself, the offset
+// like a path of its own pixel, and what either finds is paired with nothing: −C/(1 + r) for the base, r·C'/(1 + r) for the offset. An
+// unpaired contribution would count −C. The same happens from the other end, for the decision looks at the pair alone:
+//   - one of the two rays met a surface to scatter from, and the other did not;
+//   - the classes of the two vertices differ, and the base's random number takes them to different ones.
+// Both vertices must have been found by rays of the same kind, from the camera or by copied events. A direction copied at class D will
+// not do: had the offset's next event been of class D, its path would have been reconnected.
+#include "integrator/gradient/offset_paths.h"
+#include "shift/class_match.h"
+
+namespace gradus {
+
+bool OffsetPaths::base_goes_on() const { return base_segment_->end == SegmentEnd::Surface && !base_state_.emission_only && !base_in_hole_; }
+
+bool OffsetPaths::goes_on(const OffsetPath& o) const {
+  return o.segment->end == SegmentEnd::Surface && !base_state_.emission_only && !(o.from_camera && is_hole(context_, *o.here));
+}
+
+// goes_on: the offset; leaves: it stands at a vertex that was lit.
+void OffsetPaths::part(int k, ShiftFailure cause, bool goes_on, bool leaves) {
+  OffsetPath& o = offsets_[k];
+  fail(&o, cause);
+  o.stage = OffsetStage::Parted;
+  if (goes_on) {
+    const Rgb found = own_tracer_.go_on(*sampler_, o.state, o.here, leaves);
+    gradient_[k] += pairs_[k].paired(Radiance(0.0f), Radiance(found, 0.0f), o.ratio);
+    counters_.rays_shift += own_rays_.rays_bounce;
+    counters_.rays_shift_shadow += own_rays_.rays_shadow;
+    own_rays_ = Counters{};
+  }
+}
+
+// Where the classes differ and the base's number takes both to the same, the event is copied, but the number is no longer free: the
+// probabilities of the class leave r.
+void OffsetPaths::part_by_class(const Vertex& vertex, const VertexSample& u) {
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    if (o.stage != OffsetStage::Traced || !o.mixed) {
+      continue;
+    }
+    const Closures& base = vertex.shade.closures;
+    const Closures& offset = o.here->shade.closures;
+    if (!choose_alike(base, offset, u.lobe.x)) {
+      part(k, ShiftFailure::Class, true, true);
+      continue;
+    }
+    ScatterClass chosen;
+    if (choose_class(base, u.lobe.x, &chosen)) {
+      o.ratio *= base.class_probability(chosen) / offset.class_probability(chosen);
+    }
+  }
+}
+
+}  // namespace gradus
