@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -83,6 +84,8 @@ struct ColorManager::State {
       return;
     }
     try {
+      // The library's parser leaks memory on a stream that cannot be read, as that of a folder.
+      if (std::filesystem::is_directory(path)) throw invalid_argument("it is a folder");
       OCIO::ConstConfigRcPtr loaded = OCIO::Config::CreateFromFile(path.c_str());
       if (!loaded->hasRole(OCIO::ROLE_SCENE_LINEAR) || !loaded->getColorSpace(OCIO::ROLE_SCENE_LINEAR)) {
         warn("colour: the configuration " + path + " has no scene-linear role; sRGB and linear are used");
