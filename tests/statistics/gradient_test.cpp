@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gradus/gradus_nodes.h"
+#include "shading/program_builder.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -13,8 +14,9 @@ using test::PathScene;
 using test::Scenario;
 using test::Surface;
 
-constexpr uint32_t kWidth = 12;
-constexpr uint32_t kHeight = 10;
+// More than one cell of the lattice, with jitter of its own.
+constexpr uint32_t kWidth = 20;
+constexpr uint32_t kHeight = 20;
 
 class Scenarios : public testing::TestWithParam<Scenario> {
  protected:
@@ -58,6 +60,7 @@ class DifferenceStatistics {
     const std::vector<float>& plane = x ? images.dx : images.dy;
     sum_.resize(plane.size(), 0.0);
     squares_.resize(plane.size(), 0.0);
+    double total = 0.0;
     for (int row = 0; row + (x ? 0 : 1) < images.height; ++row) {
       for (int column = 0; column + (x ? 1 : 0) < images.width; ++column) {
         for (int c = 0; c < images.channels; ++c) {
@@ -65,23 +68,22 @@ class DifferenceStatistics {
           const double d = double(plane[i]) - (double(images.primal[i + step]) - double(images.primal[i]));
           sum_[i] += d;
           squares_[i] += d * d;
+          total += d;
         }
       }
     }
+    total_ += total;
+    total_squares_ += total * total;
     ++count_;
   }
   // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), and t of all of them together.
   void check(const char* what, int least = 50) const {
-    double total = 0.0;
-    double total_variance = 0.0;
     double sum_t2 = 0.0;
     int used = 0;
     for (size_t i = 0; i < sum_.size(); ++i) {
       const double mean = sum_[i] / count_;
       const double variance = (squares_[i] - count_ * mean * mean) / (count_ - 1) / count_;
       if (variance > 1e-12) {  // else certain, but for rounding
-        total += mean;
-        total_variance += variance;
         sum_t2 += mean * mean / variance;
         ++used;
       }
@@ -89,7 +91,9 @@ class DifferenceStatistics {
     ASSERT_GT(used, least) << what;
     const double expected = double(count_ - 1) / double(count_ - 3);
     EXPECT_LT(sum_t2 / used, 1.6 * expected) << what;
-    // Neighbouring differences share a pixel and cancel in the sum: the bound is generous for them and tight for a common bias.
+    // Differences share pixels and jitter, so the total's variance is that of whole renders.
+    const double total = total_ / count_;
+    const double total_variance = (total_squares_ - count_ * total * total) / (count_ - 1) / count_;
     EXPECT_LT(std::fabs(total), 5.0 * std::sqrt(total_variance)) << what;
     std::printf("  %s: mean t² %.3f (expected %.3f), total %.4g ± %.2g\n", what, sum_t2 / used, expected, total, std::sqrt(total_variance));
   }
@@ -97,6 +101,8 @@ class DifferenceStatistics {
  private:
   std::vector<double> sum_;
   std::vector<double> squares_;
+  double total_ = 0.0;  // of one render's differences
+  double total_squares_ = 0.0;
   int count_ = 0;
 };
 
@@ -119,7 +125,7 @@ TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
   for (uint32_t seed = 0; seed < 32; ++seed) {
     const IntegratorContext c = context(100 + seed);
     Frame frame = test::make_test_frame(c.settings, true);
-    test::sample_frame(*make_gradient_integrator(c), 0, 64, &frame);
+    test::sample_frame(*make_gradient_integrator(c), 0, 24, &frame);
     differences.add(read_images(frame, 0, false));
     counters.add(frame.counters);
   }
@@ -309,6 +315,7 @@ struct Halves {
   Surface left;
   bool has_right;
   Surface right;
+  enum { NoHole, Object, Shader } left_hole = NoHole;
 };
 
 class Edges : public testing::TestWithParam<Halves> {
@@ -317,7 +324,10 @@ class Edges : public testing::TestWithParam<Halves> {
     PathScene scene;
     Surface light;
     light.emission = Rgb(6.0f);
-    scene.quad(Vec3(-1, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), scene.material(GetParam().left));
+    const bool hole = GetParam().left_hole != Halves::NoHole;
+    const uint64_t left = GetParam().left_hole == Halves::Shader ? holdout(&scene) : scene.material(GetParam().left);
+    scene.quad(Vec3(-1, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), left,
+               GetParam().left_hole == Halves::Object ? GRADUS_VISIBLE_ALL | GRADUS_HOLDOUT : GRADUS_VISIBLE_ALL);
     if (GetParam().has_right) {
       scene.quad(Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), scene.material(GetParam().right));
     }
@@ -328,10 +338,17 @@ class Edges : public testing::TestWithParam<Halves> {
     GradusSettings settings = test::test_settings(2, 1);
     settings.seed = seed;
     settings.max_bounces = 4;
+    settings.film_transparent = hole ? 1 : 0;
     const IntegratorContext c = scene.context(settings);
     Frame frame = test::make_test_frame(c.settings, true);
     test::sample_frame(*make_gradient_integrator(c), 0, 64, &frame);
     return read_images(frame, 0, false);
+  }
+
+ private:
+  static uint64_t holdout(PathScene* scene) {
+    test::ProgramBuilder p;
+    return scene->material(p.desc(p.add(GRADUS_OP_HOLDOUT, {})));
   }
 };
 
@@ -341,7 +358,10 @@ TEST_P(Edges, B7_ADifferenceAcrossAnEdgeHasLessNoiseThanThatOfTheImage) {
   double sum[3] = {}, squares[3] = {};
   for (uint32_t seed = 0; seed < renders; ++seed) {
     const GradientImages images = image(seed);
-    const double sampled = images.dx[0], of_image = double(images.primal[3]) - double(images.primal[0]);
+    const double sampled = images.dx[0], of_image = double(images.primal[images.channels]) - double(images.primal[0]);
+    if (images.channels == 4) {
+      EXPECT_EQ(images.dx[3], images.primal[7] - images.primal[3]);  // alpha has no noise here
+    }
     const double values[3] = {sampled, of_image, sampled - of_image};
     for (int i = 0; i < 3; ++i) {
       sum[i] += values[i];
@@ -367,7 +387,9 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Edges,
                                          Halves{"OfAMirror", test::glossy(0.0f), true, test::matte(Rgb(0.8f))},
                                          Halves{"OfAPolish", half_mirror(), true, test::matte(Rgb(0.8f))},
                                          Halves{"OfARoughness", test::glossy(0.0f), true, test::glossy(0.2f)},
-                                         Halves{"OfGlass", test::glass(0.0f), true, test::matte(Rgb(0.8f))}),
+                                         Halves{"OfGlass", test::glass(0.0f), true, test::matte(Rgb(0.8f))},
+                                         Halves{"OfAHeldOutObject", test::matte(Rgb(0.8f)), true, test::matte(Rgb(0.8f)), Halves::Object},
+                                         Halves{"OfAHoldoutShader", {}, true, test::matte(Rgb(0.8f)), Halves::Shader}),
                          [](const testing::TestParamInfo<Halves>& info) { return std::string(info.param.name); });
 
 std::vector<Scenario> all_scenarios() {

@@ -1,5 +1,7 @@
 #include "integrator/camera_vertices.h"
 
+#include "shading/material.h"
+
 namespace gradus {
 
 void CameraVertices::begin(const Vec2& filter_offset) {
@@ -25,8 +27,13 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
   packet->met.fill(false);
 }
 
-CameraVertex* CameraVertices::at(int32_t x, int32_t y, const Sampler& sampler) {
-  const int32_t column = x - lattice_begin(x);
+// Whether a ray may go on behind its nearest hit, which each path decides for itself.
+bool CameraVertices::passes(const Hit& hit) const {
+  return hit.valid() && context_.scene.materials[context_.scene.material_of(hit.instance, hit.triangle)]->may_be_transparent;
+}
+
+CameraVertex* CameraVertices::at(int32_t x, int32_t y) {
+  const int32_t column = x - lattice_cell(x) * kLattice;
   const size_t i = static_cast<size_t>(column % kTogether);
   Packet& packet = packets_[static_cast<size_t>(y & (kRows - 1))][static_cast<size_t>(column / kTogether)];
   if (packet.cell_sample != cell_sample_ || packet.y != y) {
@@ -35,8 +42,10 @@ CameraVertex* CameraVertices::at(int32_t x, int32_t y, const Sampler& sampler) {
   CameraVertex& v = packet.vertices[i];
   if (!packet.met[i]) {
     packet.met[i] = true;
-    trace_segment(context_, sampler, 0, &v.hit, &v.ray, &v.vertex, &v.segment, Shading::Later);
-    v.shared = v.segment.probability == 1.0f;
+    v.shared = !passes(v.hit);
+    if (v.shared) {
+      trace_segment(context_, Sampler(), 0, &v.hit, &v.ray, &v.vertex, &v.segment, Shading::Later);  // nothing random is met
+    }
   }
   return &v;
 }

@@ -19,8 +19,8 @@ class CameraVertices {
   // A sample number of a cell. filter_offset: from the centres of its pixels.
   void begin(const Vec2& filter_offset);
   // What the camera ray of a pixel of the cell meets. Rows are asked for in ascending order, from one below to one above that of the base:
-  // no more are kept. sampler: of whichever path asks; it takes no part in what is shared.
-  CameraVertex* at(int32_t x, int32_t y, const Sampler& sampler);
+  // no more are kept.
+  CameraVertex* at(int32_t x, int32_t y);
 
  private:
   static constexpr int kRows = 4;
@@ -33,6 +33,7 @@ class CameraVertices {
     std::array<CameraVertex, kTogether> vertices;
   };
   void trace(int32_t x, int32_t y, Packet* packet) const;
+  bool passes(const Hit& hit) const;
 
   const PathContext& context_;
   uint64_t cell_sample_ = 0;

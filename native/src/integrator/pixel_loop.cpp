@@ -1,5 +1,7 @@
 #include "integrator/pixel_loop.h"
 
+#include <algorithm>
+
 namespace gradus {
 
 namespace {
@@ -15,16 +17,6 @@ SampleKey sample_key(const PathContext& context, StreamKind kind, uint32_t strea
 }
 
 }  // namespace
-
-std::vector<Region> cells_of(const Region& tile) {
-  std::vector<Region> cells;
-  for (int32_t y = tile.y0; y < tile.y1; y = lattice_begin(y) + kLattice) {
-    for (int32_t x = tile.x0; x < tile.x1; x = lattice_begin(x) + kLattice) {
-      cells.push_back({x, y, std::min(lattice_begin(x) + kLattice, tile.x1), std::min(lattice_begin(y) + kLattice, tile.y1)});
-    }
-  }
-  return cells;
-}
 
 uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& cell) {
   if (unit.count_map == nullptr) {

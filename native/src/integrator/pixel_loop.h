@@ -1,8 +1,7 @@
 // From units of work to samples of pixels; the same for all camera-path integrators.
 #pragma once
 
-#include <algorithm>
-
+#include "frame/cells.h"
 #include "frame/gate.h"
 #include "integrator/camera_vertices.h"
 #include "integrator/integrator.h"
@@ -30,8 +29,6 @@ inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
   return first_is_even == (half == 0) ? (count + 1) / 2 : count / 2;
 }
 
-// Cells of the lattice, cut to the tile.
-std::vector<Region> cells_of(const Region& tile);
 // Most samples that the unit takes of a pixel of the cell.
 uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& cell);
 // Offset from the centres of a cell's pixels, by the filter.
@@ -47,7 +44,7 @@ template <class Body>
 void for_each_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, CameraVertices* vertices,
                      const std::atomic<bool>& stop, Body&& body) {
   const bool shares_rays = !context.camera.has_lens();
-  for (const Region& cell : cells_of(unit.tile)) {
+  for (const Region& cell : make_cells(unit.tile)) {
     const uint32_t most = most_samples(unit, frame, cell);
     for (uint32_t i = 0; i < most; ++i) {
       const uint32_t number = unit.first_sample + i;
@@ -63,7 +60,7 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fra
           }
           PixelSample sample = make_pixel_sample(context, frame, x, y, number);
           if (shares_rays) {
-            sample.first = vertices->at(x, y, sample.sampler);
+            sample.first = vertices->at(x, y);
           }
           sample.film = pixel_centre(x, y) + (shares_rays ? jitter : own_jitter(context, sample.sampler));
           body(sample);

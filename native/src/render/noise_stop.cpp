@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "render/tiles.h"
+#include "frame/cells.h"
 
 namespace gradus {
 namespace {
@@ -71,7 +71,7 @@ CellError judge(const Frame& frame, const HalfImages& images, const Region& cell
 }  // namespace
 
 NoiseStop::NoiseStop(const Region& region, float threshold)
-    : region_(region), threshold_(threshold), cells_(make_tiles(region, kLattice)), done_(cells_.size(), false), active_(cells_.size()) {}
+    : region_(region), threshold_(threshold), cells_(make_cells(region)), done_(cells_.size(), false), active_(cells_.size()) {}
 
 void NoiseStop::update(const Frame& frame, bool solves, float alpha, const CancelTest& cancel) {
   const HalfImages images = estimate(frame, solves, alpha, cancel);

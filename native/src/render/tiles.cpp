@@ -8,29 +8,12 @@
 namespace gradus {
 namespace {
 
-// Below 0, too, towards minus infinity.
-int32_t align_down(int32_t x, int side) { return x >= 0 ? x / side * side : -((-x + side - 1) / side) * side; }
-
 // These look at neighbours, or at the frame as a whole.
 bool needs_whole_frame(uint32_t pass) {
   return pass == GRADUS_PASS_GRADIENT_X || pass == GRADUS_PASS_GRADIENT_Y || pass == GRADUS_PASS_VARIANCE;
 }
 
 }  // namespace
-
-Region intersection(const Region& a, const Region& b) {
-  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
-std::vector<Region> make_tiles(const Region& region, int side) {
-  std::vector<Region> tiles;
-  for (int32_t y = align_down(region.y0, side); y < region.y1; y += side) {
-    for (int32_t x = align_down(region.x0, side); x < region.x1; x += side) {
-      tiles.push_back(intersection({x, y, x + side, y + side}, region));
-    }
-  }
-  return tiles;
-}
 
 int tile_side(const Region& region, unsigned threads) {
   constexpr int64_t kTilesPerThread = 16;
@@ -39,7 +22,7 @@ int tile_side(const Region& region, unsigned threads) {
 }
 
 TileGrid::TileGrid(const Region& region, int side)
-    : tiles_(make_tiles(region, side)), locks_(std::make_unique<std::mutex[]>(tiles_.size())) {}
+    : tiles_(make_cells(region, side)), locks_(std::make_unique<std::mutex[]>(tiles_.size())) {}
 
 std::vector<std::unique_lock<std::mutex>> TileGrid::lock_all() const {
   std::vector<std::unique_lock<std::mutex>> locks;

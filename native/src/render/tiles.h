@@ -6,13 +6,10 @@
 #include <mutex>
 #include <vector>
 
-#include "frame/frame.h"
-#include "sampling/lattice.h"
+#include "frame/cells.h"
 
 namespace gradus {
 
-// Cells of `side` pixels, aligned to multiples of it, cut to the region; row by row.
-std::vector<Region> make_tiles(const Region& region, int side);
 // 32 where there are enough tiles to keep the threads busy, else 16. A multiple of kLattice.
 int tile_side(const Region& region, unsigned threads);
 
@@ -30,8 +27,6 @@ class TileGrid {
   std::vector<Region> tiles_;
   std::unique_ptr<std::mutex[]> locks_;
 };
-
-Region intersection(const Region& a, const Region& b);
 
 // Reads a pass of a frame that is being sampled under the tiles' locks; see read_frame_pass().
 void read_pass_by_tiles(const Frame& frame, const TileGrid& grid, uint32_t pass, const Region& region, float* pixels);

@@ -10,6 +10,5 @@ inline constexpr int32_t kLattice = 16;
 
 // Cell that holds a coordinate; below 0, too, towards minus infinity.
 inline int32_t lattice_cell(int32_t x) { return x >= 0 ? x / kLattice : -((-x + kLattice - 1) / kLattice); }
-inline int32_t lattice_begin(int32_t x) { return lattice_cell(x) * kLattice; }
 
 }  // namespace gradus

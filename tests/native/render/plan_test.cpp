@@ -76,6 +76,21 @@ TEST(E8_Sizes, ZeroSamplesGiveAText) {
   }
 }
 
+// Along a straight edge both halves agree on the same wrong coverage; a low threshold stopped such tiles at 16 samples.
+TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
+  GradusSettings s = small_settings(64, 64, 1024);
+  const auto first_check = [&](float threshold, uint32_t least) {
+    s.noise_threshold = threshold;
+    s.min_samples = least;
+    return make_plan(s, *empty_snapshot()).first_check;
+  };
+  EXPECT_EQ(first_check(0.05f, 0), 16u);
+  EXPECT_EQ(first_check(0.01f, 0), 16u);
+  EXPECT_EQ(first_check(0.002f, 0), 80u);
+  EXPECT_EQ(first_check(0.002f, 20), 20u);
+  EXPECT_EQ(first_check(0.01f, 4), 16u);
+}
+
 TEST(Plan, NoCameraIsAnError) {
   auto snapshot = std::make_shared<Snapshot>();
   EXPECT_THROW(Render(nullptr, snapshot, small_settings(8, 8, 1), nullptr, fake_factory()), Error);

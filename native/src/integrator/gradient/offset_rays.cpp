@@ -19,7 +19,7 @@ void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
 CameraVertex* OffsetPaths::known_vertex(int k) const {
   const int32_t x = sample_->x + kOffsetX[k], y = sample_->y + kOffsetY[k];
   const bool same_cell = lattice_cell(x) == lattice_cell(sample_->x) && lattice_cell(y) == lattice_cell(sample_->y);
-  return sample_->first != nullptr && same_cell ? vertices_.at(x, y, *sampler_) : nullptr;
+  return sample_->first != nullptr && same_cell ? vertices_.at(x, y) : nullptr;
 }
 
 void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
