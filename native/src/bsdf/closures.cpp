@@ -68,11 +68,33 @@ float bluntness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::max(l
 
 Lobe* Closures::add() {
   if (count_ == kMaxLobes) {
-    return nullptr;
+    make_room();
   }
   Lobe* lobe = &lobes_[static_cast<size_t>(count_++)];
   *lobe = Lobe();
   return lobe;
+}
+
+void Closures::make_room() {
+  drop_black_lobes();
+  if (count_ < kMaxLobes) {
+    return;
+  }
+  // There are fewer kinds of lobes than places: some two are of one kind.
+  size_t first = 0, second = 1;
+  float least = kInfinity;
+  for (size_t i = 0; i < lobes_.size(); i++) {
+    for (size_t j = i + 1; j < lobes_.size(); j++) {
+      const float cost = merge_cost(lobes_[i], lobes_[j]);
+      if (cost < least) {
+        least = cost;
+        first = i;
+        second = j;
+      }
+    }
+  }
+  lobes_[first] = merged(lobes_[first], lobes_[second]);
+  lobes_[second] = lobes_[static_cast<size_t>(--count_)];
 }
 
 void Closures::drop_black_lobes() {
@@ -81,14 +103,20 @@ void Closures::drop_black_lobes() {
     Lobe& lobe = lobes_[static_cast<size_t>(i)];
     lobe.weight = glm::max(lobe.weight, 0.0f);
     if (is_finite(lobe.weight) && !is_black(lobe.weight)) {
-      original_[static_cast<size_t>(kept)] = {lobe.type, lobe.normal, lobe.ior};
       if (kept != i) {
         lobes_[static_cast<size_t>(kept)] = lobe;
       }
       kept++;
     }
   }
-  count_ = prepared_ = kept;
+  count_ = kept;
+}
+
+void Closures::keep_originals() {
+  for (; prepared_ < count_; prepared_++) {
+    const Lobe& lobe = lobes_[static_cast<size_t>(prepared_)];
+    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior};
+  }
 }
 
 void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
@@ -180,6 +208,7 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   max_alpha_.fill(0.0f);
   has_smooth_.fill(false);
   drop_black_lobes();
+  keep_originals();
   for (int i = 0; i < count_; i++) {
     prepare(i, wo);
     add_entries(i, wo, roughness_threshold);

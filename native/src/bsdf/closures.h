@@ -99,9 +99,9 @@ inline constexpr int kMaxLobes = 12;
 
 class Closures {
  public:
-  // Building: add lobes (more than kMaxLobes: the weakest is merged away), then finish() once.
+  // Building: add lobes, then finish() once. Where there are kMaxLobes already, the two most alike become one.
   void clear() { count_ = prepared_ = 0; }
-  Lobe* add();  // nullptr when full
+  Lobe* add();
   // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by roughness_threshold
   // (alpha), drops black ones, fills sampling weights. Can be called again for another wo (a shifted path), and must be: all that
   // follows takes the wo of the last finish().
@@ -155,7 +155,9 @@ class Closures {
     Vec3 normal;
     float ior;
   };
+  void make_room();
   void drop_black_lobes();
+  void keep_originals();
   void prepare(int lobe, const Vec3& wo);
   void add_entries(int lobe, const Vec3& wo, float roughness_threshold);
   void add_entry(int lobe, uint8_t sides, ScatterClass c, float weight);

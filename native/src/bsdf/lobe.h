@@ -42,6 +42,12 @@ inline bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflectio
 // Turns the normal to the side of wo, limits what users can type, makes it Dirac where float demands it, fills `energy`.
 void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo);
 
+// What merging two lobes changes, after Ward ("Hierarchical Grouping to Optimize an Objective Function", 1963): 0 for equal shapes, little
+// where one of them is weak; infinite for other kinds of lobes.
+float merge_cost(const Lobe& a, const Lobe& b);
+// One lobe for two that are not finished: the mean shape, and the albedo of both as seen along the normal.
+Lobe merged(const Lobe& a, const Lobe& b);
+
 // Directional albedo of both sides of a lobe, weight and energy compensation included, seen under the cosine of wo and the lobe's
 // normal; lobe as after finish().
 struct LobeAlbedo {

@@ -113,7 +113,6 @@ void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic) {
 Lobe* add_lobe(ShadeResult* result, LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal) {
   if (!(max_component(weight) > kWeightCutoff)) return nullptr;
   Lobe* lobe = result->closures.add();
-  if (!lobe) return nullptr;
   lobe->type = type;
   lobe->pass = pass;
   lobe->weight = weight;

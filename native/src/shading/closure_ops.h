@@ -31,7 +31,7 @@ Vec3 outward_normal(const ShadeContext& context, const Vec3& normal);
 void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic);
 // Tangent (zero: the default one), turned by `turns` around the normal.
 Vec3 turned_tangent(const ShadeContext& context, const Vec3& tangent, const Vec3& normal, float turns);
-// A new lobe with the given weight; nullptr: too weak, or no room.
+// A new lobe with the given weight; nullptr: too weak.
 Lobe* add_lobe(ShadeResult* result, LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal);
 // What is left for the layers below one of the given albedo.
 Rgb layered(const Rgb& weight, const Rgb& albedo);

@@ -62,9 +62,7 @@ class Layers {
   // Fills a reflection lobe; the layers below get the rest of its albedo.
   void put_layer(const Lobe& lobe) {
     const Rgb albedo = lobe_albedo(lobe, c_.wo);
-    if (!(args_.mode & kEmissionOnly)) {
-      if (Lobe* slot = result_->closures.add()) *slot = lobe;
-    }
+    if (!(args_.mode & kEmissionOnly)) *result_->closures.add() = lobe;
     weight_ = layered(weight_, albedo);
   }
 

@@ -1,0 +1,56 @@
+// Making two lobes one, where a surface has more than there is room for.
+#include "bsdf/lobe.h"
+
+namespace gradus {
+namespace {
+
+float squared_length(const Vec3& v) { return glm::dot(v, v); }
+float square(float x) { return x * x; }
+
+// How different the shapes are. Other kinds of lobes are never alike.
+float squared_distance(const Lobe& a, const Lobe& b) {
+  if (a.type != b.type || a.pass != b.pass) return kInfinity;
+  // Another Fresnel curve is further away than any parameters are: such lobes are merged last.
+  constexpr float kOtherCurve = 1e6f;
+  const bool anisotropic = a.alpha_x != a.alpha_y || b.alpha_x != b.alpha_y;
+  return (a.fresnel == b.fresnel ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) + square(a.alpha_x - b.alpha_x) +
+         square(a.alpha_y - b.alpha_y) + square(a.ior - b.ior) + squared_length(a.normal - b.normal) +
+         (anisotropic ? squared_length(a.tangent - b.tangent) : 0.0f) + squared_length(a.f0 - b.f0) + squared_length(a.f90 - b.f90) +
+         squared_length(a.transmission_tint - b.transmission_tint);
+}
+
+// Albedo as seen along the normal.
+Rgb head_on_albedo(Lobe lobe) {
+  lobe.normal = Vec3(0, 0, 1);
+  return lobe_albedo(lobe, lobe.normal);
+}
+
+}  // namespace
+
+float merge_cost(const Lobe& a, const Lobe& b) {
+  const float wa = mean_component(a.weight), wb = mean_component(b.weight);
+  return wa * wb / (wa + wb) * squared_distance(a, b);
+}
+
+Lobe merged(const Lobe& a, const Lobe& b) {
+  const float wa = mean_component(a.weight), wb = mean_component(b.weight);
+  Lobe lobe = wa >= wb ? a : b;
+  lobe.weight = a.weight + b.weight;
+  const float share = wb / (wa + wb);
+  const Rgb shares = b.weight / glm::max(lobe.weight, 1e-30f);
+  lobe.normal = glm::mix(a.normal, b.normal, share);
+  lobe.tangent = glm::mix(a.tangent, b.tangent, share);
+  lobe.alpha_x = glm::mix(a.alpha_x, b.alpha_x, share);
+  lobe.alpha_y = glm::mix(a.alpha_y, b.alpha_y, share);
+  lobe.ior = glm::mix(a.ior, b.ior, share);
+  lobe.f0 = glm::mix(a.f0, b.f0, shares);
+  lobe.f90 = glm::mix(a.f90, b.f90, shares);
+  lobe.transmission_tint = glm::mix(a.transmission_tint, b.transmission_tint, shares);
+  const Rgb before = head_on_albedo(a) + head_on_albedo(b), after = head_on_albedo(lobe);
+  for (int i = 0; i < 3; i++) {
+    lobe.weight[i] *= after[i] > 0.0f ? before[i] / after[i] : 1.0f;
+  }
+  return lobe;
+}
+
+}  // namespace gradus

@@ -1,0 +1,129 @@
+// Surfaces with more closures than there is room for: none may vanish.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bsdf/lobe.h"
+#include "shading/program_builder.h"
+
+namespace gradus::test {
+namespace {
+
+const Vec3 kWo = glm::normalize(Vec3(0.5f, 0.2f, 1.0f));
+
+// Equal parts of `layers`.
+int mixed(ProgramBuilder* b, const std::vector<int>& layers) {
+  int mix = layers[0];
+  for (size_t i = 1; i < layers.size(); i++)
+    mix = b->add(GRADUS_OP_MIX_SHADER, {In(1.0f / static_cast<float>(i + 1)), In::from(mix), In::from(layers[i])});
+  return mix;
+}
+
+// Sheen, coat, metal, glass, specular and diffuse; roughness differs from material to material.
+int rich_principled(ProgramBuilder* b, float roughness) {
+  std::vector<In> in(21, In(0.0f));
+  in[0] = In(Vec3(0.8f, 0.4f, 0.2f));
+  in[1] = In(0.4f);
+  in[2] = In(roughness);
+  in[3] = In(1.5f);
+  in[5] = In(0.5f);
+  in[6] = In(1.0f);
+  in[9] = In(0.3f);
+  in[10] = In(0.5f);
+  in[11] = In(0.3f);
+  in[12] = In(1.5f);
+  in[13] = In(1.0f);
+  in[14] = In(0.5f);
+  in[15] = In(0.5f);
+  in[16] = In(1.0f);
+  return b->add(GRADUS_OP_PRINCIPLED, in);
+}
+
+Closures closures_of(ProgramBuilder* b, const std::vector<int>& layers) {
+  ShadeContext context;
+  context.wo = kWo;
+  Closures closures = run(b->compile(mixed(b, layers))->surface, context).closures;
+  closures.finish(context.wo, context.geometric_normal, 0.1f);
+  return closures;
+}
+
+Closures equal_principled(int count) {
+  ProgramBuilder b;
+  std::vector<int> layers;
+  for (int i = 0; i < count; i++) layers.push_back(rich_principled(&b, 0.5f));
+  return closures_of(&b, layers);
+}
+
+TEST(ManyClosures, EqualPrincipledMixedWentDarkFromTheThirdOn) {
+  const Closures one = equal_principled(1);
+  for (const int count : {2, 3, 4, 16}) {
+    const Closures many = equal_principled(count);
+    for (const LightPass pass : {LightPass::Diffuse, LightPass::Glossy, LightPass::Transmission})
+      EXPECT_LE(max_component(glm::abs(many.albedo(pass, kWo) - one.albedo(pass, kWo))), 1e-5f) << count;
+    const Vec3 wi = glm::normalize(Vec3(-0.4f, -0.2f, 0.9f));
+    const Rgb f = one.evaluate(ScatterClass::Diffuse, kWo, wi).value;
+    EXPECT_LE(max_component(glm::abs(many.evaluate(ScatterClass::Diffuse, kWo, wi).value - f)), 1e-5f * max_component(f)) << count;
+  }
+}
+
+TEST(ManyClosures, PrincipledOfSeveralKindsKeepTheirAlbedo) {
+  Rgb sum(0.0f);
+  ProgramBuilder together;
+  std::vector<int> layers;
+  for (int i = 0; i < 6; i++) {
+    const float roughness = 0.35f + 0.1f * static_cast<float>(i);
+    layers.push_back(rich_principled(&together, roughness));
+    ProgramBuilder alone;
+    sum += closures_of(&alone, {rich_principled(&alone, roughness)}).albedo(kWo) / 6.0f;
+  }
+  const Rgb albedo = closures_of(&together, layers).albedo(kWo);
+  for (int i = 0; i < 3; i++) EXPECT_NEAR(albedo[i], sum[i], 0.01f * sum[i]);
+}
+
+TEST(ManyClosures, ThirtyDiffuseLayersWithTheirOwnNormalsAreAsBrightAsOne) {
+  for (const int count : {1, 13, 30}) {
+    ProgramBuilder b;
+    std::vector<int> layers;
+    for (int i = 0; i < count; i++) {
+      const auto angle = 2.4f * static_cast<float>(i);
+      const Vec3 normal = glm::normalize(Vec3(0.3f * std::cos(angle), 0.3f * std::sin(angle), 1.0f));
+      layers.push_back(b.add(GRADUS_OP_DIFFUSE, {In(0.8f), In(0.0f), In(normal)}));
+    }
+    const Closures closures = closures_of(&b, layers);
+    EXPECT_NEAR(closures.albedo(LightPass::Diffuse, kWo).x, 0.8f, 1e-5f) << count;
+    EXPECT_LE(closures.count(), kMaxLobes);
+  }
+}
+
+// What is strong keeps its shape: a mirror in a crowd of weak rough lobes stays a mirror.
+TEST(ManyClosures, AMirrorStaysOneAmongManyWeakLobes) {
+  Closures closures;
+  for (int i = 0; i < 40; i++) {
+    Lobe* lobe = closures.add();
+    lobe->type = LobeType::GgxReflection;
+    lobe->weight = Rgb(i == 0 ? 0.5f : 0.01f);
+    lobe->alpha_x = lobe->alpha_y = i == 0 ? 0.0f : 0.2f + 0.01f * static_cast<float>(i);
+  }
+  closures.finish(kWo, Vec3(0, 0, 1), 0.1f);
+  EXPECT_EQ(closures.lobe(0).type, LobeType::DiracReflection);
+  EXPECT_NEAR(closures.lobe(0).weight.x, 0.5f, 1e-6f);
+}
+
+// Lobes of one type that no one formula fits: their albedo goes to the stronger.
+TEST(ManyClosures, CurvesOfFresnelThatDoNotMixKeepTheirAlbedo) {
+  const Rgb before(0.04f + 0.2f);
+  Lobe coat, metal;
+  coat.type = metal.type = LobeType::GgxReflection;
+  coat.weight = Rgb(1.0f);
+  coat.fresnel = FresnelType::Dielectric;
+  coat.ior = 1.5f;
+  coat.alpha_x = coat.alpha_y = metal.alpha_x = metal.alpha_y = 0.2f;
+  metal.weight = Rgb(0.4f);
+  metal.fresnel = FresnelType::PrincipledMetal;
+  metal.f0 = Rgb(0.5f);
+  const Rgb after = lobe_albedo(merged(coat, metal), Vec3(0, 0, 1));
+  EXPECT_NEAR(after.x, before.x, 0.01f);
+}
+
+}  // namespace
+}  // namespace gradus::test
