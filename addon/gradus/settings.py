@@ -86,10 +86,10 @@ SETTINGS: tuple[Setting, ...] = (
     Setting(
         "reconstruction_alpha",
         FLOAT,
-        0.2,
+        0.0,
         "Primal Weight",
-        "Weight of the sampled image against its gradients in the reconstruction",
-        1e-3,
+        "Weight of the sampled image against its gradients in the reconstruction. 0 = automatic: 0.4 for L2, 0.2 for L1",
+        0.0,
         1e3,
         1,
     ),

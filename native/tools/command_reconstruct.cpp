@@ -8,7 +8,7 @@ namespace {
 struct ReconstructArguments {
   std::string frame, output, reconstruction = "auto", passes;
   std::vector<std::string> merged;
-  float alpha = 0.2f;
+  float alpha = 0.0f;
 };
 
 int run(const ReconstructArguments& args) {
@@ -35,7 +35,7 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
   command->add_option("-o,--output", args->output, "Image to write, FILE.exr")->required();
   command->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased) or l1 (biased, no dipoles)")
       ->capture_default_str();
-  command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients")->capture_default_str();
+  command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients; 0: automatic")->capture_default_str();
   command->add_option("--merge", args->merged, "Frames of the same scene with other samples, to add")->check(CLI::ExistingFile);
   command->add_option("--passes", args->passes, "Passes to write as layers, separated by commas; they must be in the frame");
   command->callback([args, exit_code] { *exit_code = run(*args); });

@@ -18,7 +18,7 @@ DOCUMENTED = {
     "use_animated_seed": True,
     "integrator": "AUTO",
     "reconstruction": "AUTO",
-    "reconstruction_alpha": 0.2,
+    "reconstruction_alpha": 0.0,
     "max_bounces": 12,
     "diffuse_bounces": 4,
     "glossy_bounces": 4,

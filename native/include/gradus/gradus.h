@@ -368,7 +368,7 @@ typedef struct GradusSettings {
   int32_t frame;
   uint32_t integrator;             /* GradusIntegrator */
   uint32_t reconstruction;         /* GradusReconstruction */
-  float reconstruction_alpha;
+  float reconstruction_alpha;      /* 0: automatic */
   uint32_t max_bounces;
   uint32_t diffuse_bounces;
   uint32_t glossy_bounces;
@@ -504,7 +504,7 @@ GRADUS_API GradusError gradus_frame_load(GradusDevice device, const char* path, 
 GRADUS_API GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other);
 /* Size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height);
-/* Reconstructs Combined from the planes; RGBA. */
+/* Reconstructs Combined from the planes; RGBA. alpha: weight of the primal against the gradients; 0: automatic. */
 GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, float* rgba, size_t count);
 GRADUS_API GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count);
 GRADUS_API GradusError gradus_frame_release(GradusFrame frame);

@@ -6,6 +6,7 @@
 #include "api/objects.h"
 #include "frame/store.h"
 #include "render/combine.h"
+#include "render/options.h"
 #include "render/pass_read.h"
 #include "render/pass_table.h"
 #include "render/resume.h"
@@ -86,7 +87,7 @@ GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction,
     const Region region = api::delivered(*object);
     api::check_count(count, region, 4);
     api::check_array(rgba, count, "rgba");
-    if (!(alpha >= 1e-3f && alpha <= 1e3f)) throw invalid_argument("alpha is not between 0.001 and 1000");
+    check_alpha(alpha);
     SolveReport report;
     const std::vector<float> image = combine(
         *object, api::resolve(reconstruction, *object), alpha, region, [] { return false; }, &report);

@@ -56,6 +56,7 @@ class FrameRows {
 
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report) {
+  alpha = chosen_alpha(reconstruction, alpha);
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) return solve_l2(images.width, images.height, images.channels, alpha, rows_of(images));
   if (reconstruction != GRADUS_RECONSTRUCTION_L1) throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   std::vector<float> result(images.primal.size());
@@ -76,7 +77,7 @@ std::vector<float> reconstruct(const Frame& frame, int component, uint32_t recon
     return reconstruct(read_images(frame, component, false), reconstruction, alpha, cancel, report);
   }
   FrameRows rows(frame, component);
-  return solve_l2(frame.region.width(), frame.region.height(), frame.channels, alpha, std::ref(rows));
+  return solve_l2(frame.region.width(), frame.region.height(), frame.channels, chosen_alpha(reconstruction, alpha), std::ref(rows));
 }
 
 }  // namespace gradus

@@ -42,6 +42,12 @@ std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
 // L1 by IRLS with weights estimated from `images` (all channels together) and then frozen. Consistent, not unbiased.
 std::unique_ptr<LinearOperator> make_l1(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
 
+// Weight of the primal against the gradients; 0: what measures best. Noisy differences, of paths that met other surfaces than their
+// neighbours did, ask L2 for a larger one than the thesis's 0.2; L1's weights do that by themselves.
+inline float chosen_alpha(uint32_t reconstruction, float alpha) {
+  return alpha > 0.0f ? alpha : reconstruction == GRADUS_RECONSTRUCTION_L2 ? 0.4f : 0.2f;
+}
+
 // Reconstructs all channels; returns width·height·channels. L2 or L1 by `reconstruction` (GradusReconstruction, never AUTO).
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report);

@@ -116,6 +116,13 @@ double parse_option(const Option& option, std::string_view text) {
   throw refused(option, text, "one of " + std::string(option.choices));
 }
 
+// Squared and added to eigenvalues in float.
+void check_alpha(float alpha) {
+  if (alpha != 0.0f && !(alpha >= 1e-3f && alpha <= 1e3f)) {
+    throw invalid_argument("reconstruction_alpha is " + std::to_string(alpha) + ", expected 0 (automatic) or 0.001 to 1000");
+  }
+}
+
 void check_settings(const GradusSettings& settings) {
   for (const Option& option : options()) {
     const double value = get_option(settings, option);
@@ -126,6 +133,7 @@ void check_settings(const GradusSettings& settings) {
     if (option.type == GRADUS_OPTION_FLOAT && std::abs(value - option.minimum) <= 1e-6 * std::abs(option.minimum)) continue;
     check_range(option, value);
   }
+  check_alpha(settings.reconstruction_alpha);
 }
 
 std::string choice_name(const Option& option, uint32_t value) {

@@ -38,6 +38,8 @@ GradusSettings default_settings();
 double parse_option(const Option& option, std::string_view text);
 // Throws invalid_argument for the first value outside its range.
 void check_settings(const GradusSettings& settings);
+// The range of reconstruction_alpha has a gap: 0 is automatic.
+void check_alpha(float alpha);
 // Name of an enum's value in lower case, as in the table.
 std::string choice_name(const Option& option, uint32_t value);
 

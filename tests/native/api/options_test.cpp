@@ -24,7 +24,7 @@ use_animated_seed 2 1 0 1
 frame 0 0 -2.14748e+09 2.14748e+09 
 integrator 3 0 0 4 auto path gradient bidirectional metropolis
 reconstruction 3 0 0 5 auto none l2 weighted l1 regularized
-reconstruction_alpha 1 0.2 0.001 1000 
+reconstruction_alpha 1 0 0 1000 
 max_bounces 0 12 0 1024 
 diffuse_bounces 0 4 0 1024 
 glossy_bounces 0 4 0 1024 
@@ -110,7 +110,7 @@ TEST(G9_Options, RefusalsNameOptionValueAndWhatIsAllowed) {
   refused("noise_threshold", "nan");
   refused("noise_threshold", "inf");
   refused("noise_threshold", "-1");
-  refused("reconstruction_alpha", "0");
+  refused("reconstruction_alpha", "-0.1");
   refused("samples", "");
   refused("samples", "1e300");
   refused("samples", "3 ");

@@ -4,7 +4,9 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "base/error.h"
 #include "reconstruct/test_images.h"
+#include "render/options.h"
 
 namespace gradus {
 namespace {
@@ -64,6 +66,23 @@ TEST(B1_FixedPoint, L2KeepsAnImageWithItsOwnGradients) {
 TEST(B1_FixedPoint, L2KeepsAConstant) {
   const std::vector<float> image(33 * 17 * 3, 0.75f);
   EXPECT_LT(max_difference(solve(with_own_gradients(33, 17, 3, image)), image), 1e-6);
+}
+
+// Without a weight of the user's: not the zero that it is written as, under which the image's brightness is undefined.
+TEST(B2_Solver, AutomaticWeightIsThatOfTheSolver) {
+  GradientImages images = with_own_gradients(33, 17, 3, smooth_image(33, 17, 3));
+  add_noise(&images.dx, 0.05f, 2);
+  EXPECT_EQ(solve(images, 0.0f), solve(images, 0.4f));
+  SolveReport report;
+  const auto l1 = [&](float alpha) { return reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, &report); };
+  EXPECT_EQ(l1(0.0f), l1(0.2f));
+}
+
+TEST(B2_Solver, TooSmallAWeightIsRefused) {
+  EXPECT_NO_THROW(check_alpha(0.0f));
+  EXPECT_NO_THROW(check_alpha(1e-3f));
+  EXPECT_THROW(check_alpha(5e-4f), Error);
+  EXPECT_THROW(check_alpha(std::numeric_limits<float>::quiet_NaN()), Error);
 }
 
 TEST(B2_Solver, L2SolvesTheNormalEquations) {
