@@ -5,6 +5,7 @@
 //   - class D before class R or T: the direction is copied and the offset traces a ray of its own;
 //   - class R or T: the event is copied (half-vector, or the Dirac lobe), the offset traces a ray of its own.
 // A light sample at a vertex of its own: the emitter point is copied.
+// Where the classes of two vertices differ, or one of two rays meets no surface, base and offset part (offset_part.cpp).
 //
 // An offset carries throughput f(y)/p(y) and the ratio r = |T'|·p(y)/p(x), a product of one factor per vertex. Russian roulette and the
 // decisions at transparent surfaces are made by the base; both contributions are divided by their probability and r leaves them out.
