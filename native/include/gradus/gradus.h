@@ -486,8 +486,8 @@ GRADUS_API GradusError gradus_render_cancel(GradusRender render);
  * failure's code otherwise; INVALID_OPERATION while still running. */
 GRADUS_API GradusError gradus_render_wait(GradusRender render, double seconds);
 GRADUS_API GradusError gradus_render_release(GradusRender render);
-/* Copies a pass of the region, width·height·channels floats; may be called while rendering. While sampling Combined is the noisy
- * image so far. `count` is the number of floats at `pixels` and must match exactly. */
+/* Copies a pass of the region, width·height·channels floats (`count` must match exactly); never waits for samples. While sampling, Combined
+ * and Noisy Image are the noisy image so far; other passes can be read afterwards, INVALID_OPERATION before. */
 GRADUS_API GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* pixels, size_t count);
 /* The stats object of the finished frame as JSON (contract 7.1) without the fields that only the host knows. Valid until release. */
 GRADUS_API GradusError gradus_render_stats(GradusRender render, const char** json);

@@ -32,7 +32,7 @@ int arena_size(uint32_t threads) {
 RenderLoop::RenderLoop(LoopInput input)
     : input_(std::move(input)),
       plan_(make_plan(input_.settings, *input_.snapshot)),
-      tiles_(plan_.sampled, tile_side(plan_.sampled, input_.threads)),
+      tiles_(make_cells(plan_.sampled, tile_side(plan_.sampled, input_.threads))),
       arena_(arena_size(input_.threads)),
       process_cpu_start_(process_cpu_nanoseconds()) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
@@ -96,8 +96,12 @@ void RenderLoop::prepare() {
   context.camera = Camera(input_.snapshot->camera, settings.width, settings.height);
   context.settings = frame->settings;
   integrator_ = input_.factory(context, plan_.integrator);
-  const std::lock_guard lock(mutex_);
-  frame_ = std::move(frame);
+  {
+    const std::lock_guard lock(mutex_);
+    frame_ = std::move(frame);
+    combined_.assign(4 * size_t(plan_.delivered.area()), 0.0f);
+  }
+  if (input_.resumed) show(plan_.delivered);
 }
 
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end, const NoiseStop& noise) const {
@@ -156,22 +160,35 @@ void RenderLoop::sample_tile(size_t tile, uint32_t begin, uint32_t end, const st
   if (stop_.load(std::memory_order_relaxed)) return;
   const FlushDenormals flush;
   WorkUnit unit;
-  unit.tile = tiles_.tile(tile);
+  unit.tile = tiles_[tile];
   unit.first_sample = input_.settings.first_sample + begin;
   unit.count = end - begin;
   unit.count_map = count_map;
   Counters counters;
   const uint64_t cpu = thread_cpu_nanoseconds();
-  {
-    const auto lock = tiles_.lock(tile);
-    integrator_->sample(unit, frame_.get(), &counters, stop_);
-  }
+  integrator_->sample(unit, frame_.get(), &counters, stop_);
+  show(unit.tile);
   sample_cpu_ += thread_cpu_nanoseconds() - cpu;
   {
     const std::lock_guard lock(counters_mutex_);
     frame_->counters.add(counters);
   }
   tile_done(uint64_t(unit.tile.area()) * unit.count);
+}
+
+// What the tile has now becomes what is seen of it. Readers take the picture from here: they wait for no sampler, whose batch may take
+// long, and see no half of one.
+void RenderLoop::show(const Region& tile) {
+  const Region &all = plan_.delivered, part = intersection(tile, all);
+  if (part.width() <= 0 || part.height() <= 0) return;
+  std::vector<float> rgba(4 * size_t(part.area()));
+  read_frame_pass(*frame_, GRADUS_PASS_NOISY_IMAGE, part, rgba.data());
+  const size_t row = 4 * size_t(part.width());
+  const std::lock_guard lock(mutex_);
+  for (int32_t y = part.y0; y < part.y1; ++y) {
+    const size_t to = 4 * (size_t(y - all.y0) * size_t(all.width()) + size_t(part.x0 - all.x0));
+    std::copy_n(rgba.data() + size_t(y - part.y0) * row, row, combined_.data() + to);
+  }
 }
 
 void RenderLoop::tile_done(uint64_t pixel_samples) {
@@ -258,16 +275,18 @@ GradusError RenderLoop::outcome(std::string* text) const {
 }
 
 void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
+  const bool is_image = pass_info(pass).kind == PassKind::Image;
   std::shared_ptr<const Frame> frame;
   {
     const std::lock_guard lock(mutex_);
-    frame = frame_;
-    if (pass == GRADUS_PASS_COMBINED && !combined_.empty()) {
+    if (is_sampling() && !is_image) throw invalid_operation("pass " + std::string(pass_info(pass).name) + " comes when sampling has ended");
+    if (!combined_.empty() && (is_sampling() || pass == GRADUS_PASS_COMBINED)) {
       std::copy(combined_.begin(), combined_.end(), pixels);
       return;
     }
+    frame = frame_;
   }
-  if (frame) return read_pass_by_tiles(*frame, tiles_, pass, plan_.delivered, pixels);
+  if (frame) return read_frame_pass(*frame, pass, plan_.delivered, pixels);
   std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
 }
 

@@ -57,21 +57,23 @@ class RenderLoop {
   uint32_t affordable_samples(uint32_t begin) const;
   void run_batch(uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
   void sample_tile(size_t tile, uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
+  void show(const Region& tile);
   void tile_done(uint64_t pixel_samples);
   bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
+  bool is_sampling() const { return phase_ < GRADUS_PHASE_RECONSTRUCTING; }
   void set_phase(GradusPhase phase);
   void end(GradusError code, const std::string& text) noexcept;
 
   const LoopInput input_;
   const Plan plan_;
-  const TileGrid tiles_;
+  const std::vector<Region> tiles_;
   mutable tbb::task_arena arena_;
   std::atomic<bool> stop_{false};
   ProgressTracker tracker_;
   const WallClock clock_;
   const uint64_t process_cpu_start_;
 
-  // Set by prepare(), before the phase becomes SAMPLING; the frame's content is guarded by the tiles' locks until the end.
+  // Set by prepare(), before the phase becomes SAMPLING; the frame's content is the samplers' alone until that phase ends.
   std::shared_ptr<Frame> frame_;
   std::unique_ptr<Integrator> integrator_;
 
@@ -88,7 +90,7 @@ class RenderLoop {
   GradusPhase phase_ = GRADUS_PHASE_WAITING;
   GradusError code_ = GRADUS_OK;
   std::string text_;
-  std::vector<float> combined_;  // RGBA of the delivered region; empty until reconstructed
+  std::vector<float> combined_;  // RGBA of the delivered region: the noisy image, tile by tile, until it is reconstructed
 };
 
 }  // namespace gradus

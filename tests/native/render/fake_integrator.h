@@ -118,10 +118,14 @@ inline std::unique_ptr<Render> start(const GradusSettings& settings, const Integ
   return std::make_unique<Render>(nullptr, empty_snapshot(), settings, std::move(resumed), factory);
 }
 
-inline std::shared_ptr<const Frame> rendered(const GradusSettings& settings, std::shared_ptr<const Frame> resumed = nullptr) {
+inline std::unique_ptr<Render> start_and_wait(const GradusSettings& settings, std::shared_ptr<const Frame> resumed = nullptr) {
   auto render = start(settings, fake_factory(), std::move(resumed));
   render->wait(-1.0);
-  return render->frame();
+  return render;
+}
+
+inline std::shared_ptr<const Frame> rendered(const GradusSettings& settings, std::shared_ptr<const Frame> resumed = nullptr) {
+  return start_and_wait(settings, std::move(resumed))->frame();
 }
 
 inline std::vector<float> read(const Render& render, uint32_t pass, const Region& region) {

@@ -211,15 +211,57 @@ TEST(Loop, CanBeReadWhileSampling) {
   const Region all{0, 0, 128, 96};
   int reads = 0;
   while (!render->wait(0.0)) {
-    for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NORMAL, GRADUS_PASS_VARIANCE, GRADUS_PASS_GRADIENT_X}) {
+    for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE}) {
       for (const float v : read(*render, pass, all)) ASSERT_TRUE(std::isfinite(v));
     }
     ++reads;
   }
   EXPECT_GT(reads, 0);
+  for (const uint32_t pass : {GRADUS_PASS_NORMAL, GRADUS_PASS_VARIANCE, GRADUS_PASS_GRADIENT_X}) EXPECT_NO_THROW(read(*render, pass, all));
   std::vector<float> pixels(7);
   EXPECT_THROW(render->read_pass(GRADUS_PASS_COMBINED, pixels.data(), pixels.size()), Error);
   EXPECT_THROW(read(*render, GRADUS_PASS_MIST, all), Error);
+}
+
+// The reader went from tile to tile behind a sampler and waited for each one's whole batch: the interface stood still for seconds.
+TEST(Loop, ReadingDoesNotWaitForABatch) {
+  GradusSettings settings = small_settings(70, 50, 32);
+  settings.passes |= bit(GRADUS_PASS_VARIANCE);
+  std::atomic<bool> go_on{false}, in_second_batch{false};
+  auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
+                        fake->before = [&](const WorkUnit& unit) {
+                          if (unit.first_sample == 0) return;
+                          in_second_batch = true;
+                          for (int ms = 0; ms < 10000 && !go_on; ++ms) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                        };
+                      }));
+  while (!in_second_batch) std::this_thread::yield();
+  const auto began = std::chrono::steady_clock::now();
+  const Region all{0, 0, 70, 50};
+  for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE}) {
+    EXPECT_EQ(read(*render, pass, all), read(*start_and_wait(small_settings(70, 50, 1)), GRADUS_PASS_NOISY_IMAGE, all));
+  }
+  EXPECT_THROW(read(*render, GRADUS_PASS_VARIANCE, all), Error);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(1));
+  go_on = true;
+  ASSERT_TRUE(render->wait(20.0));
+  const auto whole = start_and_wait(settings);
+  for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_VARIANCE}) {
+    EXPECT_EQ(read(*render, pass, all), read(*whole, pass, all));
+  }
+}
+
+// Only part of the frame is delivered, and a tile in the middle of a batch has its samples so far.
+TEST(Loop, AfterACancelThePictureHasTheSamplesOfTheFrame) {
+  GradusSettings settings = small_settings(160, 120, 100000);
+  const uint32_t region[4] = {60, 50, 97, 83};
+  std::copy(region, region + 4, settings.region);
+  const Region part{60, 50, 97, 83};
+  auto render = start(settings);
+  while (render->progress().samples_done < 2) std::this_thread::yield();
+  render->cancel();
+  ASSERT_TRUE(render->wait(10.0));
+  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, part), read(*render, GRADUS_PASS_NOISY_IMAGE, part));
 }
 
 TEST(Loop, StopsByTimeAndDeliversTheReconstruction) {
