@@ -95,6 +95,18 @@ def test_tiles(scene: bpy.types.Scene, tmp_path: Path) -> None:
     assert found == {number: f"tile.{number}.png" for number in (1001, 1002, 1011)}
 
 
+def test_packed_tiles_are_told_by_their_number(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Tile 1002 was the first packed file whose name holds 1002: here both do."""
+    files = {1001: _save(tmp_path / "v1002_1001.png", color=(1, 0, 0)), 1002: _save(tmp_path / "v1002_1002.png", color=(0, 1, 0))}
+    block = bpy.data.images.load(str(files[1001]))
+    block.source = "TILED"
+    block.filepath = str(tmp_path / "v1002_<UDIM>.png")
+    block.tiles.new(1002)
+    block.pack()
+    found = {tile.number: bytes(tile.data) for tile in _state(block).tiles}
+    assert found == {number: path.read_bytes() for number, path in files.items()}
+
+
 def test_tile_names() -> None:
     assert images.tile_path("a.<UDIM>.png", 1012) == "a.1012.png"
     assert images.tile_path("a.<UVTILE>.png", 1012) == "a.u2_v2.png"

@@ -126,7 +126,7 @@ def _packed_data(image: Any, number: int) -> bytes | None:
     if number == 0 and image.packed_file is not None:
         return bytes(image.packed_file.data)
     for packed in image.packed_files:
-        if number == 0 or str(number) in os.path.basename(packed.filepath) or getattr(packed, "tile_number", 0) == number:
+        if number in {0, packed.tile_number}:
             return bytes(packed.packed_file.data)
     return None
 
