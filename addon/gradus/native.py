@@ -56,6 +56,9 @@ from .abi import (  # noqa: F401
 
 LIBRARY_NAME = "libgradus.so"
 ENVIRONMENT_VARIABLE = "GRADUS_LIBRARY"
+CPU_INFO = Path("/proc/cpuinfo")
+CPU_FLAGS = ("avx2", "fma")
+"""What the library is compiled for (CMakeLists.txt)."""
 
 
 class GradusError(Exception):
@@ -77,6 +80,19 @@ def is_cut_short(path: Path) -> bool:
     return path.stat().st_size < offset + entry_size * count
 
 
+def missing_cpu_flags(info: Path) -> list[str]:
+    """CPU_FLAGS that the processor lacks. Without them the first instruction of ours, before any check of our own, would kill Blender.
+
+    None where the system does not say.
+    """
+    try:
+        lines = info.read_text(errors="replace").splitlines()
+    except OSError:
+        return []
+    flags = next((set(line.split()) for line in lines if line.startswith("flags")), set(CPU_FLAGS))
+    return [flag for flag in CPU_FLAGS if flag not in flags]
+
+
 class Library:
     """A loaded and checked library. Thread-safe; ctypes releases the interpreter lock during calls."""
 
@@ -86,6 +102,9 @@ class Library:
             raise GradusError(Error.UNSUPPORTED, f"library not found: {self.path}")
         if is_cut_short(self.path):
             raise GradusError(Error.UNSUPPORTED, f"library cannot be loaded: {self.path}: the file is cut short")
+        missing = missing_cpu_flags(CPU_INFO)
+        if missing:
+            raise GradusError(Error.UNSUPPORTED, f"this processor lacks {' and '.join(missing)}, which the library needs: {self.path}")
         try:
             # RTLD_LOCAL: nothing of ours may enter the host's global scope (architecture, rule 10).
             self.cdll = ctypes.CDLL(str(self.path), mode=ctypes.RTLD_LOCAL)

@@ -58,6 +58,21 @@ def test_h5_other_layout_names_both(tmp_path: Path) -> None:
     assert f"{abi.layout_hash():016x}" in text
 
 
+@pytest.mark.parametrize(
+    ("flags", "missing"), [("sse4_2 avx", "avx2 and fma"), ("avx avx2", "fma"), ("avx avx2 fma", ""), (None, ""), ("", "avx2 and fma")]
+)
+def test_an_older_processor_gets_a_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, flags: str | None, missing: str) -> None:
+    """Blender died of an illegal instruction as soon as the library was loaded. A system that tells nothing is trusted."""
+    info = tmp_path / "cpuinfo"
+    info.write_text("processor\t: 0\nmodel name\t: old avx2 fma\n" + (f"flags\t\t: fpu {flags}\n" if flags is not None else ""))
+    monkeypatch.setattr(native, "CPU_INFO", info)
+    path = native.library_path()
+    if missing:
+        assert message(path) == f"this processor lacks {missing}, which the library needs: {path}"
+    else:
+        native.Library(path)
+
+
 def test_environment_wins_over_preference(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(native.ENVIRONMENT_VARIABLE, raising=False)
     monkeypatch.setattr(native, "preferred_path", "/preferred.so")
