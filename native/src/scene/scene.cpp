@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "scene/scene_state.h"
-#include "shading/material.h"
+#include "shading/graph_check.h"
 
 namespace gradus {
 
@@ -35,8 +35,8 @@ void Scene::set_image(uint64_t key, const GradusImage& image) {
 void Scene::set_material(uint64_t key, const GradusMaterial& material) {
   if (key == 0) throw invalid_argument("material: key 0 is the default grey");
   auto source = std::make_shared<const MaterialSource>(material);
-  // Finds mistakes now, while the caller knows what it does; the images may come later.
-  compile_material(source->view(), ImageStore());
+  // Finds mistakes now, while the caller knows what it does. What is only too much is commit's to replace.
+  check_program(source->view());
   const Lock lock(state_->mutex);
   std::shared_ptr<const MaterialSource>& slot = state_->materials[key];
   if (!slot || slot->content_hash() != source->content_hash()) slot = std::move(source);

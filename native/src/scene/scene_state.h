@@ -34,6 +34,7 @@ struct MaterialData;
 struct CompiledMaterial {
   std::shared_ptr<const MaterialSource> source;
   std::shared_ptr<const MaterialData> data;
+  std::string warning;  // why `data` is the fallback; empty: it is not
 };
 
 // Material key -> index in Snapshot::materials.
@@ -85,7 +86,7 @@ std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapsho
 
 // Fills images and warnings.
 void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
-// Fills materials: the default one first. Needs load_images().
+// Fills materials, the default one first, and warnings. Needs load_images().
 MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
 // Hash of all that was set.
 uint64_t content_key(const Scene::State& state);

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/device.h"
+#include "base/error.h"
 #include "scene/scene_state.h"
 #include "shading/material.h"
 
@@ -21,6 +22,17 @@ bool load_new_images(Device& device, Scene::State* state, const CommitMonitor& m
   });
   monitor.check();
   return !pending.empty();
+}
+
+// A material that does not compile costs itself, not the frame.
+CompiledMaterial compile(const std::shared_ptr<const MaterialSource>& source, const ImageStore& images) {
+  const GradusMaterial desc = source->view();
+  try {
+    return {source, compile_material(desc, images), ""};
+  } catch (const Error& error) {
+    if (error.code() != GRADUS_ERROR_INVALID_ARGUMENT) throw;
+    return {source, fallback_material(desc), std::string(error.what()) + "; it is rendered grey"};
+  }
 }
 
 std::vector<uint64_t> image_keys(const Scene::State& state) {
@@ -58,7 +70,8 @@ MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* stat
     if (old != state->compiled.end() && old->second.source == source)
       material = old->second;
     else
-      material = {source, compile_material(source->view(), *state->image_store)};
+      material = compile(source, *state->image_store);
+    if (!material.warning.empty()) snapshot->warnings.push_back(material.warning);
     index[key] = uint32_t(snapshot->materials.size());
     snapshot->materials.push_back(material.data);
   }

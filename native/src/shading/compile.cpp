@@ -186,6 +186,14 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   return m;
 }
 
+std::shared_ptr<const MaterialData> fallback_material(const GradusMaterial& desc) {
+  auto m = std::make_shared<MaterialData>(*default_material());
+  m->name = desc.name ? desc.name : "";
+  m->pass_index = desc.pass_index;
+  m->uses_fallback = true;
+  return m;
+}
+
 std::shared_ptr<const MaterialData> default_material() {
   GradusInput color{-1, 0, {0.8f, 0.8f, 0.8f, 1.0f}};
   GradusNode diffuse{};

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxClosures = 1024;
 constexpr int kMaxClosureDepth = 256;
-constexpr size_t kMaxBlocks = 64;
+constexpr size_t kMaxBlocks = 256;
 constexpr uint32_t kHeight = 2;  // input of BUMP
 
 // Inputs of PRINCIPLED that its emission depends on: sheen and coat lie above it.

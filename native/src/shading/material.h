@@ -43,9 +43,11 @@ struct MaterialData {
 };
 
 // Compiles a node program: folds constants, drops what nothing needs, allots registers. Throws Error INVALID_ARGUMENT, with the
-// material's name, for what is not a program (indices, unknown operations, closures in place of values). Image keys that the store does
-// not know look magenta.
+// material's name, for what is not a program (check_program()) or needs more closures, Bump nodes or registers than there are. Image keys
+// that the store does not know look magenta.
 std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const ImageStore& images);
+// What stands for a material that does not compile: the default one under its name.
+std::shared_ptr<const MaterialData> fallback_material(const GradusMaterial& desc);
 // Diffuse 0.8: surfaces without a material.
 std::shared_ptr<const MaterialData> default_material();
 
