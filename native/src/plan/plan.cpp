@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "bsdf/ggx.h"
 #include "render/options.h"
 #include "render/pass_table.h"
 
@@ -83,7 +84,7 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
 void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* plan) {
   if (!(snapshot.camera.aperture_radius > 0.0f)) plan->skipped.emplace_back("lens samples", "the camera is a pinhole");
   if (!snapshot.features.has_transparent_shadows) plan->skipped.emplace_back("transparent shadows", "no material is transparent");
-  if (!snapshot.features.has_specular)
+  if (snapshot.features.min_alpha >= std::max(settings.roughness_threshold, kSmallestAlpha))
     plan->skipped.emplace_back("half-vector shifts", "no material is sharper than the roughness threshold");
   if (!snapshot.features.has_emitters) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
   if (!settings.film_transparent) plan->skipped.emplace_back("alpha channel", "the film is opaque");

@@ -131,10 +131,11 @@ void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps
   snapshot->emitters = std::move(table);
 }
 
-void find_specular(Snapshot* snapshot) {
-  const auto specular = [](const MaterialData& m) { return m.may_be_specular; };
-  snapshot->features.has_specular = std::any_of(snapshot->instances.begin(), snapshot->instances.end(),
-                                                [&](const InstanceData& i) { return any_material(*snapshot, i, specular); });
+void find_sharpest(Snapshot* snapshot) {
+  const auto look_at = [&](uint32_t m) {
+    snapshot->features.min_alpha = std::min(snapshot->features.min_alpha, snapshot->materials[m]->min_alpha);
+  };
+  for (const InstanceData& instance : snapshot->instances) std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
 }
 
 }  // namespace
@@ -178,7 +179,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     place_camera(*state_, snapshot.get());
     place_world(*state_, materials, snapshot.get());
     build_lights(device_, place_lamps(*state_, materials, snapshot.get()), monitor, state_.get(), snapshot.get());
-    find_specular(snapshot.get());
+    find_sharpest(snapshot.get());
   };
   // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.
   device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });

@@ -44,7 +44,7 @@ struct InstanceData {
 struct SceneFeatures {
   bool has_transparent_shadows = false;
   bool has_lamps_with_extent = false;
-  bool has_specular = false;  // some lobe may be sharper than the roughness threshold
+  float min_alpha = 1.0f;  // roughness: surely no lobe is sharper
   bool has_emitters = false;
 };
 

@@ -38,7 +38,6 @@ class Analysis {
   void run() {
     for (const Instruction& i : p_.code)
       if (i.op < GRADUS_OP_LIMIT && is_closure_op(i.op)) closure(i);
-    m_.may_be_specular = m_.min_alpha < 0.1f;
   }
 
  private:

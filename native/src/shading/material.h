@@ -25,7 +25,6 @@ struct MaterialData {
   bool has_holdout = false;
   bool has_bsdf = false;
   bool may_transmit = false;       // some lobe sends light to the other side
-  bool may_be_specular = false;    // some lobe's roughness is not surely above 0.316 (alpha 0.1)
   bool transparent_shadow = true;  // 0: shadow rays take it for opaque
   bool sample_as_light = true;
   bool uses_fallback = false;

@@ -45,6 +45,22 @@ TEST(Plan, PathHasNoGradientsAndSaysSo) {
   EXPECT_TRUE(has("lens samples"));
 }
 
+// The threshold was taken for 0.1, whatever the setting.
+TEST(Plan, HalfVectorShiftsAreJudgedByTheSettingOfTheThreshold) {
+  auto snapshot = std::make_shared<Snapshot>(*empty_snapshot());
+  const auto skips = [&](float sharpest, float threshold) {
+    snapshot->features.min_alpha = sharpest;
+    GradusSettings s = small_settings(64, 64, 4);
+    s.roughness_threshold = threshold;
+    const Plan plan = make_plan(s, *snapshot);
+    return std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const auto& entry) { return entry.first == "half-vector shifts"; });
+  };
+  EXPECT_FALSE(skips(0.2f, 0.5f));
+  EXPECT_TRUE(skips(0.2f, 0.1f));
+  EXPECT_TRUE(skips(0.05f, 0.01f));
+  EXPECT_FALSE(skips(0.0f, 0.0f)) << "mirrors";
+}
+
 TEST(Plan, ObeysOrRefuses) {
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_L2), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_L1), GRADUS_ERROR_INVALID_ARGUMENT);

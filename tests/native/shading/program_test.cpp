@@ -201,8 +201,8 @@ TEST(NodeProgram, ValuesThatLookAtTheRayAreKnown) {
 
 TEST(NodeProgram, RoughnessIsKnownWhereConstant) {
   ProgramBuilder rough, smooth;
-  EXPECT_FALSE(rough.compile(rough.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.9f)}))->may_be_specular);
-  EXPECT_TRUE(smooth.compile(smooth.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.1f)}))->may_be_specular);
+  EXPECT_FALSE(rough.compile(rough.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.9f)}))->min_alpha < 0.1f);
+  EXPECT_TRUE(smooth.compile(smooth.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.1f)}))->min_alpha < 0.1f);
 }
 
 TEST(NodeProgram, NoSurfaceIsBlack) {
