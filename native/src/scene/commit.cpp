@@ -5,6 +5,7 @@
 #include "base/device.h"
 #include "base/error.h"
 #include "base/fpu.h"
+#include "scene/affected_objects.h"
 #include "scene/emitter_table.h"
 #include "scene/lamp_scene.h"
 #include "scene/scene_state.h"
@@ -120,8 +121,14 @@ std::vector<Lamp> place_lamps(const Scene::State& state, const MaterialIndex& in
   return lamps;
 }
 
-void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps, const CommitMonitor& monitor, Scene::State* state,
-                  Snapshot* snapshot) {
+void warn_beyond_limit(const InstanceArrays& arrays, const std::vector<size_t>& chosen, Snapshot* snapshot) {
+  AffectedObjects objects;
+  for (const uint32_t i : snapshot->emitters->beyond_limit) objects.add(arrays.name(chosen[i]));
+  objects.warn("is not sampled as a light", "are not sampled as lights", "too many triangles emit light", &snapshot->warnings);
+}
+
+void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps, const std::vector<size_t>& chosen,
+                  const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
   const auto lamp_scene = std::make_shared<const LampScene>(device, lamps);
   SceneFeatures& features = snapshot->features;
   features.has_lamps_with_extent = std::any_of(lamps.begin(), lamps.end(), [](const Lamp& lamp) { return lamp.found_by_rays(); });
@@ -129,6 +136,7 @@ void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps
   table->lamps_with_extent = features.has_lamps_with_extent ? lamp_scene : nullptr;
   features.has_emitters = !table->lamps.empty() || !table->triangles.empty() || !table->world.black();
   snapshot->emitters = std::move(table);
+  warn_beyond_limit(state->instances, chosen, snapshot);
 }
 
 void find_sharpest(Snapshot* snapshot) {
@@ -178,7 +186,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     build_geometry(device_, chosen, monitor.step(0.25f, 0.8f), state_.get(), snapshot.get());
     place_camera(*state_, snapshot.get());
     place_world(*state_, materials, snapshot.get());
-    build_lights(device_, place_lamps(*state_, materials, snapshot.get()), monitor, state_.get(), snapshot.get());
+    build_lights(device_, place_lamps(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
   };
   // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.

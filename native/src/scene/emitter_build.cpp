@@ -21,11 +21,6 @@ constexpr size_t kMaxTriangles = 4u << 20;
 // Triangles whose textured emission is measured point by point; beyond, the material's estimate serves for all.
 constexpr size_t kMaxMeasured = 1u << 19;
 
-struct Candidates {
-  std::vector<EmissiveTriangle> triangles;
-  std::vector<uint32_t> first;
-};
-
 bool is_light(const MaterialData* material) { return material && material->emits && material->sample_as_light; }
 
 bool any_light(const Snapshot& snapshot, const InstanceData& instance) {
@@ -34,22 +29,25 @@ bool any_light(const Snapshot& snapshot, const InstanceData& instance) {
                      [&](uint32_t m) { return is_light(snapshot.materials[m].get()); });
 }
 
-Candidates find_triangles(const Snapshot& snapshot, const CommitMonitor& monitor) {
-  Candidates found;
+void find_triangles(const Snapshot& snapshot, const CommitMonitor& monitor, EmitterTable* table) {
+  std::vector<EmissiveTriangle>& triangles = table->triangles;
   for (uint32_t i = 0; i < snapshot.instances.size(); ++i) {
-    found.first.push_back(uint32_t(found.triangles.size()));
+    table->first_triangle.push_back(uint32_t(triangles.size()));
     const InstanceData& instance = snapshot.instances[i];
-    if (!any_light(snapshot, instance) || found.triangles.size() + instance.mesh->triangle_count > kMaxTriangles) continue;
+    if (!any_light(snapshot, instance)) continue;
+    if (triangles.size() + instance.mesh->triangle_count > kMaxTriangles) {
+      table->beyond_limit.push_back(i);
+      continue;
+    }
     monitor.check();
     for (uint32_t t = 0; t < instance.mesh->triangle_count; ++t) {
       if (instance.mesh->is_dropped(t) || !is_light(snapshot.materials[snapshot.material_of(i, t)].get())) continue;
       const std::array<Vec3, 3> p = snapshot.corners(i, t);
       const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
-      if (area > 0.0f && is_finite(area)) found.triangles.push_back({i, t, area});
+      if (area > 0.0f && is_finite(area)) triangles.push_back({i, t, area});
     }
   }
-  found.first.push_back(uint32_t(found.triangles.size()));
-  return found;
+  table->first_triangle.push_back(uint32_t(triangles.size()));
 }
 
 // Mean radiance of a triangle over four points and both sides.
@@ -127,9 +125,7 @@ std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vect
   auto table = std::make_shared<EmitterTable>();
   table->lamps = std::move(lamps);
   sort_lamps(table.get());
-  Candidates found = find_triangles(snapshot, monitor);
-  table->triangles = std::move(found.triangles);
-  table->first_triangle = std::move(found.first);
+  find_triangles(snapshot, monitor, table.get());
   table->tree.build(all_bounds(snapshot, *table, monitor), [&] { return monitor.go_on(); });
   monitor.check();
   table->world = build_world(snapshot, world, monitor);

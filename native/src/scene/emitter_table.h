@@ -29,6 +29,7 @@ struct EmitterTable {
   std::vector<Lamp> lamps;
   std::vector<EmissiveTriangle> triangles;  // instance after instance, ascending
   std::vector<uint32_t> first_triangle;     // of each instance, in `triangles`; one more at the end
+  std::vector<uint32_t> beyond_limit;       // instances with more triangles than there was room for: found by rays alone
   LightTree tree;                           // lights: those of tree_lamps, then the triangles
   std::vector<uint32_t> tree_lamps;         // lamps that are not at infinity
   std::vector<uint32_t> suns;               // lamps that are

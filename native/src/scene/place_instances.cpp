@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "scene/affected_objects.h"
 #include "scene/scene_state.h"
 
 namespace gradus {
@@ -52,37 +53,31 @@ Vec3 choose_origin(const Bounds& bounds) {
   return Vec3(glm::round(c / grid) * grid);
 }
 
-// Warnings about left out instances: one in all for each kind, with the first name.
-struct LeftOut {
-  size_t count = 0;
-  std::string first;
-  void add(const InstanceArrays& arrays, size_t i) {
-    if (count++ == 0) first = arrays.name(i);
-  }
-  void warn(const char* what, std::vector<std::string>* warnings) const {
-    if (count == 0) return;
-    warnings->push_back(count == 1 ? "object '" + first + "' was left out: " + what
-                                   : std::to_string(count) + " objects were left out, the first is '" + first + "': " + what);
-  }
-};
-
 std::vector<size_t> choose_usable(const Scene::State& state, Snapshot* snapshot) {
   const InstanceArrays& a = state.instances;
   std::vector<size_t> usable;
   usable.reserve(a.count);
-  LeftOut broken, unknown;
+  AffectedObjects broken, unknown, torn, lost;
   for (size_t i = 0; i < a.count; ++i) {
-    const auto mesh = state.meshes.find(a.meshes[i]);
-    if (mesh == state.meshes.end()) {
-      unknown.add(a, i);
-    } else if (!is_usable(a.matrices[i])) {
-      broken.add(a, i);
-    } else if (mesh->second->dropped_triangles < mesh->second->triangle_count) {
+    const auto found = state.meshes.find(a.meshes[i]);
+    if (found == state.meshes.end()) {
+      unknown.add(a.name(i));
+      continue;
+    }
+    const MeshData& mesh = *found->second;
+    const bool visible = mesh.dropped_triangles < mesh.triangle_count;
+    if (mesh.dropped_triangles > 0) (visible ? torn : lost).add(a.name(i));
+    if (!is_usable(a.matrices[i])) {
+      broken.add(a.name(i));
+    } else if (visible) {
       usable.push_back(i);
     }
   }
-  broken.warn("its matrix is singular or not finite", &snapshot->warnings);
-  unknown.warn("it names a mesh that does not exist", &snapshot->warnings);
+  std::vector<std::string>* warnings = &snapshot->warnings;
+  broken.warn("was left out", "were left out", "its matrix is singular or not finite", warnings);
+  unknown.warn("was left out", "were left out", "it names a mesh that does not exist", warnings);
+  lost.warn("was left out", "were left out", "no triangle has finite vertices", warnings);
+  torn.warn("lost triangles", "lost triangles", "some vertices are not finite", warnings);
   return usable;
 }
 

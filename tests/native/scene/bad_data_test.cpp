@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scene/accelerator.h"
+#include "scene/emitter_table.h"
 #include "scene/mesh.h"
 #include "scene_fixture.h"
 
@@ -151,6 +152,42 @@ TEST(BadMatrix, OneWarningNamesTheFirstAndCounts) {
   EXPECT_EQ(snapshot->instances.size(), 2u);
   ASSERT_EQ(snapshot->warnings.size(), 2u);
   EXPECT_EQ(snapshot->warnings[0], "3 objects were left out, the first is 'number 1': its matrix is singular or not finite");
+}
+
+// Triangles without a place vanished, and whole objects of them, and nobody was told.
+TEST(BadMesh, TrianglesThatAreNotFiniteAreNamedOnce) {
+  Soup torn;
+  torn.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});
+  torn.triangle({kNan, 0, 2}, {0, 1, 2}, {1, 0, 2});
+  Soup lost;
+  lost.triangle({kNan, 0, 2}, {0, 1, 2}, {1, 0, 2});
+  TestScene scene;
+  scene.mesh(1, torn);
+  scene.mesh(2, lost);
+  for (const uint64_t mesh : {1, 1, 2}) scene.instance(mesh);
+  const auto snapshot = scene.commit();
+  EXPECT_EQ(snapshot->instances.size(), 2u);
+  ASSERT_EQ(snapshot->warnings.size(), 2u);
+  EXPECT_EQ(snapshot->warnings[0], "object 'number 2' was left out: no triangle has finite vertices");
+  EXPECT_EQ(snapshot->warnings[1], "2 objects lost triangles, the first is 'number 0': some vertices are not finite");
+}
+
+// What is beyond the limit of light sampling was left to chance in silence.
+TEST(ManyLights, AnObjectWithTooManyTrianglesIsNamed) {
+  Soup soup;
+  soup.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});
+  soup.positions.push_back({kNan, 0, 0});
+  soup.vertices.resize(3 * ((size_t(4) << 20) + 1), 3);  // dropped, but counted: quick to build
+  TestScene scene;
+  scene.material(1, MaterialDesc(GRADUS_OP_EMISSION, Rgb(1.0f)));
+  scene.mesh(1, soup);
+  scene.mesh(2, sphere(Vec3(0.0f), 1.0f, 4, 8));
+  scene.instance(2, Mat4(1.0f), GRADUS_VISIBLE_ALL, 1);
+  scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 1);
+  const auto snapshot = scene.commit();
+  ASSERT_EQ(snapshot->warnings.size(), 2u);
+  EXPECT_EQ(snapshot->warnings[1], "object 'number 1' is not sampled as a light: too many triangles emit light");
+  EXPECT_EQ(snapshot->emitters->beyond_limit, std::vector<uint32_t>{1});
 }
 
 TEST(BadMesh, ContradictingArraysAreRefusedByName) {

@@ -1,0 +1,24 @@
+// Warnings about objects: one in all for each cause, with the first name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+struct AffectedObjects {
+  size_t count = 0;
+  std::string first;
+
+  void add(const std::string& name) {
+    if (count++ == 0) first = name;
+  }
+  // what: of one object; of_several: of more.
+  void warn(const std::string& what, const std::string& of_several, const std::string& why, std::vector<std::string>* warnings) const {
+    if (count == 0) return;
+    warnings->push_back(count == 1 ? "object '" + first + "' " + what + ": " + why
+                                   : std::to_string(count) + " objects " + of_several + ", the first is '" + first + "': " + why);
+  }
+};
+
+}  // namespace gradus
