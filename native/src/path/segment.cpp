@@ -10,9 +10,6 @@ namespace {
 constexpr uint32_t kDecisions = 1u << 20;
 constexpr uint32_t kDecisionsPerSegment = 1024;
 
-// Shadow rays end this much before a finite emitter or a connected vertex, relative to the distance.
-constexpr float kShorten = 1e-4f;
-
 // Probability that the path goes straight on: by the transparency against what the surface itself has to show. An added emission or
 // scattering keeps a chance however transparent the surface.
 float pass_probability(const ShadeResult& shade) {
@@ -71,6 +68,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
   segment->length = 0.0f;
   segment->lamps.clear();
   Ray part = ray->ray;
+  float passed = 0.0f;
   vertex->wo = -part.direction;
   for (;;) {
     Hit hit;
@@ -80,12 +78,11 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     } else {
       context.scene.intersect(part, ray->visibility, &hit);
     }
-    see_lamps(context, ray->ray, segment->length, hit.valid() ? segment->length + hit.t : ray->ray.t_max, segment);
+    see_lamps(context, ray->ray, passed, hit.valid() ? passed + hit.t : ray->ray.t_max, segment);
     if (!hit.valid()) {
       return;
     }
-    segment->length += hit.t;
-    ray->state.length = segment->length;
+    ray->state.length = segment->length = passed + hit.t;
     vertex->point = context.scene.surface_point(hit);
     const auto shade = shading == Shading::Now ? shade_surface : shade_seen;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
@@ -99,22 +96,17 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     }
     ++ray->state.transparent_depth;
     ++segment->crossed;
-    part.origin = offset_origin(vertex->point, part.direction);
-    part.t_min = 0.0f;
-    part.t_max = part.t_max - hit.t;
+    passed += pass_surface(vertex->point, &part);
   }
 }
 
 Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, float distance) {
-  return Ray{offset_origin(from, direction), 0.0f, direction, distance < kInfinity ? distance * (1.0f - kShorten) : kInfinity};
+  return Ray{offset_origin(from, direction), 0.0f, direction, distance};
 }
 
 Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& to) {
   const Vec3 direction = glm::normalize(to.position - from.position);
-  const Vec3 start = offset_origin(from, direction);
-  const Vec3 line = offset_origin(to, -direction) - start;
-  const float distance = glm::length(line);
-  return Ray{start, 0.0f, line / distance, distance * (1.0f - kShorten)};
+  return ray_between(offset_origin(from, direction), offset_origin(to, -direction), direction);
 }
 
 Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind, uint16_t* transparent_depth) {
@@ -123,6 +115,7 @@ Rgb segment_transmittance(const PathContext& context, const Ray& ray, const Path
   }
   Rgb transmittance(1.0f);
   Ray part = ray;
+  float passed = 0.0f;
   RayState state = kind.state;
   for (;;) {
     Hit hit;
@@ -134,14 +127,12 @@ Rgb segment_transmittance(const PathContext& context, const Ray& ray, const Path
     }
     state.transparent_depth = (*transparent_depth)++;
     const SurfacePoint point = context.scene.surface_point(hit);
-    state.length = hit.t;
+    state.length = passed + hit.t;
     transmittance *= shade_transparency(context.scene, point, -part.direction, state);
     if (is_black(transmittance)) {
       return Rgb(0.0f);
     }
-    part.origin = offset_origin(point, part.direction);
-    part.t_min = 0.0f;
-    part.t_max -= hit.t;
+    passed += pass_surface(point, &part);
     if (!(part.t_max > 0.0f)) {
       return transmittance;
     }

@@ -272,8 +272,8 @@ EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction) {
 }
 
 Ray shadow_ray(const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view) {
-  Ray ray{offset_origin(from, view.direction), 0.0f, view.direction, kInfinity};
-  if (to.at_infinity()) return ray;
+  const Vec3 start = offset_origin(from, view.direction);
+  if (to.at_infinity()) return Ray{start, 0.0f, view.direction, kInfinity};
   Vec3 target = from.position + view.direction * view.distance;
   if (to.kind == EmitterKind::Triangle) {
     SurfacePoint end;
@@ -282,16 +282,7 @@ Ray shadow_ray(const SurfacePoint& from, const EmitterPoint& to, const EmitterVi
     end.error = to.error;
     target = offset_origin(end, -view.direction);
   }
-  const Vec3 d = target - ray.origin;
-  const float length = glm::length(d);
-  // From the same place, or closer than both errors: nothing lies between.
-  if (!(length > 0.0f) || glm::dot(d, view.direction) <= 0.0f) {
-    ray.t_max = -1.0f;
-    return ray;
-  }
-  ray.direction = d / length;
-  ray.t_max = length * (1.0f - 1e-6f);
-  return ray;
+  return ray_between(start, target, view.direction);
 }
 
 }  // namespace gradus

@@ -158,4 +158,20 @@ Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction) {
   return Vec3(step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z));
 }
 
+float pass_surface(const SurfacePoint& point, Ray* ray) {
+  const Vec3 next = offset_origin(point, ray->direction);
+  const float step = glm::dot(next - ray->origin, ray->direction);
+  ray->origin = next;
+  ray->t_min = 0.0f;
+  ray->t_max -= step;
+  return step;
+}
+
+Ray ray_between(const Vec3& start, const Vec3& end, const Vec3& direction) {
+  const Vec3 line = end - start;
+  const float length = glm::length(line);
+  if (!(length > 0.0f) || glm::dot(line, direction) <= 0.0f) return Ray{start, 0.0f, direction, -1.0f};
+  return Ray{start, 0.0f, line / length, length * (1.0f - 1e-6f)};
+}
+
 }  // namespace gradus

@@ -26,5 +26,10 @@ struct SurfacePoint {
 
 // An origin on the side of `direction` from which a ray cannot hit the surface of `point` again.
 Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction);
+// Lets a ray go on behind a surface that it met, to the same end. Returns by how much it is shorter, the offset included.
+float pass_surface(const SurfacePoint& point, Ray* ray);
+// The ray to a known place: both ends lie off their surfaces. Where they are closer than the errors of both, so that they do not lie one
+// after the other in `direction`, the ray is empty (t_max < 0).
+Ray ray_between(const Vec3& start, const Vec3& end, const Vec3& direction);
 
 }  // namespace gradus

@@ -11,21 +11,18 @@ Rgb Snapshot::transmittance(const Ray& ray, uint32_t max_transparent) const {
   if (trace_any(*accelerator, ray, kMaskOpaqueShadow)) return Rgb(0.0f);
   Rgb through(1.0f);
   Ray rest = ray;
+  float passed = 0.0f;
   RayState state;
   state.flags = kRayShadow;
   Hit hit;
   for (uint32_t n = 0; trace_nearest(*accelerator, rest, kMaskTransparentShadow, &hit); ++n) {
     if (n >= max_transparent) return Rgb(0.0f);
     const SurfacePoint point = surface_point(hit);
-    state.length = hit.t;
+    state.length = passed + hit.t;
     state.transparent_depth = uint16_t(n);
     through *= shade_transparency(*this, point, -rest.direction, state);
     if (is_black(through)) return Rgb(0.0f);
-    // The end stays where it was: subtract what the step really was, the offset included.
-    const Vec3 next = offset_origin(point, rest.direction);
-    rest.t_max -= glm::dot(next - rest.origin, rest.direction);
-    rest.origin = next;
-    rest.t_min = 0.0f;
+    passed += pass_surface(point, &rest);
   }
   return through;
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "shading/program_builder.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -89,6 +90,42 @@ TEST(Segment, TransmittanceGoesOnCountingTransparentSurfaces) {
     EXPECT_NEAR(through.x, before <= 1 ? 0.25f : 0.0f, 1e-5f) << before;
     EXPECT_EQ(depth, before <= 1 ? before + 2 : 3);
   }
+}
+
+// Base rays counted the whole segment, connections and shadow rays only what lay behind the last surface.
+TEST(Segment, AllRaysMeasureTheirLengthFromWhereTheyStart) {
+  PathScene scene;
+  test::ProgramBuilder program;
+  const int length = program.add(GRADUS_OP_LIGHT_PATH, {}, GRADUS_LIGHT_PATH_LENGTH);
+  const uint64_t material = scene.material(program.desc(program.add(GRADUS_OP_TRANSPARENT, {test::In::from(length)})));
+  for (int i = 2; i <= 4; ++i) scene.quad(Vec3(float(i), -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), material);
+  scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
+  const IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const PathContext context(*c.snapshot, c.camera, c.settings);
+  PathRay ray;
+  const Segment base = trace(context, 0, &ray);
+  EXPECT_NEAR(base.weight.x * base.probability, 2.0f * 3.0f * 4.0f, 1e-4f);
+  uint16_t depth = 0;
+  const Ray link{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), 5.0f};
+  EXPECT_NEAR(segment_transmittance(context, link, PathRay{}, &depth).x, 24.0f, 1e-4f) << "connection";
+  EXPECT_NEAR(context.scene.transmittance(link, 8).x, 24.0f, 1e-4f) << "shadow ray";
+}
+
+// Connections ended 1e-4 of their length early.
+TEST(Segment, AWallJustBeforeTheOtherVertexBlocksTheConnection) {
+  PathScene scene;
+  const uint64_t material = scene.material(test::matte(Rgb(0.5f)));
+  for (const float x : {0.0f, 9.9995f, 10.0f}) scene.quad(Vec3(x, -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), material);
+  scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
+  const IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const auto point_behind = [&](float x) {
+    Hit hit;
+    EXPECT_TRUE(c.snapshot->intersect({Vec3(x, 0.3f, 0.2f), 0.0f, Vec3(1, 0, 0), 1.0f}, GRADUS_VISIBLE_CAMERA, &hit));
+    return c.snapshot->surface_point(hit);
+  };
+  const SurfacePoint from = point_behind(-0.5f), wall = point_behind(9.9f), to = point_behind(9.9998f);
+  EXPECT_TRUE(c.snapshot->occluded(spawn_ray_to(from, to)));
+  EXPECT_FALSE(c.snapshot->occluded(spawn_ray_to(from, wall)));
 }
 
 }  // namespace
