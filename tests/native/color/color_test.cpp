@@ -124,6 +124,18 @@ TEST_F(F5_ColorConfig, OverrideWins) {
   EXPECT_THROW(color->set_override(space), Error);
 }
 
+// Float images hold more than the curve's samples span, and NaN.
+TEST_F(F5_ColorConfig, BeyondTheSamplesACurveGoesOnAlongItsLastSlope) {
+  const auto color = make("");
+  const float curve[3] = {0.0f, 0.25f, 1.0f};
+  color->set_override({sizeof(GradusColorSpace), 3, "sRGB", curve, {1, 0, 0, 0, 1, 0, 0, 0, 1}});
+  float pixel[6] = {2.0f, -1.0f, 0.5f, NAN, NAN, NAN};
+  color->to_scene_linear("sRGB", false, pixel, 2, 3);
+  EXPECT_NEAR(pixel[0], 2.5f, 1e-6f);
+  EXPECT_NEAR(pixel[1], -0.5f, 1e-6f);
+  EXPECT_TRUE(std::isnan(pixel[3]));
+}
+
 // Blender's own configuration, where it is installed.
 TEST_F(F5_ColorConfig, BlendersConfiguration) {
   const std::string path = "/usr/share/blender/datafiles/colormanagement/config.ocio";
