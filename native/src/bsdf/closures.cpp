@@ -62,7 +62,6 @@ void limit_microfacets(Lobe* lobe) {
 }
 
 float sharpness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::min(lobe.alpha_x, lobe.alpha_y) : 1.0f; }
-float bluntness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::max(lobe.alpha_x, lobe.alpha_y) : 1.0f; }
 
 }  // namespace
 
@@ -151,11 +150,7 @@ void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) 
     return;
   }
   const size_t k = static_cast<size_t>(c);
-  const Lobe& source = lobes_[static_cast<size_t>(lobe)];
-  const bool dirac = is_dirac(source.type);
-  const bool first = entry_count_[k] == 0;
-  min_alpha_[k] = first ? sharpness(source) : std::min(min_alpha_[k], sharpness(source));
-  max_alpha_[k] = first ? bluntness(source) : std::max(max_alpha_[k], bluntness(source));
+  const bool dirac = is_dirac(lobes_[static_cast<size_t>(lobe)].type);
   has_smooth_[k] = has_smooth_[k] || !dirac;
   entries_[k][static_cast<size_t>(entry_count_[k]++)] = {static_cast<uint8_t>(lobe), sides, dirac, weight};
 }
@@ -204,8 +199,6 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   geometric_normal_ = geometric_normal;
   smooth_normal_ = smooth_normal;
   entry_count_.fill(0);
-  min_alpha_.fill(0.0f);
-  max_alpha_.fill(0.0f);
   has_smooth_.fill(false);
   drop_black_lobes();
   keep_originals();

@@ -83,12 +83,9 @@ struct BsdfSample {
   float pdf = 0.0f;       // p(wi | class); for Dirac the discrete probability within the class
   bool dirac = false;
   bool transmitted = false;  // wi on the other side of the geometric surface
-  float eta = 1.0f;          // IOR of the side of wi over that of wo; 1 for reflection
-  float alpha = 1.0f;        // roughness of the sampled lobe, for the shift's criteria
-  Vec3 lobe_normal = Vec3(0, 0, 1);
-  uint8_t lobe = 0;      // index of the sampled lobe
-  bool diffuse = false;  // kind of the sampled lobe
-  BsdfEval kind;         // value and density of the class's lobes of this kind; for Dirac value and pdf again
+  uint8_t lobe = 0;          // index of the sampled lobe
+  bool diffuse = false;      // kind of the sampled lobe
+  BsdfEval kind;             // value and density of the class's lobes of this kind; for Dirac value and pdf again
 };
 
 // Directional albedo of one lobe by itself, weight included, before finish(): for layering, so without what single scattering loses. wo
@@ -115,9 +112,6 @@ class Closures {
 
   // P(class); the probabilities of the classes that are present sum to one. 0: class absent.
   float class_probability(ScatterClass c) const { return class_probability_[static_cast<int>(c)]; }
-  // Smallest and largest alpha of the class's lobes (Dirac: 0); 1 for diffuse lobes. Shifts classify vertices by these.
-  float min_alpha(ScatterClass c) const { return min_alpha_[static_cast<int>(c)]; }
-  float max_alpha(ScatterClass c) const { return max_alpha_[static_cast<int>(c)]; }
   // The class has lobes that are not Dirac, so that evaluate() can be non-zero.
   bool has_smooth(ScatterClass c) const { return has_smooth_[static_cast<int>(c)]; }
 
@@ -173,8 +167,6 @@ class Closures {
   std::array<std::array<Entry, kMaxLobes>, kScatterClasses> entries_;
   std::array<int, kScatterClasses> entry_count_{};
   std::array<float, kScatterClasses> class_probability_{};
-  std::array<float, kScatterClasses> min_alpha_{};
-  std::array<float, kScatterClasses> max_alpha_{};
   std::array<bool, kScatterClasses> has_smooth_{};
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
   Vec3 smooth_normal_ = Vec3(0.0f);

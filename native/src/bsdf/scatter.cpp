@@ -111,9 +111,6 @@ bool Closures::evaluate_dirac(int index, const Vec3& wo, bool transmitted, BsdfS
     out->pdf = entry.probability;
     out->dirac = true;
     out->transmitted = transmitted;
-    out->eta = transmitted ? source.ior : 1.0f;
-    out->alpha = 0.0f;
-    out->lobe_normal = source.normal;
     out->lobe = static_cast<uint8_t>(index);
     out->diffuse = is_diffuse(source);
     out->kind = {out->value, out->pdf};
@@ -152,9 +149,6 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   out->kind = kinds.kind;
   out->dirac = false;
   out->transmitted = crosses(out->wi);
-  out->eta = out->transmitted && is_microfacet(source.type) ? source.ior : 1.0f;
-  out->alpha = is_microfacet(source.type) ? std::min(source.alpha_x, source.alpha_y) : 1.0f;
-  out->lobe_normal = source.normal;
   out->lobe = entry.lobe;
   return eval.pdf > 0.0f && is_finite(eval.pdf) && is_finite(eval.value);
 }
