@@ -6,7 +6,7 @@ ARGS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build render test test-full test-native test-addon bench bench-quick picture package format lint clean
+.PHONY: help build render test test-full test-native test-addon bench bench-quick bench-host picture package format lint clean
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -34,6 +34,9 @@ bench:          ## error against CPU time, all scenes; interrupted runs go on: S
 
 bench-quick:    ## the same for two scenes, in under five minutes
 	@tools/bench.sh --quick
+
+bench-host:     ## export and upload in each Blender, half a minute
+	@tools/bench.sh --host
 
 picture:        ## docs/images/hero.png, the picture of the README
 	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 64' BLENDER='$(BLENDER)' tools/render.sh

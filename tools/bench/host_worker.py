@@ -1,0 +1,83 @@
+"""Times in one host what only the host's side does: `blender -b --python host_worker.py`, or the Python of an environment that has bpy.
+
+Prints "RESULT " and a JSON object: seconds of each repetition of the export of a million triangles into a new native scene, and of the
+upload of one 1920×1080 RGBA pass into a new render result.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
+import gradus  # noqa: E402
+from gradus import store  # noqa: E402
+from gradus.pixels import PassBuffer  # noqa: E402
+
+REPETITIONS = 9
+CELLS = 707  # a grid of 2 · 707² triangles
+WIDTH, HEIGHT = 1920, 1080
+
+
+def export_seconds() -> float:
+    """The first export of the scene: nothing is known, all is read and copied."""
+    key = store.Key(store.FINAL, "bench", "bench", 0)
+    session = store.acquire(key)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    start = time.perf_counter()
+    session.sync(depsgraph, None, None, False, None)
+    seconds = time.perf_counter() - start
+    store.release(key)
+    return seconds
+
+
+class UploadEngine(bpy.types.RenderEngine):
+    """Uploads one picture and notes how long it took."""
+
+    bl_idname = "GRADUS_BENCH_UPLOAD"
+    bl_label = "Upload"
+    seconds: list[float] = []
+
+    def render(self, _depsgraph: bpy.types.Depsgraph) -> None:
+        result = self.begin_result(0, 0, WIDTH, HEIGHT)
+        buffer = PassBuffer()
+        buffer.prepare(result.layers[0].passes, {}, WIDTH, HEIGHT)
+        start = time.perf_counter()
+        buffer.upload(result.layers[0])
+        UploadEngine.seconds.append(time.perf_counter() - start)
+        self.end_result(result)
+
+
+def upload_seconds() -> float:
+    bpy.ops.render.render()
+    return UploadEngine.seconds.pop()
+
+
+def prepare() -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    gradus.register()
+    bpy.utils.register_class(UploadEngine)
+    scene = bpy.context.scene
+    scene.render.engine = UploadEngine.bl_idname
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = WIDTH, HEIGHT, 100
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.collection.objects.link(scene.camera)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=CELLS, y_subdivisions=CELLS)
+
+
+def main() -> None:
+    prepare()
+    measures = {"export": export_seconds, "upload": upload_seconds}
+    for measure in measures.values():  # not counted: first use loads libraries
+        measure()
+    seconds = {name: [measure() for _ in range(REPETITIONS)] for name, measure in measures.items()}
+    print("RESULT " + json.dumps({"blender": bpy.app.version_string, **seconds}), flush=True)
+    os._exit(0)  # the 4.5 module can hang at exit
+
+
+main()
