@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
+from gradus.nodes.fallback import TEXTURE_MEANS
 from support import images
 from support.nodes import new_material, show, socket
 
@@ -165,3 +166,21 @@ def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.type
     difference = np.abs(expected - found)
     assert np.abs(expected).mean() > 0.05
     assert np.quantile(difference, 0.95) / np.abs(expected).mean() < 0.02
+
+
+@pytest.mark.parametrize(("node", "output"), TEXTURE_MEANS)
+def test_the_mean_that_stands_in_for_a_texture_is_that_of_cycles(node: str, output: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Over a large and slanted slice."""
+    if not hasattr(bpy.types, node):
+        pytest.skip("not in this Blender")
+    material = new_material()
+    graph = Graph(material)
+    place = graph("Mapping", "Vector", {"Vector": graph.place(), "Rotation": (0.5, 0.6, 0.7)})
+    show(material, graph(node.removeprefix("ShaderNode"), output, {"Vector": place}))
+    bpy.ops.mesh.primitive_plane_add(size=200.0)
+    bpy.context.object.data.materials.append(material)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 100.0, (0.0, 0.0, 5.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    assert picture(scene, tmp_path, "CYCLES").mean(axis=(0, 1)) == pytest.approx([TEXTURE_MEANS[node, output]] * 3, abs=0.01)

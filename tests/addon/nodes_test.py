@@ -170,6 +170,20 @@ def test_e5_unknown_texture_is_grey_and_sky_is_not_black() -> None:
     assert min(translate(material).inputs[0][2][:3]) > 0.01
 
 
+@pytest.mark.parametrize(
+    ("kind", "output", "expected", "words"),
+    [("Voronoi", "Distance", 0.52, "its mean"), ("IES", "Fac", 0.5, "grey")],
+)
+def test_e5_a_texture_is_replaced_by_what_is_said(kind: str, output: str, expected: float, words: str) -> None:
+    """Every one was 0.5, under the words "by its mean"."""
+    material = new_material()
+    node = add(material, f"Tex{kind}")
+    show(material, next(socket for socket in node.outputs if socket.identifier == output))
+    program = translate(material)
+    assert program.inputs[0][2][0] == pytest.approx(expected)
+    assert len(program.warnings) == 1 and f"is replaced by {words}" in program.warnings[0]
+
+
 def test_e5_sky_is_as_bright_as_above_the_horizon() -> None:
     """Cycles' mean over the upper hemisphere, sun at 30 degrees; that of the whole sphere, sun at any height, lit 1.6 times too much."""
     measured = {

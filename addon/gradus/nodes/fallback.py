@@ -10,6 +10,14 @@ from .program import COLOR, FLOAT, NO_NORMAL, SHADER, Value, constant_color, con
 from .tree import find_socket
 
 _GREY = (0.8, 0.8, 0.8)
+TEXTURE_MEANS = {
+    ("ShaderNodeTexVoronoi", "Color"): 0.5,
+    ("ShaderNodeTexVoronoi", "Distance"): 0.52,
+    ("ShaderNodeTexGabor", "Value"): 0.5,
+    ("ShaderNodeTexGabor", "Phase"): 0.5,
+    ("ShaderNodeTexGabor", "Intensity"): 0.27,
+}
+"""By node and output, at default settings, as measured in Cycles. Musgrave's is 0, which would be black: it becomes grey."""
 
 
 def replace(view: Any) -> Value | None:
@@ -23,8 +31,10 @@ def replace(view: Any) -> Value | None:
         view.warn_replaced("is not supported yet and is replaced by a diffuse surface or its input")
         return _closure(view)
     if name.startswith("ShaderNodeTex"):
-        view.warn_replaced("is not supported yet and is replaced by its mean")
-        return constant_float(0.5) if kind == FLOAT else Value(kind, (0.5, 0.5, 0.5, 1.0))
+        mean = TEXTURE_MEANS.get((name, view.socket.identifier))
+        view.warn_replaced(f"is not supported yet and is replaced by {'grey' if mean is None else 'its mean at default settings'}")
+        value = 0.5 if mean is None else mean
+        return constant_float(value) if kind == FLOAT else Value(kind, (value, value, value, 1.0))
     view.warn_replaced("is not supported yet and is passed through")
     return _pass_through(view)
 
