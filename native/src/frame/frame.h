@@ -56,7 +56,7 @@ struct Counters {
   uint64_t shifts_attempted = 0, shifts_reconnected = 0, shifts_half_vector = 0, shifts_replayed = 0;
   // failures by cause
   uint64_t fail_missed = 0, fail_occluded = 0, fail_class = 0, fail_total_reflection = 0, fail_side = 0, fail_density = 0,
-           fail_jacobian = 0, fail_not_invertible = 0, fail_border = 0;
+           fail_jacobian = 0, fail_border = 0;
   uint64_t nonfinite_radiance = 0, nonfinite_gradient = 0, nonfinite_feature = 0;
   void add(const Counters& other);
 };

@@ -99,9 +99,9 @@ void list_passes(const GradusSettings& settings, Plan* plan) {
   if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
 }
 
-// What `min_samples` 0 means. Along a straight edge all pixels of a cell, which share their jitter, are wrong by the same share of coverage,
-// and both halves agree on it two times out of three. n samples leave an error of about 0.2/n of the cell (docs/method.md), so no fewer
-// are believed than leave the threshold.
+// What `min_samples` 0 means. Along a straight edge all pixels of a cell, which share their jitter, are wrong by the same share of
+// coverage, and both halves agree on it two times out of three. n samples leave an error of about 0.2/n of the cell (docs/method.md), so no
+// fewer are believed than leave the threshold.
 uint32_t first_check(const GradusSettings& settings) {
   const double least = 0.16 / std::max(1e-6, double(settings.noise_threshold));
   return std::max(kFirstCheck, settings.min_samples > 0 ? settings.min_samples : uint32_t(std::lround(least)));

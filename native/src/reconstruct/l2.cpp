@@ -13,6 +13,9 @@ namespace {
 // A value that is missing counts as none: one non-finite number would spread over the whole image.
 float guarded(float v) { return is_finite(v) ? v : 0.0f; }
 
+// Room for the sums of the transforms, which are as large as the image is long: a power of two, so that no bit is lost.
+constexpr float kRoom = 0x1p-24f;
+
 class L2 {
  public:
   L2(int width, int height, float alpha) : dct_(width, height), data_weight_(alpha * alpha) {}
@@ -35,7 +38,7 @@ class L2 {
     const auto take = [&](int y, const float* row) {
       float* to = out + size_t(y) * w * stride;
       for (int x = 0; x < w; ++x, to += stride) {
-        for (int c = 0; c < kChannels; ++c) to[c] = row[size_t(c) * w + x];
+        for (int c = 0; c < kChannels; ++c) to[c] = row[size_t(c) * w + x] / kRoom;
       }
     };
     const std::unique_ptr<float[]> work(new float[size_t(w) * h * kChannels]);
@@ -43,7 +46,7 @@ class L2 {
   }
 
  private:
-  // α²I + Dᵀg of one row; returns its part of the sum, which is α²ΣI: the gradients' parts cancel over the image.
+  // α²I + Dᵀg of one row, times kRoom; returns its part of the sum, which is α²ΣI: the gradients' parts cancel over the image.
   template <int kChannels>
   std::array<double, kChannels> fill_row(const L2Row& in, size_t stride, int y, float* row) const {
     const int w = dct_.width();
@@ -53,10 +56,10 @@ class L2 {
     size_t i = 0;
     for (int x = 0; x < w; ++x, i += stride) {
       for (int c = 0; c < kChannels; ++c) {
-        const float value = data_weight_ * guarded(in.primal[i + c]);
-        const float right = x + 1 < w ? guarded(in.dx[i + c]) : 0.0f;
-        const float up = has_up ? guarded(in.dy[i + c]) : 0.0f;
-        const float down = has_down ? guarded(in.dy_below[i + c]) : 0.0f;
+        const float value = kRoom * data_weight_ * guarded(in.primal[i + c]);
+        const float right = x + 1 < w ? kRoom * guarded(in.dx[i + c]) : 0.0f;
+        const float up = has_up ? kRoom * guarded(in.dy[i + c]) : 0.0f;
+        const float down = has_down ? kRoom * guarded(in.dy_below[i + c]) : 0.0f;
         row[size_t(c) * w + x] = value + (left[c] - right) + (down - up);
         left[c] = right;
         sums[c] += value;

@@ -97,10 +97,4 @@ std::vector<uint32_t> NoiseStop::count_map(uint32_t count) const {
   return map;
 }
 
-double NoiseStop::active_share() const {
-  int64_t pixels = 0;
-  for (size_t i = 0; i < cells_.size(); ++i) pixels += done_[i] ? 0 : cells_[i].area();
-  return double(pixels) / double(region_.area());
-}
-
 }  // namespace gradus

@@ -20,8 +20,6 @@ class NoiseStop {
   bool any_done() const { return active_ < cells_.size(); }
   // Samples per pixel of the region for the next batch: 0 where a cell is done.
   std::vector<uint32_t> count_map(uint32_t count) const;
-  // Share of the pixels that go on.
-  double active_share() const;
 
  private:
   Region region_;

@@ -37,7 +37,6 @@ json shifts(const Counters& c) {
             {"side", c.fail_side},
             {"density", c.fail_density},
             {"jacobian", c.fail_jacobian},
-            {"not_invertible", c.fail_not_invertible},
             {"border", c.fail_border}}}};
 }
 

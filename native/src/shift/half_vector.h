@@ -12,7 +12,7 @@
 
 namespace gradus {
 
-enum class ShiftFailure : uint8_t { None, Missed, Occluded, Class, TotalReflection, Side, Density, Jacobian, NotInvertible };
+enum class ShiftFailure : uint8_t { None, Missed, Occluded, Class, TotalReflection, Side, Density, Jacobian };
 
 // Surface side of a half-vector copy.
 struct HalfVectorFrame {

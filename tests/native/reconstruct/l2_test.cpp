@@ -100,6 +100,13 @@ TEST(B2_Solver, L2SolvesTheNormalEquations) {
   }
 }
 
+// Sums over a row or column of large values left the range of a float.
+TEST(B2_Solver, L2OfHugeValuesIsFinite) {
+  const std::vector<float> image = make_image(256, 256, 1, [](int x, int, int) { return x < 128 ? 2e37f : 1e37f; });
+  const std::vector<float> x = solve(with_own_gradients(256, 256, 1, image), 0.4f);
+  for (size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i] / image[i], 1.0f, 1e-4f);
+}
+
 TEST(B2_Solver, L2OfASpikeKeepsItsMean) {
   for (const Size s : kSizes) {
     GradientImages images = with_own_gradients(s.width, s.height, 1, std::vector<float>(size_t(s.width) * s.height, 0.5f));

@@ -26,9 +26,6 @@ void count_failure(Counters* counters, ShiftFailure cause) {
     case ShiftFailure::Jacobian:
       ++counters->fail_jacobian;
       break;
-    case ShiftFailure::NotInvertible:
-      ++counters->fail_not_invertible;
-      break;
     case ShiftFailure::None:
       break;
   }
