@@ -1,7 +1,7 @@
 """`make render`: renders frames of a .blend with Gradus in Blender, and says where the pictures are and what they took.
 
 Reads SCENE, FRAMES (1, 1-24 or 1,5,9-12), OUT, ARGS (options of the add-on, as after "--") and BLENDER from the environment.
-Exit code 1 unless every picture is there.
+With --check it only looks at these. Exit code 1 unless every picture is there.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -74,36 +75,57 @@ def timing(frames: int, wall: float, stats: list[dict]) -> str:
     return line + (f" ({', '.join(phases)} s{counts})" if stats else "")
 
 
-def render() -> None:
+@dataclass(frozen=True)
+class Request:
+    """What the user asks for."""
+
+    scene: Path
+    ranges: list[tuple[int, int]]
+    out: Path
+    arguments: list[str]
+
+
+def request() -> Request:
     scene = Path(os.environ.get("SCENE") or "sample_blends/hero.blend")
     if not scene.is_file():
         raise RenderError(f"SCENE={scene}: no such file")
     ranges = frame_ranges(os.environ.get("FRAMES") or "1")
+    text = os.environ.get("ARGS") or ""
+    try:
+        arguments = shlex.split(text)
+    except ValueError as error:
+        raise RenderError(f"ARGS={text}: {error}") from error
     out = Path(os.environ.get("OUT") or "out").absolute()
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RenderError(f"OUT={out}: {error.strerror}") from error
+    return Request(scene, ranges, out, arguments)
+
+
+def render(wanted: Request) -> None:
     blender = os.environ.get("BLENDER") or "/usr/bin/blender"
-    prefix = out / f"{scene.stem}_"
-    names = [f"{prefix}{frame_name(frame)}" for first, last in ranges for frame in range(first, last + 1)]
+    prefix = wanted.out / f"{wanted.scene.stem}_"
+    names = [f"{prefix}{frame_name(frame)}" for first, last in wanted.ranges for frame in range(first, last + 1)]
     files = [Path(name + suffix) for name in names for suffix in (".png", ".exr")]
     for file in files:
         file.unlink(missing_ok=True)  # an old picture must not pass for a new one
 
     with tempfile.TemporaryDirectory(prefix="gradus-render-") as folder:
         stats = Path(folder) / "stats.jsonl"
-        arguments = shlex.split(os.environ.get("ARGS") or "")
+        arguments = list(wanted.arguments)
         if not any(argument.partition("=")[0] == "--gradus-stats" for argument in arguments):
             arguments += ["--gradus-stats", str(stats)]
         environment = os.environ | {
             "BLENDER_USER_SCRIPTS": str(scripts_folder()),
             "GRADUS_RENDER_OUT": str(prefix),
-            "GRADUS_RENDER_FRAMES": json.dumps(ranges),
+            "GRADUS_RENDER_FRAMES": json.dumps(wanted.ranges),
         }
         start = time.monotonic()
         try:
-            code = subprocess.run(command(blender, scene, arguments), env=environment, stdin=subprocess.DEVNULL, check=False).returncode
+            code = subprocess.run(
+                command(blender, wanted.scene, arguments), env=environment, stdin=subprocess.DEVNULL, check=False
+            ).returncode
         except OSError as error:
             raise RenderError(f"BLENDER={blender}: {error.strerror}") from error
         wall = time.monotonic() - start
@@ -117,7 +139,9 @@ def render() -> None:
 
 def main() -> int:
     try:
-        render()
+        wanted = request()
+        if "--check" not in sys.argv:
+            render(wanted)
     except RenderError as error:
         print(f"render: {error}", file=sys.stderr)
         return 1

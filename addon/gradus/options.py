@@ -106,7 +106,8 @@ def _passes(text: str) -> frozenset[Pass]:
         elif name in Pass.__members__ and name != "COUNT":
             wanted.add(Pass[name])
         else:
-            raise OptionError(f"option {PREFIX}passes: unknown pass '{part}'")
+            known = sorted(n.lower() for n in {*passes.GROUPS, *Pass.__members__} - {"COUNT"})
+            raise OptionError(f"option {PREFIX}passes: unknown pass '{part}'; there are {', '.join(known)}")
     return frozenset(wanted)
 
 

@@ -287,7 +287,7 @@ class _Display:
     def _text(self, progress: native.Progress) -> str:
         if progress.phase == Phase.RECONSTRUCTING:
             return "Gradus: reconstructing"
-        return f"Gradus: sample {progress.samples_done}/{self.job.settings.samples}"
+        return f"Gradus: sample {progress.samples_done}/{self.job.settings.samples}, {100.0 * progress.fraction:.0f} %"
 
     def _picture(self) -> None:
         _read(self.job, self.handle, frozenset((passes.Pass.COMBINED, passes.Pass.NOISY_IMAGE)))

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"
+#include "base/error.h"
 #include "common.h"
 #include "frame/image_exr.h"
 #include "frame/store.h"
@@ -60,6 +61,7 @@ ordered_json frame_info(const std::string& path) {
 
 ordered_json describe(const std::string& path) {
   if (std::filesystem::path(path).extension() == ".gradus") return scene_info(path);
+  if (std::filesystem::path(path).extension() != ".exr") throw invalid_argument(path + " is neither FILE.gradus nor FILE.exr");
   if (is_frame_file(path)) return frame_info(path);
   return {{"kind", "image"}, {"channels", image_channels(path)}};
 }
