@@ -76,20 +76,20 @@ class L2Operator final : public LinearOperator {
  public:
   L2Operator(int width, int height, float alpha) : l2_(width, height, alpha) {}
 
-  void apply(const PoissonPlanes& planes, float* out) const override {
-    const ptrdiff_t step = ptrdiff_t(l2_.width()) * ptrdiff_t(planes.stride);
-    const L2Rows rows = [&](int y, const L2Use& use) {
-      const ptrdiff_t first = y * step;
-      use({planes.primal + first, planes.dx + first, planes.dy + first, y > 0 ? planes.dy + first - step : nullptr});
-    };
-    l2_.solve<1>(rows, planes.stride, out);
-  }
+  void apply(const PoissonPlanes& planes, float* out) const override { l2_.solve<1>(rows_of(planes, l2_.width()), planes.stride, out); }
 
  private:
   L2 l2_;
 };
 
 }  // namespace
+
+L2Rows rows_of(const PoissonPlanes& planes, int width) {
+  return [planes, step = ptrdiff_t(width) * ptrdiff_t(planes.stride)](int y, const L2Use& use) {
+    const ptrdiff_t first = y * step;
+    use({planes.primal + first, planes.dx + first, planes.dy + first, y > 0 ? planes.dy + first - step : nullptr});
+  };
+}
 
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha) { return std::make_unique<L2Operator>(width, height, alpha); }
 

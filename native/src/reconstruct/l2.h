@@ -16,6 +16,9 @@ using L2Use = std::function<void(const L2Row& row)>;
 // Lets `use` see row y; called from several threads, each row once.
 using L2Rows = std::function<void(int y, const L2Use& use)>;
 
+// Rows of planes that are there.
+L2Rows rows_of(const PoissonPlanes& planes, int width);
+
 // All channels at once; each has the bits that make_l2() gives.
 std::vector<float> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows);
 

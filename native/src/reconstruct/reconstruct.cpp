@@ -14,15 +14,6 @@ PoissonPlanes planes_of(const GradientImages& images, int channel) {
   return {images.primal.data() + channel, images.dx.data() + channel, images.dy.data() + channel, size_t(images.channels)};
 }
 
-// Rows of images that are there.
-L2Rows rows_of(const GradientImages& images) {
-  return [&images](int y, const L2Use& use) {
-    const size_t step = size_t(images.width) * size_t(images.channels), first = size_t(y) * step;
-    use({images.primal.data() + first, images.dx.data() + first, images.dy.data() + first,
-         y > 0 ? images.dy.data() + (first - step) : nullptr});
-  };
-}
-
 // Rows of a frame, which its images would take longer to write down than to make. A thread goes from one row to the next, so the row below
 // is often there already.
 class FrameRows {
@@ -57,7 +48,9 @@ class FrameRows {
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report) {
   alpha = chosen_alpha(reconstruction, alpha);
-  if (reconstruction == GRADUS_RECONSTRUCTION_L2) return solve_l2(images.width, images.height, images.channels, alpha, rows_of(images));
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
+    return solve_l2(images.width, images.height, images.channels, alpha, rows_of(planes_of(images, 0), images.width));
+  }
   if (reconstruction != GRADUS_RECONSTRUCTION_L1) throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   std::vector<float> result(images.primal.size());
   const L1Solver l1(images, alpha, cancel, report);

@@ -8,7 +8,7 @@ namespace gradus {
 
 inline constexpr int32_t kLattice = 16;
 
-// Cell that holds a coordinate; below 0, too, towards minus infinity.
-inline int32_t lattice_cell(int32_t x) { return x >= 0 ? x / kLattice : -((-x + kLattice - 1) / kLattice); }
+// Cell of `side` that holds a coordinate; below 0, too, towards minus infinity.
+inline int32_t lattice_cell(int32_t x, int32_t side = kLattice) { return x >= 0 ? x / side : -((-x + side - 1) / side); }
 
 }  // namespace gradus

@@ -27,7 +27,7 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     OffsetLight& light = o.light;
-    rays[k] = Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
+    rays[k] = kNoRay;
     wanted[k] = false;
     if (o.stage != OffsetStage::Traced) {
       continue;

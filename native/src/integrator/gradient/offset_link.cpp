@@ -41,7 +41,7 @@ void OffsetPaths::link_all(const Vertex& vertex) {
   bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    rays[k] = Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
+    rays[k] = kNoRay;
     wanted[k] = o.stage == OffsetStage::Pending && !o.link.known;
     if (wanted[k]) {
       o.link = OffsetLink{};

@@ -9,9 +9,8 @@ namespace gradus {
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
   ++counters_.rays_shift;
   o->advance();
-  const bool goes_on = base_segment_->end == SegmentEnd::Surface && !base_state_.emission_only;
   trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment,
-                goes_on ? Shading::Now : Shading::Later);
+                base_goes_on() ? Shading::Now : Shading::Later);
   o->fresh = true;
 }
 
@@ -23,7 +22,7 @@ CameraVertex* OffsetPaths::known_vertex(int k) const {
 }
 
 void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
-  if (base_segment_->end == SegmentEnd::Surface && v->segment.end == SegmentEnd::Surface && !base_state_.emission_only) {
+  if (base_goes_on() && v->segment.end == SegmentEnd::Surface) {
     shade_vertex(context_, v->ray.state, &v->vertex);
   }
   o->here = &v->vertex;
@@ -41,7 +40,7 @@ void OffsetPaths::trace_camera(const PathState& state) {
   bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    rays[k] = Ray{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
+    rays[k] = kNoRay;
     unknown[k] = false;
     if (o.stage != OffsetStage::Traced) {
       continue;
