@@ -14,8 +14,9 @@ import json
 import sys
 
 import numpy as np
-from bench import Worker, reference, version_of_build
+from bench import Worker, reference
 from scenes import ROOT, Scene, select
+from version import version_of_build
 
 BLOCK = 8
 TOLERANCE = 0.02

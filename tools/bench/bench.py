@@ -25,6 +25,7 @@ from pathlib import Path
 import numpy as np
 from metrics import rel_mse, rel_mse_trimmed, smape
 from scenes import QUICK, ROOT, Scene, select
+from version import version_of_build
 
 RESULTS = ROOT / "docs" / "benchmark" / "results.jsonl"
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "gradus" / "references"
@@ -87,12 +88,6 @@ def reference(
     np.savez_compressed(path.with_suffix(".part.npz"), mean=mean, variance=variance)
     path.with_suffix(".part.npz").rename(path)
     return mean, variance
-
-
-def version_of_build() -> str:
-    """The last commit that touched what is measured: committing results does not make them old."""
-    command = ["git", "-C", str(ROOT), "log", "-1", "--format=%h", "--", "native", "addon"]
-    return subprocess.run(command, capture_output=True, text=True).stdout.strip() or "unknown"
 
 
 @dataclass(frozen=True)

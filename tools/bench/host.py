@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from scenes import ROOT
+from version import cpu_name
 
 WORKER = str(Path(__file__).with_name("host_worker.py"))
 HOSTS = (
@@ -39,11 +40,6 @@ def measure(command: list[str]) -> dict:
 def spread(seconds: list[float], unit: float) -> str:
     middle, low, high = (value / unit for value in (statistics.median(seconds), min(seconds), max(seconds)))
     return f"{middle:.3g} ({low:.3g}–{high:.3g})"
-
-
-def cpu_name() -> str:
-    lines = Path("/proc/cpuinfo").read_text().splitlines()
-    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "unknown processor")
 
 
 def main() -> None:

@@ -10,6 +10,7 @@ import matplotlib.image
 import numpy as np
 from metrics import equal_time_ratio, slope
 from scenes import ROOT, SCENES
+from table import header, number
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -77,14 +78,6 @@ def sample_cost(by_samples: dict[int, list[dict]]) -> float | None:
     low, high = by_samples[counts[0]], by_samples[counts[-1]]
     cpu = np.median([r["cpu"] for r in high]) - np.median([r["cpu"] for r in low])
     return float(1e6 * cpu / (low[0]["width"] * low[0]["height"] * (counts[-1] - counts[0])))
-
-
-def number(value: float | None, form: str = ".2f") -> str:
-    return "–" if value is None else format(value, form)
-
-
-def header(*columns: str) -> list[str]:
-    return [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
 
 
 def ratio(modes: dict, a: str, b: str) -> float | None:

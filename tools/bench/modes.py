@@ -1,0 +1,67 @@
+"""What is compared: each mode is one line of a table. `apply` sets it on a Blender scene; no Blender is needed to read the table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+GRADUS, CYCLES, MITSUBA = "GRADUS", "CYCLES", "MITSUBA"
+
+
+@dataclass(frozen=True)
+class Mode:
+    label: str
+    engine: str
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+def _gradus(integrator: str, reconstruction: str) -> dict[str, Any]:
+    return {"integrator": integrator, "reconstruction": reconstruction}
+
+
+# Plain path tracing by both: light tree on; no guiding, clamps, filter glossy, adaptive sampling or denoiser.
+_CYCLES_PLAIN = {
+    "use_light_tree": True, "use_guiding": False, "use_adaptive_sampling": False, "use_denoising": False,
+    "blur_glossy": 0.0, "sample_clamp_direct": 0.0, "sample_clamp_indirect": 0.0,
+}  # fmt: skip
+_DENOISER = {
+    "use_denoising": True, "denoiser": "OPENIMAGEDENOISE", "denoising_quality": "HIGH", "denoising_prefilter": "ACCURATE",
+    "denoising_input_passes": "RGB_ALBEDO_NORMAL",
+}  # fmt: skip
+
+MODES = {
+    "path": Mode("Gradus PT", GRADUS, _gradus("PATH", "NONE")),
+    "gradient-none": Mode("Gradus G-PT, not reconstructed", GRADUS, _gradus("GRADIENT", "NONE")),
+    "gradient-l2": Mode("Gradus G-PT + L2", GRADUS, _gradus("GRADIENT", "L2")),
+    "gradient-weighted": Mode("Gradus G-PT + WEIGHTED", GRADUS, _gradus("GRADIENT", "WEIGHTED")),
+    "gradient-l1": Mode("Gradus G-PT + L1", GRADUS, _gradus("GRADIENT", "L1")),
+    "auto": Mode("Gradus AUTO", GRADUS, _gradus("AUTO", "AUTO")),
+    "cycles": Mode("Cycles", CYCLES, _CYCLES_PLAIN),
+    "cycles-denoised": Mode("Cycles + denoiser", CYCLES, _CYCLES_PLAIN | _DENOISER),
+    "cycles-shipped": Mode("Cycles as shipped", CYCLES),
+    "mitsuba": Mode("Mitsuba PT", MITSUBA),
+}
+REFERENCES = {GRADUS: "path", CYCLES: "cycles", MITSUBA: "mitsuba"}  # each engine against its own converged image
+
+_CYCLES_OWN = {name for mode in MODES.values() if mode.engine == CYCLES for name in mode.settings}
+
+
+def apply(scene: Any, name: str, samples: int, seed: int) -> None:
+    """Sets engine and settings; raises ValueError for what this Blender or this version of Gradus refuses."""
+    mode = MODES[name]
+    scene.render.engine = mode.engine
+    target = scene.gradus if mode.engine == GRADUS else scene.cycles
+    target.samples, target.seed = samples, seed
+    settings = mode.settings
+    if mode.engine == GRADUS:
+        target.noise_threshold = 0.0
+    else:
+        known = {setting for setting in _CYCLES_OWN if hasattr(target, setting)}  # Blender 3.4 has no light tree
+        settings = {setting: value for setting, value in settings.items() if setting in known}
+        for setting in known:
+            target.property_unset(setting)
+    for setting, value in settings.items():
+        try:
+            setattr(target, setting, value)
+        except TypeError as error:
+            raise ValueError(f"{setting} {value} does not exist here") from error
