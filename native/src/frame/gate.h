@@ -1,16 +1,25 @@
-// The one gate into a frame: what is not finite stays out and is counted by cause (architecture rule 2).
+// The one gate into a frame: what is not finite, or would make a sum so, stays out and is counted by cause (architecture rule 2).
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include "frame/frame.h"
 
 namespace gradus {
 
-inline bool is_finite(const Radiance& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z) && is_finite(v.w); }
+// Largest sum: what is read is the mean of two halves or the difference of two ends, which then have room in float.
+inline constexpr float kLargestSum = 1e37f;
+
+// Written so that NaN does not fit.
+inline bool fits(float v) { return std::fabs(v) <= kLargestSum; }
+inline bool fits(const Radiance& v) { return fits(v.x) && fits(v.y) && fits(v.z) && fits(v.w); }
 
 // One sample of a pixel. A dropped value counts as 0: the sample itself has been taken.
 inline void add_radiance(const Radiance& value, Radiance* sum, Counters* counters) {
-  if (is_finite(value)) {
-    *sum += value;
+  const Radiance next = *sum + value;
+  if (fits(next)) {
+    *sum = next;
   } else {
     ++counters->nonfinite_radiance;
   }
@@ -18,8 +27,9 @@ inline void add_radiance(const Radiance& value, Radiance* sum, Counters* counter
 
 // Gradient sample of a pair, already weighted (integrator/gradient/pair.h).
 inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counters) {
-  if (is_finite(value)) {
-    *sum += value;
+  const Radiance next = *sum + value;
+  if (fits(next)) {
+    *sum = next;
   } else {
     ++counters->nonfinite_gradient;
   }
@@ -27,16 +37,16 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
 
 // Values of a pass: added to its sums, or kept as they are where only the first sample counts.
 inline void add_feature(const float* values, float weight, size_t pixel, PassPlane* plane, Counters* counters) {
+  float* sum = plane->values.data() + pixel * plane->channels;
+  float next[4];
   for (uint32_t i = 0; i < plane->channels; ++i) {
-    if (!is_finite(values[i])) {
+    next[i] = plane->first_sample_only ? values[i] : sum[i] + values[i] * weight;
+    if (!fits(next[i])) {
       ++counters->nonfinite_feature;
       return;
     }
   }
-  float* sum = plane->values.data() + pixel * plane->channels;
-  for (uint32_t i = 0; i < plane->channels; ++i) {
-    sum[i] = plane->first_sample_only ? values[i] : sum[i] + values[i] * weight;
-  }
+  std::copy_n(next, plane->channels, sum);
   if (plane->skips_transparent) {
     plane->weight[pixel] += weight;
   }

@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/fpu.h"
 #include "frame/frame.h"
@@ -118,7 +119,7 @@ std::vector<float> read_variance(const Frame& frame) {
     }
     for (int c = 0; c < frame.channels; ++c) {
       const float half = 0.5f * difference[c];
-      variance[i * frame.channels + c] = half * half;
+      variance[i * frame.channels + c] = std::min(half * half, std::numeric_limits<float>::max());
     }
   }
   return variance;

@@ -1,6 +1,7 @@
 #include "render/pass_read.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "base/error.h"
@@ -11,6 +12,7 @@ namespace {
 
 // Depth of a pixel that sees nothing, as in Blender.
 constexpr float kFarDepth = 1e10f;
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
 const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
   for (const PassPlane& plane : frame.passes) {
@@ -88,7 +90,8 @@ void read_light(const Frame& frame, const PassPlane& light, const PassPlane& col
   for_pixels(frame, region, [&](size_t i, size_t out) {
     for (int c = 0; c < 3; ++c) {
       const float divisor = color.values[3 * i + c];
-      pixels[3 * out + c] = divisor > 0.0f ? frame.settings.film_exposure * light.values[3 * i + c] / divisor : 0.0f;
+      const float quotient = divisor > 0.0f ? frame.settings.film_exposure * light.values[3 * i + c] / divisor : 0.0f;
+      pixels[3 * out + c] = std::clamp(quotient, -kMaxFloat, kMaxFloat);
     }
   });
 }

@@ -110,6 +110,10 @@ void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic) {
   lobe->alpha_y = alpha * aspect;
 }
 
+void add_finite(const Rgb& value, Rgb* sum) {
+  if (is_finite(value)) *sum += value;
+}
+
 Lobe* add_lobe(ShadeResult* result, LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal) {
   if (!(max_component(weight) > kWeightCutoff)) return nullptr;
   Lobe* lobe = result->closures.add();
@@ -148,13 +152,13 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
     case GRADUS_OP_PRINCIPLED_3:
       return add_principled_3(args, c, result);
     case GRADUS_OP_TRANSPARENT:
-      result->transparency += args.weight * non_negative(args.v(0));
+      add_finite(args.weight * non_negative(args.v(0)), &result->transparency);
       return;
     case GRADUS_OP_HOLDOUT:
       result->holdout += args.weight;
       return;
     case GRADUS_OP_EMISSION:
-      result->emission += args.weight * args.v(0) * args.f(1);
+      add_finite(args.weight * args.v(0) * args.f(1), &result->emission);
       return;
     default:
       return;

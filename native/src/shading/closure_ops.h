@@ -33,6 +33,8 @@ void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic);
 Vec3 turned_tangent(const ShadeContext& context, const Vec3& tangent, const Vec3& normal, float turns);
 // A new lobe with the given weight; nullptr: too weak.
 Lobe* add_lobe(ShadeResult* result, LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal);
+// Broken inputs must not cost the light of others, which shares its samples (architecture rule 2): what is not finite is black.
+void add_finite(const Rgb& value, Rgb* sum);
 // What is left for the layers below one of the given albedo.
 Rgb layered(const Rgb& weight, const Rgb& albedo);
 

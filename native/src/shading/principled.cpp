@@ -48,7 +48,7 @@ class Layers {
   void add() {
     sheen();
     coat();
-    result_->emission += weight_ * args_.v(kEmission);
+    add_finite(weight_ * args_.v(kEmission), &result_->emission);
     if (args_.mode & kEmissionOnly) return;
     metal();
     glass();

@@ -26,6 +26,27 @@ TEST(B6_Gate, NonFiniteSamplesStayOutAndAreCounted) {
   }
 }
 
+// Samples of 3e38 are finite, sums of two were not, nor were the mean of both halves and the variance.
+TEST(B6_Gate, SumsThatWouldOverflowStayOutAndAreCounted) {
+  Frame frame = small_frame();
+  PassPlane plane{GRADUS_PASS_EMISSION, 3, false, false, std::vector<float>(36), {}};
+  for (int half = 0; half < kHalves; ++half) {
+    for (const float value : {3e38f, 6e36f, 6e36f}) {
+      const float feature[3] = {value, value, value};
+      add_radiance(Radiance(half == 0 ? value : -value), &frame.components[0].primal[half][5], &frame.counters);
+      add_gradient(Radiance(value), &frame.components[0].gradient[half][kRight][5], &frame.counters);
+      add_feature(feature, 1.0f, 5, &plane, &frame.counters);
+      ++frame.count[half][5];
+    }
+  }
+  EXPECT_EQ(frame.counters.nonfinite_radiance, 4u);
+  EXPECT_EQ(frame.counters.nonfinite_gradient, 4u);
+  EXPECT_EQ(frame.counters.nonfinite_feature, 5u);
+  EXPECT_EQ(frame.components[0].primal[0][5].x, 6e36f);
+  EXPECT_TRUE(is_finite(read_images(frame, 0, false).primal[15]));
+  EXPECT_TRUE(is_finite(read_variance(frame)[15]));
+}
+
 // Differences come from the pair's own samples and the way back, each over its count.
 TEST(Frame, MergesPairsByTheirCounts) {
   Frame frame = small_frame();

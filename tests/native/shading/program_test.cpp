@@ -1,6 +1,7 @@
 // Compilation: folding, skipping, registers, and refusal of what is no program.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "base/error.h"
@@ -208,6 +209,19 @@ TEST(NodeProgram, RoughnessIsKnownWhereConstant) {
 TEST(NodeProgram, NoSurfaceIsBlack) {
   const auto m = ProgramBuilder().compile(-1);
   EXPECT_TRUE(m->surface.empty() && !m->emits && !m->has_bsdf);
+}
+
+// NaN in an emission made every path that met it drop, and with it the light of all others.
+TEST(NodeProgram, WhatShinesNoFiniteLightIsBlack) {
+  for (const float value : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
+    ProgramBuilder b;
+    const int glow = emission(&b, In(value));
+    const int clear = b.add(GRADUS_OP_TRANSPARENT, {In(value)});
+    const auto m = b.compile(b.add(GRADUS_OP_ADD_SHADER, {In::from(glow), In::from(clear)}));
+    EXPECT_EQ(run(m->surface).emission, Rgb(0.0f));
+    EXPECT_EQ(run(m->surface).transparency, Rgb(0.0f));
+    EXPECT_EQ(m->constant_emission, Rgb(0.0f));
+  }
 }
 
 TEST(NodeProgram, DefaultMaterialIsGrey) {
