@@ -6,7 +6,7 @@ ARGS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build render test test-full test-native test-addon bench bench-quick bench-speed bench-host picture package format lint clean
+.PHONY: help build render test test-full test-native test-addon stress bench bench-quick bench-speed bench-host picture package format lint clean
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -28,6 +28,9 @@ test-native:    ## only the tests of the library
 
 test-addon:     ## only those in Blender 3.4, 4.5 and 5.0: HOSTS=bpy45 TESTS=tests/addon/x_test.py
 	@tools/test.sh addon
+
+stress:         ## numerical stability: hard scenes, their dropped samples and failed shifts as a table
+	@tools/test.sh stress
 
 bench:          ## error against CPU time, all scenes; interrupted runs go on: SCENES=a,b MINUTES=60
 	@tools/bench.sh

@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs tests. usage: test.sh [--full] all | native | addon
+# Sets up, builds and runs tests. usage: test.sh [--full] all | native | addon, or test.sh stress
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 case " $* " in
-  *" native "*) tools/setup/setup build ;;
+  *" native "* | *" stress "*) tools/setup/setup build ;;
   *) tools/setup/setup test ;;
 esac
 tools/build.sh tests
 case " $* " in
   *" addon "*) ;;
   *" --full "*) tools/build.sh sanitizers ;;
+esac
+case " $* " in
+  *" stress "*) GRADUS_TEST_FULL=1 exec build/tests/gradus_stress_tests --gtest_brief=1 ;;
 esac
 exec /usr/bin/python3 tools/test.py "$@"

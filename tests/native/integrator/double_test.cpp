@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "frame/gate.h"
 #include "integrator/gradient/offset_paths.h"
 #include "integrator/pixel_loop.h"
+#include "support/double_image.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
@@ -13,80 +13,19 @@ namespace gradus {
 namespace {
 
 using test::Scenario;
-using DVec3 = glm::dvec3;
 
 // No emitter of these scenes tells kinds of rays apart.
 const RayState kAnyRay;
 
-DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
-
-// Follows a path and adds up its light in double: from the values and densities that sampling found (in float), anew multiplied, weighed
-// and summed.
-class DoubleObserver : public NoObserver {
- public:
-  explicit DoubleObserver(const PathContext& context) : context_(context) {}
-  DVec3 radiance = DVec3(0.0);
-
-  void begin(const Sampler&, const Vec2&, const Vec2&) {
-    radiance = DVec3(0.0);
-    throughput_ = DVec3(1.0);
-  }
-  void lamp(const RaySource&, const Contribution& c, const LampSighting& lamp) { add(to_double(lamp.weight) * found(c)); }
-  void passed(const Segment& segment) { throughput_ *= to_double(segment.weight); }
-  void world(const RaySource&, const Contribution& c) { add(found(c)); }
-  void emission(const RaySource&, const Contribution& c, const Vertex&) { add(found(c)); }
-  void survived(float probability, const Vertex&) { throughput_ /= double(probability); }
-  void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
-    const LitClass lit = light_class(context_, vertex, scatter_class, sample, kAnyRay);
-    add(to_double(lit.value) * to_double(c.light) / (double(c.pdf_light) + double(lit.pdf_bsdf)));
-  }
-  void scatter(const Vertex& vertex, const VertexSample&, const ScatterEvent& event) {
-    const double pdf = double(vertex.shade.closures.class_probability(event.scatter_class)) * double(event.sample.pdf);
-    throughput_ *= to_double(event.sample.value) / pdf;
-  }
-
- private:
-  static DVec3 found(const Contribution& c) {
-    const double light = c.pdf_light, bsdf = c.pdf_bsdf;
-    return to_double(c.light) * (light > 0.0 ? bsdf / (light + bsdf) : 1.0);
-  }
-  void add(const DVec3& value) { radiance += throughput_ * value; }
-  const PathContext& context_;
-  DVec3 throughput_ = DVec3(1.0);
-};
-
 class B8_Double : public ::testing::TestWithParam<Scenario> {};
 
 TEST_P(B8_Double, ImagesDifferByLessThanOnePercentOfTheirNoise) {
-  constexpr uint32_t width = 16, height = 12, samples = 64;
   test::PathScene scene;
   test::build(GetParam(), &scene);
-  const IntegratorContext context = scene.context(test::test_settings(width, height));
-  const PathContext path(*context.snapshot, context.camera, context.settings);
-  Frame frame = test::make_test_frame(context.settings, false);
-  const auto scratch = std::make_unique<PathScratch>();
-  PassRecorder recorder(path, &frame, &frame.counters);
-  DoubleObserver observer(path);
-  PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &frame.counters, &observer);
-  std::vector<DVec3> sum(size_t(width) * height, DVec3(0.0)), squares(sum);
-  const WorkUnit unit{frame.region, 0, samples, nullptr};
-  const auto vertices = std::make_unique<CameraVertices>(path);
-  for_each_sample(path, unit, frame, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
-    add_primal(tracer.trace(s.sampler, s.film, s.first), s, &frame, &frame.counters);
-    sum[s.pixel] += observer.radiance;
-    squares[s.pixel] += observer.radiance * observer.radiance;
-  });
-  const std::vector<float> image = read_images(frame, 0, false).primal;
-  double worst = 0.0;
-  for (size_t i = 0; i < image.size(); ++i) {
-    const double mean = sum[i / 3][int(i % 3)] / samples;
-    const double variance = (squares[i / 3][int(i % 3)] / samples - mean * mean) / (samples - 1);
-    const double error = std::sqrt(std::max(0.0, variance)), difference = std::fabs(image[i] - mean);
-    EXPECT_LE(difference, 0.01 * error + 1e-6 * mean);
-    worst = std::max(worst, error > 0.0 ? difference / error : 0.0);
-  }
-  EXPECT_GT(image[image.size() / 2], 0.0f);
-  std::printf("  worst: %.2g of the standard error\n", worst);
+  const test::DoubleImage result = test::render_in_double(scene.context(test::test_settings(16, 12)), 64);
+  EXPECT_LE(result.worst(), 1.0);
+  EXPECT_GT(result.image[result.image.size() / 2], 0.0f);
+  std::printf("  worst: %.2g of the bound\n", result.worst());
 }
 
 // Vertices of neighbouring pixels that camera rays meet.

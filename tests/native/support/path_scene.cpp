@@ -132,7 +132,7 @@ void PathScene::quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t 
   soup.triangle(corner, corner + a + b, corner + b);
   const uint64_t key = next_key_++;
   scene.mesh(key, soup);
-  scene.instance(key, Mat4(1.0f), visibility, material);
+  scene.instance(key, place, visibility, material);
 }
 
 void PathScene::ball(const Vec3& centre, float radius, uint64_t material, int rings, bool smooth) {
@@ -148,7 +148,7 @@ void PathScene::ball(const Vec3& centre, float radius, uint64_t material, int ri
   }
   const uint64_t key = next_key_++;
   scene.scene.set_mesh(key, mesh.desc);
-  scene.instance(key, Mat4(1.0f), GRADUS_VISIBLE_ALL, material);
+  scene.instance(key, place, GRADUS_VISIBLE_ALL, material);
 }
 
 void PathScene::world(const Rgb& radiance) {
@@ -160,7 +160,8 @@ void PathScene::world(const Rgb& radiance) {
 void PathScene::camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type) {
   camera_desc.struct_size = sizeof(GradusCamera);
   camera_desc.type = type;
-  const Mat4 m = look_at(from, at);
+  Mat4 m = look_at(from, at);
+  m[3] = place * m[3];
   for (int i = 0; i < 16; ++i) {
     camera_desc.matrix[i] = camera_desc.matrix_previous[i] = camera_desc.matrix_next[i] = m[i / 4][i % 4];
   }

@@ -40,6 +40,8 @@ class PathScene {
   void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
 
   GradusCamera camera_desc{};
+  // Where quads, balls and the camera are put that follow: a translation and a scale.
+  Mat4 place = Mat4(1.0f);
   // Commits. settings.width and height give the camera's aspect.
   IntegratorContext context(const GradusSettings& settings);
 

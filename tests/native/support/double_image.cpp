@@ -1,0 +1,97 @@
+#include "support/double_image.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrator/pixel_loop.h"
+#include "support/path_scene.h"
+
+namespace gradus::test {
+
+namespace {
+
+using DVec3 = glm::dvec3;
+
+// No emitter of these scenes tells kinds of rays apart.
+const RayState kAnyRay;
+
+DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
+
+// Follows a path and adds up its light.
+class DoubleObserver : public NoObserver {
+ public:
+  explicit DoubleObserver(const PathContext& context) : context_(context) {}
+  DVec3 radiance = DVec3(0.0);
+
+  void begin(const Sampler&, const Vec2&, const Vec2&) {
+    radiance = DVec3(0.0);
+    throughput_ = DVec3(1.0);
+  }
+  void lamp(const RaySource&, const Contribution& c, const LampSighting& lamp) { add(to_double(lamp.weight) * found(c)); }
+  void passed(const Segment& segment) { throughput_ *= to_double(segment.weight); }
+  void world(const RaySource&, const Contribution& c) { add(found(c)); }
+  void emission(const RaySource&, const Contribution& c, const Vertex&) { add(found(c)); }
+  void survived(float probability, const Vertex&) { throughput_ /= double(probability); }
+  void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+    const LitClass lit = light_class(context_, vertex, scatter_class, sample, kAnyRay);
+    add(to_double(lit.value) * to_double(c.light) / (double(c.pdf_light) + double(lit.pdf_bsdf)));
+  }
+  void scatter(const Vertex& vertex, const VertexSample&, const ScatterEvent& event) {
+    const double pdf = double(vertex.shade.closures.class_probability(event.scatter_class)) * double(event.sample.pdf);
+    throughput_ *= to_double(event.sample.value) / pdf;
+  }
+
+ private:
+  static DVec3 found(const Contribution& c) {
+    const double light = c.pdf_light, bsdf = c.pdf_bsdf;
+    return to_double(c.light) * (light > 0.0 ? bsdf / (light + bsdf) : 1.0);
+  }
+  void add(const DVec3& value) { radiance += throughput_ * value; }
+  const PathContext& context_;
+  DVec3 throughput_ = DVec3(1.0);
+};
+
+struct Sums {
+  DVec3 sum = DVec3(0.0), squares = DVec3(0.0);
+};
+
+}  // namespace
+
+double DoubleImage::worst() const {
+  double result = 0.0;
+  for (size_t i = 0; i < image.size(); ++i) {
+    const double difference = std::fabs(image[i] - mean[i]), bound = 0.01 * error[i] + 1e-6 * std::fabs(mean[i]);
+    if (difference > 0.0) result = std::max(result, bound > 0.0 ? difference / bound : HUGE_VAL);
+  }
+  return result;
+}
+
+DoubleImage render_in_double(const IntegratorContext& context, uint32_t samples) {
+  const PathContext path(*context.snapshot, context.camera, context.settings);
+  Frame frame = make_test_frame(context.settings, false);
+  const auto scratch = std::make_unique<PathScratch>();
+  PassRecorder recorder(path, &frame, &frame.counters);
+  DoubleObserver observer(path);
+  PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &frame.counters, &observer);
+  std::vector<Sums> sums(size_t(frame.region.area()));
+  const WorkUnit unit{frame.region, 0, samples, nullptr};
+  const auto vertices = std::make_unique<CameraVertices>(path);
+  for_each_sample(path, unit, frame, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
+    const PathResult result = tracer.trace(s.sampler, s.film, s.first);
+    add_primal(result, s, &frame, &frame.counters);
+    if (!fits(result.radiance)) return;
+    sums[s.pixel].sum += observer.radiance;
+    sums[s.pixel].squares += observer.radiance * observer.radiance;
+  });
+  DoubleImage result;
+  result.image = read_images(frame, 0, false).primal;
+  for (size_t i = 0; i < result.image.size(); ++i) {
+    const double mean = sums[i / 3].sum[int(i % 3)] / samples;
+    const double variance = (sums[i / 3].squares[int(i % 3)] / samples - mean * mean) / std::max(1u, samples - 1);
+    result.mean.push_back(mean);
+    result.error.push_back(std::sqrt(std::max(0.0, variance)));
+  }
+  return result;
+}
+
+}  // namespace gradus::test

@@ -1,0 +1,164 @@
+// B6 at large: what is not finite, and fireflies, put into samples on purpose.
+#include <cmath>
+#include <limits>
+
+#include "frame/gate.h"
+#include "render/combine.h"
+#include "render/fake_integrator.h"
+#include "stress/stress.h"
+
+namespace gradus::stress {
+namespace {
+
+using test::FakeIntegrator;
+
+// The fake scene (a smooth picture with exact differences), into which further samples are put.
+class Injecting : public Integrator {
+ public:
+  using Value = std::function<Radiance(int32_t x, int32_t y, uint32_t sample)>;
+  Injecting(const IntegratorContext& context, Value value) : fake_(context, true), value_(std::move(value)) {}
+
+  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
+    fake_.sample(unit, frame, counters, stop);
+    for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
+      for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
+        for (uint32_t s = unit.first_sample; s < unit.first_sample + unit.count; ++s) inject(x, y, s, frame, counters);
+      }
+    }
+  }
+
+ private:
+  // As the gradient integrator would: a firefly of a pixel whose shifts fail stands in all of its differences.
+  void inject(int32_t x, int32_t y, uint32_t s, Frame* frame, Counters* counters) const {
+    const Radiance value = value_(x, y, s);
+    if (value == Radiance(0.0f)) return;
+    const size_t i = frame->index(x, y);
+    add_radiance(value, &frame->components[0].primal[s % 2][i], counters);
+    for (int k = 0; k < kOffsets; ++k) {
+      if (frame->region.contains(x + kOffsetX[k], y + kOffsetY[k])) {
+        add_gradient(-0.5f * value, &frame->components[0].gradient[s % 2][k][i], counters);
+      }
+    }
+  }
+  FakeIntegrator fake_;
+  Value value_;
+};
+
+struct Images {
+  std::vector<float> noisy, l2, l1;
+  Counters counters;
+};
+
+Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) {
+  const GradusSettings settings = test::small_settings(size, size, samples);
+  Render render(nullptr, test::empty_snapshot(), settings, nullptr,
+                [&](const IntegratorContext& context, uint32_t) { return std::make_unique<Injecting>(context, value); });
+  EXPECT_TRUE(render.wait(-1.0));
+  const auto frame = render.frame();
+  SolveReport report;
+  const auto image = [&](uint32_t how) {
+    return combine(
+        *frame, how, 0.0f, frame->region, [] { return false; }, &report);
+  };
+  Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1), frame->counters};
+  for (const auto* i : {&images.noisy, &images.l2, &images.l1}) expect_finite(*i, "image");
+  return images;
+}
+
+const Injecting::Value kNothing = [](int32_t, int32_t, uint32_t) { return Radiance(0.0f); };
+
+// A million fireflies of up to 1e6 times the picture, on its left half. L2 keeps their sum; its response falls by 0.67 per pixel
+// (docs/method.md), so behind 64 pixels (1e-11) the right half does not feel them. L1 takes its scale from the median of the picture, which
+// fireflies have moved: it may do less there than without them, but no harm.
+TEST(Fireflies, AMillionOfThemStayWhereTheyAre) {
+  const uint32_t size = full_run() ? 1024 : 256, samples = full_run() ? 4 : 8;
+  const uint64_t wanted = full_run() ? 1000000 : 100000;
+  const double share = double(wanted) / (double(size) * size / 2 * samples);
+  std::atomic<uint64_t> injected{0};
+  const Images images = rendered(size, samples, [&](int32_t x, int32_t y, uint32_t s) {
+    if (x >= int32_t(size / 2) || test::random_value(x, y, s + 2000) >= share) return Radiance(0.0f);
+    ++injected;
+    const float value = std::pow(10.0f, 6.0f * test::random_value(x, y, s + 1000));
+    return Radiance(value, value, value, 0.0f);
+  });
+  EXPECT_NEAR(double(injected), double(wanted), 0.05 * double(wanted));
+  enter_row(std::to_string(injected) + " fireflies", images.counters);
+  EXPECT_NEAR(mean(images.l2) / mean(images.noisy), 1.0, 1e-5);
+  const Images calm = rendered(size, samples, kNothing);
+  double l2 = 0.0, l1 = 0.0, noisy = 0.0;
+  for (uint32_t y = 0; y < size; ++y) {
+    for (uint32_t x = size / 2 + 64; x < size; ++x) {
+      const size_t i = 4 * (size_t(y) * size + x);
+      const float truth = test::fake_truth(int32_t(x), int32_t(y));
+      l2 = std::max(l2, double(std::fabs(images.l2[i] - calm.l2[i])));
+      l1 += std::pow(images.l1[i] - truth, 2);
+      noisy += std::pow(images.noisy[i] - truth, 2);
+    }
+  }
+  // 1e-7 of the largest firefly: the rounding of transforms that hold it.
+  EXPECT_LT(l2, 0.1);
+  EXPECT_LT(l1, 1.1 * noisy);
+}
+
+// Few enough to be told from the picture: L1 leaves them out.
+TEST(Fireflies, ScatteredOnesDoNotSpreadInL1) {
+  const auto scattered = [](int32_t x, int32_t y, uint32_t s) {
+    return s == 1 && x % 37 == 5 && y % 37 == 7 ? Radiance(1e6f, 1e6f, 1e6f, 0.0f) : Radiance(0.0f);
+  };
+  const Images images = rendered(256, 16, scattered), calm = rendered(256, 16, kNothing);
+  size_t off = 0;
+  for (size_t i = 0; i < images.l1.size(); ++i) off += std::fabs(images.l1[i] - calm.l1[i]) > 0.1f ? 1 : 0;
+  EXPECT_LE(double(off), 0.01 * double(images.l1.size()));
+}
+
+// Every tenth sample is no number; they are counted, and the rest of the pixel's samples make its value.
+TEST(NonFinite, SamplesAreDroppedAndCounted) {
+  constexpr uint32_t size = 64, samples = 16;
+  std::atomic<uint64_t> injected{0};
+  const float bad[] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
+  const Images images = rendered(size, samples, [&](int32_t x, int32_t y, uint32_t s) {
+    if (test::hash(uint32_t(x + 64 * y) * samples + s) % 10 != 0) return Radiance(0.0f);
+    ++injected;
+    return Radiance(1.0f, bad[s % 3], 1.0f, 0.0f);
+  });
+  const Images calm = rendered(size, samples, kNothing);
+  enter_row(std::to_string(injected) + " samples that are not finite", images.counters);
+  EXPECT_GT(injected, 6000u);
+  EXPECT_EQ(images.counters.nonfinite_radiance, injected);
+  EXPECT_EQ(images.noisy, calm.noisy);
+  EXPECT_EQ(images.l2, calm.l2);
+  EXPECT_EQ(images.l1, calm.l1);
+}
+
+// A material that shines NaN is black. It took the samples of all paths that met it, two thirds of the picture.
+TEST(NonFinite, AMaterialThatShinesNaNIsBlack) {
+  const auto shining = [](const std::string& name, float value) {
+    PathScene scene;
+    build_box(&scene);
+    Surface surface = test::matte(Rgb(0.2f));
+    surface.emission = Rgb(value);
+    scene.quad(Vec3(-0.2f, -0.2f, 0.9f), Vec3(0.4f, 0, 0), Vec3(0, 0.4f, 0), scene.material(surface));
+    return render(name, &scene, {});
+  };
+  const Outcome black = shining("material that does not shine", 0.0f);
+  for (const float value : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
+    const Outcome broken = shining("material that shines " + text_of(value), value);
+    EXPECT_NEAR(mean(broken.noisy), mean(black.noisy), 0.05 * mean(black.noisy));
+  }
+}
+
+// Each sample is finite, their sum is not: the picture had infinite pixels.
+TEST(NonFinite, SumsDoNotOverflow) {
+  const GradusSettings settings = small_picture();
+  const uint64_t all = uint64_t(settings.width) * settings.height * settings.samples;
+  PathScene scene;
+  build_box(&scene);
+  Surface surface;
+  surface.emission = Rgb(3e38f);
+  scene.quad(Vec3(-0.2f, -0.2f, 0.9f), Vec3(0.4f, 0, 0), Vec3(0, 0.4f, 0), scene.material(surface));
+  // Nearly every path finds it, and carries more than may be summed: radiance, four gradients and a few passes.
+  render("material that shines 3e38", &scene, Bounds().dropping(10 * all).without_double());
+}
+
+}  // namespace
+}  // namespace gradus::stress

@@ -1,0 +1,112 @@
+// E4 for the integrators: lights without extent, without power, and with more than floats can carry.
+#include <cmath>
+
+#include "stress/stress.h"
+
+namespace gradus::stress {
+namespace {
+
+using test::make_light;
+using test::translation;
+
+struct LampCase {
+  const char* name;
+  GradusLight light;
+};
+
+GradusLight lamp(GradusLightType type, float strength) {
+  Mat4 down = translation(Vec3(0.2f, 0.6f, 0.2f));  // shines along -z of the lamp
+  down[1] = Vec4(0, 0, -1, 0);
+  down[2] = Vec4(0, 1, 0, 0);
+  GradusLight light = make_light(type, down, Rgb(strength));
+  light.size[0] = light.size[1] = 0.3f;
+  light.angle = 0.01f;
+  light.radius = 0.05f;
+  return light;
+}
+
+std::vector<LampCase> without_extent() {
+  std::vector<LampCase> cases;
+  for (const float size : {0.0f, 1e-30f, 1e-6f}) {
+    for (const GradusLightType type :
+         {GRADUS_LIGHT_POINT, GRADUS_LIGHT_SPOT, GRADUS_LIGHT_SUN, GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
+      GradusLight light = lamp(type, 1.0f);
+      light.radius = light.angle = light.size[0] = light.size[1] = size;
+      cases.push_back({"lamp without extent", light});
+    }
+  }
+  for (const float cone : {0.0f, 1e-6f, kPi}) {
+    GradusLight light = lamp(GRADUS_LIGHT_SPOT, 1.0f);
+    light.cone = cone;
+    cases.push_back({"spot", light});
+  }
+  for (const float spread : {0.0f, 1e-6f}) {
+    GradusLight light = lamp(GRADUS_LIGHT_RECTANGLE, 1.0f);
+    light.spread = spread;
+    cases.push_back({"area without spread", light});
+  }
+  return cases;
+}
+
+std::string name_of(const LampCase& c) {
+  return std::string(c.name) + ": type " + std::to_string(c.light.type) + ", size " + text_of(c.light.size[0]) + ", cone " +
+         text_of(c.light.cone) + ", spread " + text_of(c.light.spread);
+}
+
+TEST(Lamps, WithoutExtent) {
+  for (const LampCase& c : without_extent()) {
+    PathScene scene;
+    build_box(&scene);
+    scene.light(c.light);
+    render(name_of(c), &scene, {});
+  }
+}
+
+// 1e38 W are 8e36 W/sr: at a tenth of a metre 8e38 W/m², beyond float. What overflows is dropped, what would let a sum overflow, too; the
+// rest of the picture is there. The lamps of areas are seen by one pixel in 40, whose samples are dropped with four gradients and some
+// passes.
+TEST(Lamps, Of1e38Watts) {
+  const GradusSettings settings = small_picture();
+  const uint64_t all = uint64_t(settings.width) * settings.height * settings.samples;
+  for (const GradusLightType type :
+       {GRADUS_LIGHT_POINT, GRADUS_LIGHT_SPOT, GRADUS_LIGHT_SUN, GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
+    PathScene scene;
+    build_box(&scene);
+    scene.light(lamp(type, 1e38f));
+    render("lamp of 1e38, type " + std::to_string(type), &scene, Bounds().dropping(all / 4).without_double());
+  }
+}
+
+TEST(Lamps, DarkAndNegative) {
+  for (const float strength : {0.0f, 1e-38f, 1e-45f, -1.0f}) {
+    PathScene scene;
+    build_box(&scene);
+    scene.light(lamp(GRADUS_LIGHT_POINT, strength));
+    scene.light(lamp(GRADUS_LIGHT_RECTANGLE, strength));
+    render("lamps of " + text_of(strength), &scene, {});
+  }
+}
+
+// It faces away from the box, behind its back wall.
+TEST(Lamps, AHugeOneThatShinesAwayAddsNothing) {
+  PathScene scene;
+  build_box(&scene);
+  const Outcome alone = render("box without it", &scene, {});
+  scene.light(make_light(GRADUS_LIGHT_RECTANGLE, translation(Vec3(0, 0, -50)), Rgb(1e30f)));
+  const Outcome outcome = render("lamp of 1e30 that shines away", &scene, {});
+  EXPECT_NEAR(mean(outcome.noisy) / mean(alone.noisy), 1.0, 0.05);
+}
+
+TEST(Lamps, EmissiveTrianglesOfAnySize) {
+  for (const float size : {1e-12f, 1e-6f, 1e4f}) {
+    PathScene scene;
+    build_box(&scene);
+    Surface light;
+    light.emission = Rgb(1.0f);
+    scene.quad(Vec3(-size, 0.5f, -size), Vec3(2 * size, 0, 0), Vec3(0, 0, 2 * size), scene.material(light));
+    render("emissive triangles of " + text_of(size), &scene, {});
+  }
+}
+
+}  // namespace
+}  // namespace gradus::stress
