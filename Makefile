@@ -6,7 +6,8 @@ ARGS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build render test test-full test-native test-addon stress bench bench-quick bench-speed bench-host picture package format lint clean
+.PHONY: help build render test test-full test-native test-addon stress package format lint clean
+.PHONY: bench bench-errors bench-quick bench-speed bench-suite bench-pictures bench-host bench-report picture
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -32,17 +33,31 @@ test-addon:     ## only those in Blender 3.4, 4.5 and 5.0: HOSTS=bpy45 TESTS=tes
 stress:         ## numerical stability: hard scenes, their dropped samples and failed shifts as a table
 	@tools/test.sh stress
 
-bench:          ## error against CPU time, all scenes; interrupted runs go on: SCENES=a,b MINUTES=60
-	@tools/bench.sh
+bench:          ## everything below, all scenes; interrupted runs go on: SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 MINUTES=60
+	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
+	 tools/bench.sh
 
-bench-quick:    ## the same for two scenes, in under five minutes
+bench-errors:   ## error against CPU time alone; limited by the same variables
+	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
+	 tools/bench.sh --errors
+
+bench-quick:    ## errors of two scenes, in under five minutes
 	@tools/bench.sh --quick
 
-bench-speed:    ## CPU time of a sample in a room of 1 k to 2 M triangles, against Cycles: ROOMS=room-1k WIDTH=640 REPEATS=3
-	@ROOMS='$(ROOMS)' WIDTH='$(WIDTH)' REPEATS='$(REPEATS)' tools/bench.sh --speed
+bench-speed:    ## CPU time of a sample in a room of 1 k to 2 M triangles, against Cycles: ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3
+	@ROOMS='$(ROOMS)' SPEED_WIDTH='$(SPEED_WIDTH)' REPEATS='$(REPEATS)' tools/bench.sh --speed
+
+bench-suite:    ## time of the statistical tests, and of the reconstructions at 1920x1080
+	@tools/bench.sh --suite
+
+bench-pictures: ## pictures of the project's own scenes by all modes: SCENES=hero
+	@SCENES='$(SCENES)' tools/bench.sh --pictures
 
 bench-host:     ## export and upload in each Blender, half a minute
 	@tools/bench.sh --host
+
+bench-report:   ## docs/benchmark/report.html and README.md from the stored results alone
+	@tools/bench.sh --report
 
 picture:        ## docs/images/hero.png, the picture of the README
 	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 64' BLENDER='$(BLENDER)' tools/render.sh

@@ -1,40 +1,60 @@
 #!/usr/bin/env bash
-# Runs the benchmark and writes its report. usage: bench.sh [--quick | --speed | --host]; SCENES=a,b and MINUTES=60 limit it.
-# --speed: only the time of a sample in the room (ROOMS=room-1k WIDTH=640 REPEATS=3). --host: only export and upload. --quick leaves both out.
+# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --speed | --suite | --pictures | --host | --report], all without an option.
+#   --errors  error against CPU time; SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 SEEDS=5 SAMPLES=4,16,64 MINUTES=60 limit it
+#   --quick   the same of two scenes, smaller
+#   --speed   time of a sample in the room; ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3 MINUTES=60 limit it
+#   --suite   time of the statistical tests and of the reconstructions
+#   --pictures  pictures of the project's own scenes by all modes
+#   --host    export and upload
+#   --report  nothing but the report, from what is stored
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 python=.venv/bpy45/bin/python3
 part=${1:-all}
-case $part in
-  --quick) tools/setup/setup build bpy ;;
-  *) tools/setup/setup build blender bpy ;;
-esac
-tools/build.sh
 
+set_up() { tools/setup/setup build bpy bench "$@" && tools/build.sh; }
 option() { [ -z "$2" ] || arguments+=("$1" "$2"); }
 
-host() { "$python" tools/bench/host.py; }
-speed() {
-  local arguments=()
-  option --rooms "${ROOMS:-}"
-  option --width "${WIDTH:-}"
-  option --repeats "${REPEATS:-}"
-  option --minutes "${MINUTES:-}"
-  "$python" tools/bench/speed.py "${arguments[@]}"
-  "$python" tools/bench/speed_report.py
-}
 errors() {
   local arguments=("$@")
   option --scenes "${SCENES:-}"
+  option --modes "${MODES:-}"
+  option --width "${WIDTH:-}"
+  option --reference "${REFERENCE:-}"
+  option --seeds "${SEEDS:-}"
+  option --samples "${SAMPLES:-}"
   option --minutes "${MINUTES:-}"
   "$python" tools/bench/bench.py "${arguments[@]}"
-  "$python" tools/bench/report.py
 }
+speed() {
+  local arguments=()
+  option --rooms "${ROOMS:-}"
+  option --width "${SPEED_WIDTH:-}"
+  option --repeats "${REPEATS:-}"
+  option --minutes "${MINUTES:-}"
+  "$python" tools/bench/speed.py "${arguments[@]}"
+}
+suite() {
+  tools/build.sh tests
+  "$python" tools/bench/suite.py
+  "$python" tools/bench/solve.py
+}
+host() { "$python" tools/bench/host.py; }
+pictures() {
+  local arguments=()
+  option --scenes "${SCENES:-}"
+  "$python" tools/bench/pictures.py "${arguments[@]}"
+}
+report() { "$python" tools/bench/report.py; }
 
 case $part in
-  --host) host ;;
-  --speed) speed ;;
-  --quick) errors --quick ;;
-  all) host; speed; errors ;;
+  --errors) set_up; errors; report ;;
+  --quick) set_up; errors --quick; report ;;
+  --speed) set_up blender; speed; report ;;
+  --suite) set_up; suite; report ;;
+  --pictures) set_up; pictures; report ;;
+  --host) set_up blender; host ;;
+  --report) tools/setup/setup bpy; report ;;
+  all) set_up blender; host; suite; speed; errors; pictures; report ;;
   *) echo "bench.sh: unknown option $part" >&2; exit 1 ;;
 esac

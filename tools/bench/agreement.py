@@ -1,9 +1,9 @@
-"""A9: agreement with Cycles. Compares 8x8 block means of the converged images of plain path tracing and of Cycles.
+"""A9: agreement with Cycles, and with Mitsuba where it loads the scene: 8x8 block means of the converged images of plain path tracing.
 
     agreement.py [--scenes a,b] [--samples 1024] [--width 160]
 
-The images are the benchmark's references (bench.py), with their variances. A block agrees when its means differ by at most 2 %, or by less
-than the noise of both (3 standard errors; pixels are independent). A scene agrees when 95 % of its blocks do. The figures go to
+The images are the benchmark's references (references.py), with their variances. A block agrees when its means differ by at most 2 %, or by
+less than the noise of both (3 standard errors; pixels are independent). A scene agrees when 95 % of its blocks do. The figures go to
 docs/benchmark/agreement.json, pictures of the difference to out/agreement/. Exit code 1 if a scene differs without a named reason.
 """
 
@@ -14,13 +14,16 @@ import json
 import sys
 
 import numpy as np
-from bench import Worker, reference
+from modes import MODES
+from references import reference
+from renderers import RefusedError, Renderers
 from scenes import ROOT, Scene, select
 from version import version_of_build
 
 BLOCK = 8
 TOLERANCE = 0.02
 SHARE = 0.95
+PEERS = ("cycles", "mitsuba")
 RESULTS = ROOT / "docs" / "benchmark" / "agreement.json"
 
 # Scenes that are known to differ, each with its reason.
@@ -39,26 +42,46 @@ def blocks(image: np.ndarray) -> np.ndarray:
     return cut.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3).mean(axis=(1, 3))
 
 
-def compare(scene: Scene, width: int, samples: int) -> tuple[float, float]:
-    """Share of blocks that agree, and the ratio of the means."""
-    size = (width, width * 9 // 16)
-    worker = Worker(scene, *size)
-    try:
-        version = version_of_build()
-        ours, variance_ours = reference(worker, scene, "path", size, samples, version)
-        theirs, variance_theirs = reference(worker, scene, "cycles", size, samples, version)
-    finally:
-        worker.close()
-    a, b = blocks(ours), blocks(theirs)
-    variance = blocks(variance_ours + variance_theirs) / BLOCK**2
+def share_and_ratio(ours: tuple[np.ndarray, np.ndarray], theirs: tuple[np.ndarray, np.ndarray]) -> tuple[float, float]:
+    """Share of blocks that agree, and the ratio of the means; each side is an image and the variance of its pixels."""
+    a, b = blocks(ours[0]), blocks(theirs[0])
+    variance = blocks(ours[1] + theirs[1]) / BLOCK**2
     scale = np.maximum(b.mean(axis=2, keepdims=True), 1e-3)  # of the block's gray, so that dark channels do not decide
     difference = np.abs(a - b)
     good = (difference <= TOLERANCE * scale) | (difference <= 3.0 * np.sqrt(variance))
-    share = float(good.all(axis=2).mean())
-    ratio = float(a.mean() / max(b.mean(), 1e-9))
-    print(f"{scene.name:18} blocks that agree {100 * share:5.1f} %   mean ratio {ratio:.4f}", flush=True)
-    save_strip(scene.name, ours, theirs)
+    return float(good.all(axis=2).mean()), float(a.mean() / max(b.mean(), 1e-9))
+
+
+def compare(name: str, ours: tuple[np.ndarray, np.ndarray], theirs: tuple[np.ndarray, np.ndarray]) -> tuple[float, float]:
+    share, ratio = share_and_ratio(ours, theirs)
+    print(f"{name:28} blocks that agree {100 * share:5.1f} %   mean ratio {ratio:.4f}", flush=True)
+    save_strip(name, ours[0], theirs[0])
     return share, ratio
+
+
+def compare_scene(scene: Scene, width: int, samples: int) -> list[str]:
+    """Stores what was found for each peer that loads the scene; returns those that differ without a named reason."""
+    size, version = (width, width * 9 // 16), version_of_build()
+    renderers = Renderers(scene, size)
+    failed = []
+    try:
+        ours = reference(renderers, scene, "path", size, samples, version)
+        for peer in PEERS:
+            name = scene.name if peer == "cycles" else f"{scene.name}, {MODES[peer].label}"
+            try:
+                theirs = reference(renderers, scene, peer, size, samples, version)
+            except RefusedError as error:
+                print(f"SKIP {name}: {error}")
+                continue
+            share, ratio = compare(name, ours, theirs)
+            reason = "" if share >= SHARE else NAMED_DIFFERENCES.get(name, "")
+            if share < SHARE and not reason:
+                print(f"  {name}: differs without a named reason")
+                failed.append(name)
+            store(name, {"share": round(share, 4), "ratio": round(ratio, 4), "reason": reason, "samples": samples})
+    finally:
+        renderers.close()
+    return failed
 
 
 def save_strip(name: str, ours: np.ndarray, theirs: np.ndarray) -> None:
@@ -81,16 +104,10 @@ def main() -> None:
     failed = []
     for scene in select(arguments.scenes):
         try:
-            share, ratio = compare(scene, arguments.width, arguments.samples)
+            failed += compare_scene(scene, arguments.width, arguments.samples)
         except RuntimeError as error:
             print(f"FAILED {scene.name}: {error}")
             failed.append(scene.name)
-            continue
-        reason = "" if share >= SHARE else NAMED_DIFFERENCES.get(scene.name, "")
-        if share < SHARE and not reason:
-            print(f"  {scene.name}: differs without a named reason")
-            failed.append(scene.name)
-        store(scene.name, {"share": round(share, 4), "ratio": round(ratio, 4), "reason": reason, "samples": arguments.samples})
     sys.exit(1 if failed else 0)
 
 

@@ -1,93 +1,36 @@
-"""Error against CPU time: plain path tracing, gradient-domain modes and Cycles from the same .blend files.
+"""Error against CPU time: plain path tracing, gradient-domain modes, Cycles and Mitsuba on the same scenes.
 
-    bench.py [--scenes a,b] [--minutes 60] [--quick] [--references-only]
+    bench.py [--scenes a,b] [--modes path,auto] [--minutes 60] [--quick] [--references-only]
 
-Besides the modes, each scene has a few runs with four bounces, for the CPU time per sample alone (no error is measured there).
+Besides, each scene has a few runs with four bounces, for the CPU time per sample alone (no error is measured there).
 Every run is appended to docs/benchmark/results.jsonl with the version that made it, so that a benchmark can be interrupted and resumed;
 what is there already for this version is not run again. References (each engine against its own converged image, variance of the
-reference subtracted) are cached in the user's cache folder. Report: report.py.
+reference subtracted) and sums over seeds are cached in the user's cache folder. Report: report.py.
 """
 
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
-import os
-import platform
-import subprocess
-import sys
-import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from metrics import rel_mse, rel_mse_trimmed, smape
+from agreement import SHARE, share_and_ratio
+from metrics import all_errors
+from modes import MITSUBA, MODES, REFERENCES
+from references import reference
+from renderers import RefusedError, Renderers
 from scenes import QUICK, ROOT, Scene, select
-from version import version_of_build
+from seeds import SeedSum
+from version import cpu_name, version_of_build
 
 RESULTS = ROOT / "docs" / "benchmark" / "results.jsonl"
-CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "gradus" / "references"
-MODES = ("path", "gradient-l2", "gradient-l1", "cycles", "cycles-denoised", "cycles-default")
+ERROR_MODES = [name for name in MODES if name != "gradient-none"]
 SPEED_MODES = ("path", "gradient-none", "cycles")
-SPEED_SAMPLES, SPEED_BOUNCES = (4, 36), 4
-SEEDS = 5
-REFERENCE_PARTS = 8  # independent renders whose mean is the reference and whose spread is its variance
-
-
-class Worker:
-    """One process with one scene loaded; renders jobs one after another."""
-
-    def __init__(self, scene: Scene, width: int, height: int) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, str(Path(__file__).with_name("worker.py")), str(scene.path), str(width), str(height)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-        )  # fmt: skip
-        self._folder = tempfile.TemporaryDirectory()
-
-    def render(self, mode: str, samples: int, seed: int, bounces: int | None = None) -> tuple[np.ndarray, dict]:
-        out = Path(self._folder.name) / "image.npy"
-        job = {"mode": mode, "samples": samples, "seed": seed, "out": str(out)}
-        if bounces is not None:
-            job["bounces"] = bounces
-        assert self._process.stdin and self._process.stdout
-        self._process.stdin.write(json.dumps(job) + "\n")
-        self._process.stdin.flush()
-        for line in self._process.stdout:
-            if line.startswith("RESULT "):
-                answer = json.loads(line[7:])
-                if "error" in answer:
-                    raise RuntimeError(answer["error"])
-                return np.load(out).astype(np.float64), answer
-        raise RuntimeError(f"the renderer ended with code {self._process.wait()}")
-
-    def close(self) -> None:
-        if self._process.stdin:
-            self._process.stdin.close()
-        try:
-            self._process.wait(timeout=30)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-        self._folder.cleanup()
-
-
-def reference(
-    worker: Worker, scene: Scene, engine: str, size: tuple[int, int], samples: int, version: str
-) -> tuple[np.ndarray, np.ndarray]:
-    """Converged image of an engine and the variance of its mean. Seeds 1000 and up are never used by the runs."""
-    content = hashlib.sha256(scene.path.read_bytes()).hexdigest()[:12]
-    key = f"{scene.name}-{content}-{engine}-{size[0]}x{size[1]}-{samples}-{version if engine == 'path' else 'cycles'}"
-    path = CACHE / f"{key}.npz"
-    if path.exists():
-        stored = np.load(path)
-        return stored["mean"], stored["variance"]
-    parts = np.stack([worker.render(engine, samples // REFERENCE_PARTS, 1000 + i)[0] for i in range(REFERENCE_PARTS)])
-    mean, variance = parts.mean(axis=0), parts.var(axis=0, ddof=1) / REFERENCE_PARTS
-    CACHE.mkdir(parents=True, exist_ok=True)
-    np.savez_compressed(path.with_suffix(".part.npz"), mean=mean, variance=variance)
-    path.with_suffix(".part.npz").rename(path)
-    return mean, variance
+SPEED_SAMPLES, SPEED_BOUNCES = (4, 32), 4
 
 
 @dataclass(frozen=True)
@@ -115,55 +58,106 @@ def done_jobs(scene: Scene, width: int, version: str) -> set[Job]:
     return {Job(r["seed"], r["samples"], r["mode"], r.get("bounces")) for r in rows}
 
 
+class SceneBench:
+    """One scene at one size, with its processes and references."""
+
+    def __init__(self, scene: Scene, arguments: argparse.Namespace, version: str) -> None:
+        self.scene, self.arguments, self.version = scene, arguments, version
+        self.size = (arguments.width, arguments.width * 9 // 16)
+        self.renderers = Renderers(scene, self.size)
+        self._references: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+
+    def works(self, mode: str) -> bool:
+        if why := self.renderers.refusal(mode):
+            print(f"SKIP {mode} in {self.scene.name}: {why}", flush=True)
+        return not why
+
+    def is_comparable(self, mode: str) -> bool:
+        """Mitsuba gets a translation of the scene: its converged image must be that of Gradus before anything is compared."""
+        if MODES[mode].engine != MITSUBA:
+            return True
+        share, _ = share_and_ratio(self.reference("path"), self.reference(mode))
+        if share < SHARE:
+            print(f"SKIP {mode} in {self.scene.name}: only {100 * share:.0f} % of its blocks agree with Gradus", flush=True)
+        return share >= SHARE
+
+    def reference(self, mode: str) -> tuple[np.ndarray, np.ndarray]:
+        """Of the engine of a mode."""
+        engine = REFERENCES[MODES[mode].engine]
+        if engine not in self._references:
+            self._references[engine] = reference(self.renderers, self.scene, engine, self.size, self.arguments.reference, self.version)
+        return self._references[engine]
+
+    def run(self, job: Job) -> None:
+        image, answer = self.renderers.render(job.mode, job.samples, job.seed, job.bounces)
+        row: dict[str, Any] = {
+            "scene": self.scene.name, "mode": job.mode, "samples": job.samples, "seed": job.seed, "width": self.size[0],
+            "height": self.size[1], "cpu": answer["cpu"], "wall": answer["wall"], "version": self.version, "machine": cpu_name(),
+        }  # fmt: skip
+        if job.bounces is not None:
+            row["bounces"] = job.bounces
+        else:
+            row |= self._errors(job, image)
+        if job.seed == 0:  # counts hardly differ between seeds
+            row |= {"peak_memory_bytes": answer["peak_memory_bytes"]} | answer.get("stats", {})
+        append(row)
+        print(f"{self.scene.name:18} {job.mode:17} {job.samples:5} spp seed {job.seed}: {row['cpu']:8.2f} CPU-s", flush=True)
+
+    def _errors(self, job: Job, image: np.ndarray) -> dict[str, Any]:
+        mean, variance = self.reference(job.mode)
+        key = f"{self.scene.name}-{job.mode}-{job.samples}-{self.size[0]}x{self.size[1]}-{self.arguments.reference}-{self.version}"
+        sums = SeedSum(key)
+        sums.add(job.seed, image)
+        return {
+            **all_errors(image, mean, variance), **sums.errors(mean, variance), "reference_samples": self.arguments.reference,
+        }  # fmt: skip
+
+
 def bench_scene(scene: Scene, arguments: argparse.Namespace, version: str, deadline: float) -> None:
-    size = (arguments.width, arguments.width * 9 // 16)
-    done = done_jobs(scene, size[0], version)
+    done = done_jobs(scene, arguments.width, version)
     jobs = [job for job in jobs_of(arguments) if job not in done]
     if not jobs:
         return
-    worker = Worker(scene, *size)
+    bench = SceneBench(scene, arguments, version)
     try:
-        references = {e: reference(worker, scene, e, size, arguments.reference, version) for e in ("path", "cycles")}
+        modes = {mode for mode in dict.fromkeys(job.mode for job in jobs) if bench.works(mode)}
+        for mode in modes & set(arguments.modes):
+            bench.reference(mode)
+        modes = {mode for mode in modes if bench.is_comparable(mode)}
         if arguments.references_only:
             return
-        for mode in {job.mode for job in jobs}:  # not counted: first use loads libraries
-            worker.render(mode, 1, 999)
         for job in jobs:
             if time.monotonic() > deadline:
                 return
-            image, timing = worker.render(job.mode, job.samples, job.seed, job.bounces)
-            row = {
-                "scene": scene.name, "mode": job.mode, "samples": job.samples, "seed": job.seed, "width": size[0], "height": size[1],
-                "cpu": round(timing["cpu"], 4), "wall": round(timing["wall"], 4), "version": version, "machine": platform.machine(),
-            }  # fmt: skip
-            if job.bounces is not None:
-                row["bounces"] = job.bounces
-            else:
-                row |= errors(image, *references["cycles" if job.mode.startswith("cycles") else "path"])
-                row["reference_samples"] = arguments.reference
-                if job.seed == 0 and scene.own:
-                    save_picture(image, f"{scene.name}-{job.mode}-{job.samples}")
-            with RESULTS.open("a") as file:
-                file.write(json.dumps(row) + "\n")
-            print(f"{scene.name:18} {job.mode:16} {job.samples:5} spp seed {job.seed}: {row['cpu']:8.2f} CPU-s", flush=True)
-        if scene.own:
-            save_picture(references["path"][0], f"{scene.name}-reference")
+            if job.mode in modes:
+                bench.run(job)
     finally:
-        worker.close()
+        bench.renderers.close()
 
 
-def errors(image: np.ndarray, mean: np.ndarray, variance: np.ndarray) -> dict[str, float]:
-    return {
-        "relmse": rel_mse(image, mean, variance),
-        "relmse_trimmed": rel_mse_trimmed(image, mean, variance),
-        "smape": smape(image, mean),
-    }
+def append(row: dict[str, Any]) -> None:
+    with RESULTS.open("a") as file:
+        file.write(json.dumps(shortened(row), separators=(",", ":")) + "\n")
 
 
-def save_picture(image: np.ndarray, name: str) -> None:
-    folder = ROOT / "out" / "bench"
-    folder.mkdir(parents=True, exist_ok=True)
-    np.save(folder / f"{name}.npy", image.astype(np.float32))
+def shortened(value: Any) -> Any:
+    """Six significant digits are more than any run repeats."""
+    if isinstance(value, dict):
+        return {key: shortened(item) for key, item in value.items()}
+    return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+def names(text: str) -> list[str]:
+    if unknown := set(text.split(",")) - set(MODES):
+        raise argparse.ArgumentTypeError(f"unknown modes {', '.join(sorted(unknown))}; there are {', '.join(ERROR_MODES)}")
+    return text.split(",")
+
+
+def powers_of_two(text: str) -> list[int]:
+    counts = [int(part) for part in text.split(",")]
+    if any(count < 1 or count & (count - 1) for count in counts):
+        raise argparse.ArgumentTypeError("sample counts are powers of two, for which the sequences are made")
+    return counts
 
 
 def main() -> None:
@@ -173,20 +167,20 @@ def main() -> None:
     parser.add_argument("--references-only", action="store_true", help="compute what is not timed, and stop")
     parser.add_argument("--quick", action="store_true", help="two scenes in under five minutes")
     parser.add_argument("--width", type=int, default=320)
-    parser.add_argument("--seeds", type=int, default=SEEDS)
+    parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--reference", type=int, default=4096, help="samples per pixel of the references")
-    parser.add_argument("--samples", type=lambda t: [int(x) for x in t.split(",")], default=[4, 16, 64])
-    parser.add_argument("--modes", type=lambda t: t.split(","), default=list(MODES))
+    parser.add_argument("--samples", type=powers_of_two, default=[4, 16, 64])
+    parser.add_argument("--modes", type=names, default=ERROR_MODES)
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.scenes = arguments.scenes or ",".join(QUICK)
         arguments.width, arguments.reference, arguments.samples, arguments.seeds = 160, 1024, [4, 16], 3
-    RESULTS.parent.mkdir(parents=True, exist_ok=True)
+    Path(RESULTS).parent.mkdir(parents=True, exist_ok=True)
     version, deadline = version_of_build(), time.monotonic() + 60.0 * arguments.minutes
     for scene in select(arguments.scenes):
         try:
             bench_scene(scene, arguments, version, deadline)
-        except RuntimeError as error:
+        except (RuntimeError, RefusedError) as error:
             print(f"FAILED {scene.name}: {error}", flush=True)
         if time.monotonic() > deadline:
             print("time is up; run again to go on")

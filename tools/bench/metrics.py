@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 EPSILON = 1e-3
+LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 
 
 def relative_squared_error(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None) -> np.ndarray:
@@ -35,6 +36,60 @@ def smape(image: np.ndarray, reference: np.ndarray) -> float:
     return float((np.abs(image - reference) / (np.abs(image) + np.abs(reference) + EPSILON)).mean())
 
 
+def log_mse(image: np.ndarray, reference: np.ndarray) -> float:
+    """Of log(1 + x); what lies below 0, as unbiased reconstructions may, counts as 0."""
+    return float(((np.log1p(np.maximum(image, 0.0)) - np.log1p(np.maximum(reference, 0.0))) ** 2).mean())
+
+
+def ssim(image: np.ndarray, reference: np.ndarray) -> float:
+    """Wang et al. 2004: Gaussian window of 11 pixels, sigma 1.5; luminance as shown, white at the reference's 98th percentile."""
+    white = white_of(reference)
+    a, b = (displayed(x, white) @ LUMINANCE for x in (image, reference))
+    mean_a, mean_b = blurred(a), blurred(b)
+    var_a, var_b = blurred(a * a) - mean_a**2, blurred(b * b) - mean_b**2
+    covariance = blurred(a * b) - mean_a * mean_b
+    c1, c2 = 0.01**2, 0.03**2
+    numerator = (2 * mean_a * mean_b + c1) * (2 * covariance + c2)
+    return float((numerator / ((mean_a**2 + mean_b**2 + c1) * (var_a + var_b + c2))).mean())
+
+
+def flip(image: np.ndarray, reference: np.ndarray) -> float:
+    """HDR-FLIP (Andersson et al. 2021), mean, automatic range of exposures, by NVIDIA's implementation."""
+    import flip_evaluator
+
+    pair = (np.maximum(x, 0.0).astype(np.float32) for x in (reference, image))
+    return float(flip_evaluator.evaluate(*pair, "HDR", applyMagma=False)[1])
+
+
+def all_errors(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray) -> dict[str, float]:
+    """All measures of a still by their names in results.jsonl."""
+    return {
+        "relmse": rel_mse(image, reference, reference_variance),
+        "relmse_trimmed": rel_mse_trimmed(image, reference, reference_variance),
+        "smape": smape(image, reference),
+        "log_mse": log_mse(image, reference),
+        "ssim": ssim(image, reference),
+        "flip": flip(image, reference),
+    }
+
+
+def white_of(reference: np.ndarray) -> float:
+    """Radiance that is shown as white."""
+    return max(float(np.percentile(reference, 98.0)), 1e-6)
+
+
+def displayed(image: np.ndarray, white: float) -> np.ndarray:
+    return np.clip(image / white, 0.0, 1.0) ** (1.0 / 2.2)
+
+
+def blurred(plane: np.ndarray) -> np.ndarray:
+    """SSIM's window, inside the picture only."""
+    weights = np.exp(-(np.arange(-5, 6) ** 2) / (2 * 1.5**2))
+    weights /= weights.sum()
+    rows = np.lib.stride_tricks.sliding_window_view(plane, 11, axis=0) @ weights
+    return np.lib.stride_tricks.sliding_window_view(rows, 11, axis=1) @ weights
+
+
 def equal_time_ratio(ours: list[tuple[float, float]], theirs: list[tuple[float, float]]) -> float | None:
     """R: geometric mean of error(ours)/error(theirs) at equal CPU time.
 
@@ -52,10 +107,16 @@ def equal_time_ratio(ours: list[tuple[float, float]], theirs: list[tuple[float, 
     return float(np.exp(np.mean(_interpolate(times, a) - _interpolate(times, b))))
 
 
-def slope(curve: list[tuple[float, float]]) -> float:
-    """Exponent of error against CPU time, least squares in log-log; -1 for an unbiased estimator."""
-    points = np.log(np.array(curve))
-    return float(np.polyfit(points[:, 0], points[:, 1], 1)[0])
+def speed_up(ours: list[tuple[float, float]], theirs: list[tuple[float, float]]) -> float | None:
+    """Time(theirs)/time(ours) at equal error, geometric mean over the errors that both reach: the horizontal distance of the curves."""
+    return equal_time_ratio([(error, time) for time, error in theirs], [(error, time) for time, error in ours])
+
+
+def slope(curve: list[tuple[float, float]]) -> float | None:
+    """Exponent of error against CPU time over the last decade of time, least squares in log-log; -1 for an unbiased estimator."""
+    points = np.log(np.array(sorted(curve)))
+    points = points[points[:, 0] >= points[-1, 0] - np.log(10.0) - 1e-9]
+    return float(np.polyfit(points[:, 0], points[:, 1], 1)[0]) if len(points) > 1 else None
 
 
 def _interpolate(times: np.ndarray, curve: np.ndarray) -> np.ndarray:

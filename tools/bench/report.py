@@ -1,170 +1,190 @@
-"""Makes docs/benchmark/README.md and its figures from docs/benchmark/results.jsonl (newest version of each scene and mode)."""
+"""Makes docs/benchmark/README.md and report.html, with their figures and pictures, from the stored results alone."""
 
 from __future__ import annotations
 
 import json
-from collections import defaultdict
+from collections.abc import Callable
+from pathlib import Path
 
-import matplotlib
-import matplotlib.image
-import numpy as np
-from metrics import equal_time_ratio, slope
-from scenes import ROOT, SCENES
-from table import header, number
+import figures
+import pictures
+import results
+import speed
+import targets
+from document import Block, Figure, HtmlOnly, Table, Text, number, spread, to_html, to_markdown
+from modes import MODES
+from results import FOLDER, Point, SceneResults
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-
-FOLDER = ROOT / "docs" / "benchmark"
-PICTURES = ROOT / "out" / "bench"
-NAMES = {
-    "path": "Gradus PT",
-    "gradient-l2": "Gradus G-PT + L2",
-    "gradient-l1": "Gradus G-PT + L1",
-    "cycles": "Cycles",
-    "cycles-denoised": "Cycles + denoiser",
-    "cycles-default": "Cycles, its defaults",
-}
-STRIP = ("path", "gradient-l2", "gradient-l1", "cycles", "cycles-denoised", "reference")
-STRIP_SAMPLES = 16
+HERE = Path(__file__).parent
+TITLE = "Gradus: error against CPU time"
+OTHERS = [mode for mode in MODES if mode not in ("path", "gradient-none")]
 
 
-def load() -> dict[str, dict[str, dict[int, list[dict]]]]:
-    """scene -> mode -> samples -> rows of the newest version that has that scene and mode; the modes of the speed runs end in "@4"."""
-    rows = [json.loads(line) for line in (FOLDER / "results.jsonl").read_text().splitlines()]
-    newest: dict[tuple[str, str], tuple] = {(r["scene"], mode_of(r)): (r["version"], r["width"]) for r in rows}  # in order of time
-    table: dict = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
-    for row in rows:
-        if newest[row["scene"], mode_of(row)] == (row["version"], row["width"]):
-            table[row["scene"]][mode_of(row)][row["samples"]].append(row)
-    return table
+def equal_time(scenes: list[SceneResults]) -> list[Block]:
+    """Error ratios to plain path tracing at equal CPU time, with export and without, and the inverse: time at equal error."""
+    columns = ["scene", *(MODES[mode].label.removeprefix("Gradus ") for mode in OTHERS), "slope PT", "slope L2"]
 
+    def table(value: Callable[[SceneResults, str], float | None], slopes: bool = True) -> Table:
+        made = Table(columns if slopes else columns[:-2])
+        for scene in scenes:
+            cells = [number(value(scene, mode)) for mode in OTHERS]
+            cells += [number(scene.slope(mode)) for mode in ("path", "gradient-l2")] if slopes else []
+            made.rows.append([scene.name, *cells])
+        return made
 
-def mode_of(row: dict) -> str:
-    return f"{row['mode']}@{row['bounces']}" if "bounces" in row else row["mode"]
-
-
-def curve(by_samples: dict[int, list[dict]], measure: str = "relmse") -> list[tuple[float, float]]:
-    """(median CPU seconds, median error) per sample count."""
+    about = "R: relMSE over that of Gradus PT, export and build included. Below 1 is better than plain path tracing."
     return [
-        (float(np.median([r["cpu"] for r in rows])), max(float(np.median([r[measure] for r in rows])), 1e-9))
-        for _, rows in sorted(by_samples.items())
-    ]
+        Text(f"## Error at equal CPU time\n\n{about}"),
+        table(lambda scene, mode: scene.ratio(mode, "path")),
+        HtmlOnly(Text("The same without export and build (the CPU time of plain path tracing with no samples, by engine):")),
+        HtmlOnly(table(lambda scene, mode: scene.ratio(mode, "path", with_export=False), slopes=False)),
+        HtmlOnly(Text("HDR-FLIP in place of relMSE:")),
+        HtmlOnly(table(lambda scene, mode: scene.ratio(mode, "path", "flip"), slopes=False)),
+        Text("Speed-up at equal relMSE against Gradus PT; – where no error is reached by both:"),
+        table(lambda scene, mode: scene.speed_up(mode, "path"), slopes=False),
+    ]  # fmt: skip
 
 
-def plot(scene: str, modes: dict[str, dict[int, list[dict]]]) -> str:
-    figure, axes = plt.subplots(figsize=(5, 3.6))
-    for mode, label in NAMES.items():
-        if mode in modes:
-            times, errors = zip(*curve(modes[mode]), strict=True)
-            axes.loglog(times, errors, "o-", label=label)
-    axes.set_xlabel("CPU seconds")
-    axes.set_ylabel("relMSE")
-    axes.set_title(scene)
-    axes.grid(True, which="both", alpha=0.3)
-    axes.legend(fontsize=7)
-    figure.tight_layout()
-    name = f"{scene}.png"
-    figure.savefig(FOLDER / name, dpi=110, metadata={"Software": None})
-    plt.close(figure)
-    return name
+def sample_costs(scenes: list[SceneResults]) -> list[Block]:
+    made = Table(["scene", "PT, µs", "Cycles, µs", "PT / Cycles", "gradients: G-PT / PT", "denoiser, µs a pixel"])
+    for scene in scenes:
+        cells = [scene.sample_cost(f"{mode}@4") for mode in ("path", "cycles")]
+        cells += [scene.cost_ratio("path@4", "cycles@4"), scene.cost_ratio("gradient-none@4", "path@4")]
+        made.rows.append([scene.name, *map(number, cells), number(scene.denoiser_cost(), ".0f")])
+    return [Text("## CPU time of a sample with four bounces"), made]
 
 
-def sample_cost(by_samples: dict[int, list[dict]]) -> float | None:
-    """CPU microseconds per sample: slope between the smallest and the largest count, so that export and build drop out."""
-    counts = sorted(by_samples)
-    if len(counts) < 2:
-        return None
-    low, high = by_samples[counts[0]], by_samples[counts[-1]]
-    cpu = np.median([r["cpu"] for r in high]) - np.median([r["cpu"] for r in low])
-    return float(1e6 * cpu / (low[0]["width"] * low[0]["height"] * (counts[-1] - counts[0])))
+ROOM_COLUMNS = {"PT": ("path", "4.5"), "G-PT": ("gradient-none", "4.5"), "Cycles 4.5": ("cycles", "4.5"), "Cycles 3.4": ("cycles", "3.4")}
 
 
-def ratio(modes: dict, a: str, b: str) -> float | None:
-    return equal_time_ratio(curve(modes[a]), curve(modes[b])) if a in modes and b in modes else None
+def room() -> list[Block]:
+    """The box room of three sizes: time per sample, ratios with their range over the repeats, rays, memory."""
+    rows = speed.load()
+    facts = {row["room"]: row for row in rows}
+    costs = speed.costs(rows)
+    times = Table(["triangles", *(f"{name}, µs" for name in ROOM_COLUMNS), "PT / Cycles 4.5", "PT / Cycles 3.4", "G-PT / PT", "repeats"])
+    counts = Table(["triangles", "mode", "camera rays", "bounce", "shadow", "shift", "shift shadow", "peak memory, MB"])
+    for name in sorted(costs, key=lambda name: facts[name]["triangles"]):
+        found = {label: costs[name].get(key, speed.Cost()) for label, key in ROOM_COLUMNS.items()}
+        path, triangles = found["PT"], f"{facts[name]['triangles']:,}"
+        ratios = [path.over(found["Cycles 4.5"]), path.over(found["Cycles 3.4"]), found["G-PT"].over(path)]
+        medians = [number(cost.median()) for cost in found.values()]
+        times.rows.append([triangles, *medians, *map(spread, ratios), str(len(path.per_sample))])
+        for label, cost in found.items():
+            rays = [number(cost.rays.get(kind)) for kind in ("primary", "bounce", "shadow", "shift", "shift_shadow")]
+            counts.rows.append([triangles, label, *rays, f"{cost.peak_memory_bytes / 1e6:.0f}"])
+    if not times.rows:
+        return []
+    size = f"{rows[-1]['width']}×{rows[-1]['height']}"
+    about = f"Diffuse box room with nine bumpy spheres, one area lamp, four bounces, {size} pixels; slope between 4 and 16 samples"
+    return [Text(f"## The room\n\n{about}; ratios by repeat: median (lowest–highest)."), times, Text("Rays per sample:"), counts]
 
 
-def strip(scene: str) -> str | None:
-    """One row of pictures at equal samples, each engine beside its peers; None where the pictures are not here."""
-    files = [PICTURES / f"{scene}-{mode}.npy" for mode in (m if m == "reference" else f"{m}-{STRIP_SAMPLES}" for m in STRIP)]
-    if not all(f.exists() for f in files):
-        return None
-    images = [np.load(f) for f in files]
-    white = float(np.percentile(images[-1], 98.0))
-    shown = [np.clip(image / max(white, 1e-6), 0.0, 1.0) ** (1.0 / 2.2) for image in images]
-    gap = np.ones((shown[0].shape[0], 2, 3))
-    row = np.concatenate([part for image in shown for part in (image, gap)][:-1], axis=1)
-    name = f"{scene}-strip.png"
-    matplotlib.image.imsave(FOLDER / name, row)
-    return name
-
-
-def summary(table: dict, order: list[str]) -> list[str]:
-    text = ["## Error at equal CPU time", ""] + header("scene", "R of L2", "R of L1", "R of Cycles", "slope PT", "slope L2")
-    for scene in order:
-        modes = table[scene]
-        slopes = [number(slope(curve(modes[m])) if m in modes else None) for m in ("path", "gradient-l2")]
-        ratios = [number(ratio(modes, m, "path")) for m in ("gradient-l2", "gradient-l1", "cycles")]
-        text.append(f"| {scene} | {' | '.join(ratios + slopes)} |")
-    return text
-
-
-def speed(table: dict, order: list[str]) -> list[str]:
-    text = ["", "## CPU time of a sample with four bounces", ""]
-    text += header("scene", "PT, µs", "Cycles, µs", "PT / Cycles", "gradients: G-PT / PT")
-    for scene in order:
-        path, gradient, cycles = (sample_cost(table[scene][f"{m}@4"]) for m in ("path", "gradient-none", "cycles"))
-        against_cycles = path / cycles if path and cycles else None
-        overhead = gradient / path if gradient and path else None
-        text.append(f"| {scene} | {number(path)} | {number(cycles)} | {number(against_cycles)} | {number(overhead)} |")
-    return text
-
-
-def details(scene: str, modes: dict) -> list[str]:
-    text = ["", f"## {scene}", "", conditions(modes), "", f"![error against CPU time]({plot(scene, modes)})", ""]
-    if picture := strip(scene):
-        text += [f"![{', '.join(NAMES.get(m, m) for m in STRIP)}]({picture})", ""]
-        text += [f"*{STRIP_SAMPLES} samples, from left to right: {', '.join(NAMES.get(m, m) for m in STRIP)}.*", ""]
-    text += header("mode", "spp", "seeds", "CPU-s", "wall s", "relMSE", "lowest–highest", "relMSE-t", "SMAPE")
-    for mode in NAMES:
-        for samples, rows in sorted(modes.get(mode, {}).items()):
-            errors = [r["relmse"] for r in rows]
-            median = {k: float(np.median([r[k] for r in rows])) for k in ("cpu", "wall", "relmse", "relmse_trimmed", "smape")}
-            text.append(
-                f"| {NAMES[mode]} | {samples} | {len(rows)} | {median['cpu']:.2f} | {median['wall']:.2f} | {median['relmse']:.5f} "
-                f"| {min(errors):.5f}–{max(errors):.5f} | {median['relmse_trimmed']:.5f} | {median['smape']:.4f} |"
-            )
-    return text
-
-
-def conditions(modes: dict) -> str:
-    """Pixels, reference and version of a scene's runs."""
-    rows = [row for counts in modes.values() for runs in counts.values() for row in runs]
-    sizes = sorted({f"{row['width']}×{row['height']}" for row in rows})
-    references = sorted({row["reference_samples"] for row in rows if "reference_samples" in row})
-    versions = sorted({row["version"] for row in rows})
-    return f"{', '.join(sizes)} pixels; references of {', '.join(map(str, references))} samples; version {', '.join(versions)}."
-
-
-def agreement() -> list[str]:
+def agreement() -> list[Block]:
     """What agreement.py measured, if it was run."""
     file = FOLDER / "agreement.json"
     if not file.exists():
         return []
-    text = ["", "## Agreement with Cycles (A9)", ""] + header("scene", "blocks that agree", "ratio of means", "named difference")
+    made = Table(["scene", "blocks that agree", "ratio of means", "named difference"])
     for name, row in json.loads(file.read_text()).items():
-        text.append(f"| {name} | {100 * row['share']:.1f} % | {row['ratio']:.4f} | {row['reason']} |")
-    return text
+        made.rows.append([name, f"{100 * row['share']:.1f} %", f"{row['ratio']:.4f}", row["reason"]])
+    return [Text("## Agreement with Cycles (A9)\n\nBoth engines' converged images of plain path tracing, blocks of 8×8 pixels."), made]
+
+
+def details(scene: SceneResults) -> list[Block]:
+    made: list[Block] = [Text(f"## {scene.name}\n\n{conditions(scene)}")]
+    made.append(Figure(figures.error_figure(scene), "Error against CPU time; in brackets the slope of relMSE over the last decade."))
+    if bias := figures.bias_figure(scene):
+        made.append(HtmlOnly(Figure(bias, "Variance and bias² of relMSE, from the mean over the seeds.")))
+    if slider := pictures.slider(scene.name):
+        made.append(slider)
+    made += [errors(scene, short=True), HtmlOnly(errors(scene, short=False)), HtmlOnly(work(scene))]
+    return made
+
+
+def errors(scene: SceneResults, short: bool) -> Table:
+    """The main measures, or the others."""
+    first = ["mode", "spp", "seeds"]
+    if short:
+        made = Table([*first, "CPU-s", "wall s", "relMSE", "relMSE-t", "SMAPE", "HDR-FLIP"])
+    else:
+        made = Table([*first, "CPU-s without export", "log MSE", "SSIM", "bias²", "variance"])
+    for mode in scene.modes():
+        fixed = scene.fixed_cost(MODES[mode].engine)
+        for point in scene.points[mode]:
+            cells = main_measures(point) if short else other_measures(point, fixed)
+            made.rows.append([MODES[mode].label, str(point.samples), str(len(point.rows)), *cells])
+    return made
+
+
+def main_measures(point: Point) -> list[str]:
+    cpu, wall, trimmed, smape, flip = (point.median(m) for m in ("cpu", "wall", "relmse_trimmed", "smape", "flip"))
+    return [
+        number(cpu),
+        number(wall),
+        spread(point.range("relmse"), ".4f"),
+        number(trimmed, ".4f"),
+        number(smape, ".4f"),
+        number(flip, ".4f"),
+    ]
+
+
+def other_measures(point: Point, fixed: float) -> list[str]:
+    bias, variance = point.bias_and_variance() or (None, None)
+    cells = [number((point.median("cpu") or 0.0) - fixed), number(point.median("log_mse"), ".3g"), number(point.median("ssim"), ".4f")]
+    return [*cells, number(bias, ".2g"), number(variance, ".3g")]
+
+
+STAGES = ("export", "build", "sample", "reconstruct", "upload")
+RAYS = ("primary", "bounce", "shadow", "shift", "shift_shadow")
+
+
+def work(scene: SceneResults) -> Table:
+    """Where the CPU time goes, rays per pixel and sample, bytes: of the first seed."""
+    made = Table(
+        ["mode", "spp", *(f"{s}, CPU-s" for s in STAGES), *(f"{r.replace('_', ' ')} rays" for r in RAYS), "frame, B/pixel", "peak, MB"]
+    )
+    for mode in scene.modes():
+        for point in scene.points[mode]:
+            stages, rays, frame, peak = (point.first(n) for n in ("cpu_seconds", "rays", "frame_memory_bytes", "peak_memory_bytes"))
+            if peak is None:
+                continue
+            pixels = point.rows[0]["width"] * point.rows[0]["height"]
+            cells = [number((stages or {}).get(stage), ".3f") for stage in STAGES]
+            cells += [number(rays[kind] / pixels / point.samples if rays else None) for kind in RAYS]
+            made.rows.append(
+                [MODES[mode].label, str(point.samples), *cells, number(frame / pixels if frame else None, ".0f"), f"{peak / 1e6:.0f}"]
+            )
+    return made
+
+
+def conditions(scene: SceneResults) -> str:
+    """Pixels, reference and version of a scene's runs."""
+    sizes = sorted({f"{row['width']}×{row['height']}" for row in scene.rows})
+    references = sorted({row["reference_samples"] for row in scene.rows if "reference_samples" in row})
+    versions = sorted({row["version"] for row in scene.rows})
+    machines = sorted({row["machine"] for row in scene.rows})
+    return (
+        f"{', '.join(sizes)} pixels; references of {', '.join(map(str, references))} samples; version {', '.join(versions)}; "
+        f"{', '.join(machines)}."
+    )
+
+
+def blocks() -> list[Block]:
+    scenes = results.load()
+    made: list[Block] = [Text((FOLDER / "preface.md").read_text()), Text("## Targets"), targets.table(scenes)]
+    made += [*equal_time(scenes), *room(), *sample_costs(scenes), *agreement()]
+    for scene in scenes:
+        made += details(scene)
+    return made
 
 
 def main() -> None:
-    table = load()
-    order = [s.name for s in SCENES if s.name in table]
-    text = [(FOLDER / "preface.md").read_text().rstrip(), ""] + summary(table, order) + speed(table, order) + agreement()
-    for scene in order:
-        text += details(scene, table[scene])
-    (FOLDER / "README.md").write_text("\n".join(text) + "\n")
-    print(FOLDER / "README.md")
+    content = blocks()
+    (FOLDER / "README.md").write_text(to_markdown(content))
+    page = to_html(TITLE, content, (HERE / "report.css").read_text(), (HERE / "report.js").read_text())
+    (FOLDER / "report.html").write_text(page)
+    print(FOLDER / "report.html")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,126 @@
+"""What results.jsonl says: the newest runs of each scene and mode, and the figures that are made from them."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+from metrics import equal_time_ratio, slope, speed_up
+from modes import MODES, REFERENCES
+from scenes import ROOT, SCENES
+from seeds import bias_and_variance
+
+FOLDER = ROOT / "docs" / "benchmark"
+Curve = list[tuple[float, float]]
+
+
+@dataclass
+class Point:
+    """All seeds of one mode at one sample count."""
+
+    samples: int
+    rows: list[dict]
+
+    def median(self, measure: str) -> float | None:
+        values = [row[measure] for row in self.rows if measure in row]
+        return float(np.median(values)) if values else None
+
+    def range(self, measure: str) -> tuple[float, float, float] | None:
+        values = [row[measure] for row in self.rows if measure in row]
+        return (float(np.median(values)), min(values), max(values)) if values else None
+
+    def first(self, name: str) -> dict | int | None:
+        """What only the first seed's row has: counts and stages."""
+        return next((row[name] for row in self.rows if name in row), None)
+
+    def bias_and_variance(self) -> tuple[float, float] | None:
+        """bias² and variance of relMSE over all seeds; None while the sum of all of them is not known."""
+        whole = [row for row in self.rows if row.get("seeds_in_mean") == len(self.rows)]
+        if not whole:
+            return None
+        mean_error = float(np.mean([row["relmse"] for row in self.rows]))
+        return bias_and_variance(mean_error, whole[-1]["relmse_of_mean"], len(self.rows))
+
+
+class SceneResults:
+    """The newest runs of one scene. Keys: modes, and modes with "@4" for the runs with four bounces."""
+
+    def __init__(self, name: str, rows: list[dict]) -> None:
+        self.name, self.rows = name, rows
+        by_mode: dict[str, dict[int, list[dict]]] = defaultdict(lambda: defaultdict(list))
+        for row in rows:
+            by_mode[mode_of(row)][row["samples"]].append(row)
+        self.points = {mode: [Point(n, found) for n, found in sorted(counts.items())] for mode, counts in by_mode.items()}
+        self.diffuse_interior = any(s.name == name and s.diffuse_interior for s in SCENES)
+
+    def modes(self) -> list[str]:
+        return [mode for mode in MODES if mode in self.points]
+
+    def curve(self, mode: str, measure: str = "relmse", with_export: bool = True) -> Curve | None:
+        """(median CPU seconds, median error) per sample count."""
+        if mode not in self.points:
+            return None
+        fixed = 0.0 if with_export else self.fixed_cost(MODES[mode].engine)
+        found = [(point.median("cpu"), point.median(measure)) for point in self.points[mode]]
+        return [(max(time - fixed, 1e-3), max(error, 1e-9)) for time, error in found if time is not None and error is not None] or None
+
+    def fixed_cost(self, engine: str) -> float:
+        """CPU seconds of plain path tracing with no samples: export, build, writing. From a line through its smallest and largest count."""
+        points = self.points.get(REFERENCES[engine], [])
+        if len(points) < 2:
+            return 0.0
+        (low, high), (first, last) = [[p.median("cpu") or 0.0 for p in (points[0], points[-1])], (points[0], points[-1])]
+        return max(0.0, low - (high - low) / (last.samples - first.samples) * first.samples)
+
+    def ratio(self, mode: str, other: str, measure: str = "relmse", with_export: bool = True) -> float | None:
+        """Error of a mode over that of another at equal CPU time."""
+        curves = self.curve(mode, measure, with_export), self.curve(other, measure, with_export)
+        return equal_time_ratio(*curves) if curves[0] and curves[1] else None
+
+    def speed_up(self, mode: str, other: str) -> float | None:
+        curves = self.curve(mode), self.curve(other)
+        return speed_up(*curves) if curves[0] and curves[1] else None
+
+    def slope(self, mode: str) -> float | None:
+        """Of the last decade of time without export and build, which would bend the curve."""
+        curve = self.curve(mode, with_export=False)
+        return slope(curve) if curve else None
+
+    def sample_cost(self, mode: str) -> float | None:
+        """CPU microseconds per sample: slope between the smallest and the largest count, so that export and build drop out."""
+        points = self.points.get(mode, [])
+        if len(points) < 2:
+            return None
+        cpu = (points[-1].median("cpu") or 0.0) - (points[0].median("cpu") or 0.0)
+        row = points[0].rows[0]
+        return 1e6 * cpu / (row["width"] * row["height"] * (points[-1].samples - points[0].samples))
+
+    def denoiser_cost(self) -> float | None:
+        """CPU microseconds per pixel of the denoiser: what Cycles takes more with it at the same samples, median over the counts."""
+        plain = {point.samples: point.median("cpu") for point in self.points.get("cycles", [])}
+        points = [point for point in self.points.get("cycles-denoised", []) if point.samples in plain]
+        pixels = [point.rows[0]["width"] * point.rows[0]["height"] for point in points]
+        more = [1e6 * (p.median("cpu") - plain[p.samples]) / n for p, n in zip(points, pixels, strict=True)]
+        return float(np.median(more)) if more else None
+
+    def cost_ratio(self, mode: str, other: str) -> float | None:
+        ours, theirs = self.sample_cost(mode), self.sample_cost(other)
+        return ours / theirs if ours and theirs else None
+
+
+def mode_of(row: dict) -> str:
+    return f"{row['mode']}@{row['bounces']}" if "bounces" in row else row["mode"]
+
+
+def load() -> list[SceneResults]:
+    """Scenes in the order of scenes.py; of each mode the newest version and size, in the order of time."""
+    rows = [json.loads(line) for line in (FOLDER / "results.jsonl").read_text().splitlines()]
+    rows = [row for row in rows if row["mode"] in MODES]
+    newest = {(r["scene"], mode_of(r)): (r["version"], r["width"]) for r in rows}
+    by_scene: dict[str, list[dict]] = defaultdict(list)
+    for row in rows:
+        if newest[row["scene"], mode_of(row)] == (row["version"], row["width"]):
+            by_scene[row["scene"]].append(row)
+    return [SceneResults(s.name, by_scene[s.name]) for s in SCENES if s.name in by_scene]

@@ -1,0 +1,38 @@
+"""Times the statistical tests of the library: unbiasedness and its bounds. Writes docs/benchmark/suite.json."""
+
+from __future__ import annotations
+
+import json
+import re
+import resource
+import subprocess
+import sys
+import time
+
+from scenes import ROOT
+
+PROGRAMS = {  # program -> tests: z-tests with Šidák, Welch and bounds of bias; chi² of closures and emitters
+    "gradus_statistics_tests": "*",
+    "gradus_native_tests": "A3_*:A4_*",
+}
+RESULTS = ROOT / "docs" / "benchmark" / "suite.json"
+
+
+def main() -> None:
+    facts = {"passed": 0, "failed": 0, "wall": 0.0, "cpu": 0.0}
+    for program, tests in PROGRAMS.items():
+        wall, cpu = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        run = subprocess.run([str(ROOT / "build/tests" / program), f"--gtest_filter={tests}"], capture_output=True, text=True)
+        facts["wall"] += time.perf_counter() - wall
+        facts["cpu"] += resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - cpu
+        for outcome in ("passed", "failed"):
+            found = re.search(rf"\[  {outcome.upper()}  \] (\d+) test", run.stdout)
+            facts[outcome] += int(found[1]) if found else 0
+    facts |= {"wall": round(facts["wall"], 1), "cpu": round(facts["cpu"], 1)}
+    RESULTS.write_text(json.dumps(facts) + "\n")
+    print(facts)
+    sys.exit(1 if facts["failed"] else 0)
+
+
+if __name__ == "__main__":
+    main()
