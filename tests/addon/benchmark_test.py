@@ -1,0 +1,96 @@
+"""The measures of the benchmark, against images and curves whose error is known."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
+import document  # noqa: E402
+import metrics  # noqa: E402
+import modes  # noqa: E402
+import seeds  # noqa: E402
+
+RANDOM = np.random.default_rng(1)
+REFERENCE = 0.2 + RANDOM.random((24, 32, 3))
+
+
+def noisy(deviation: float, seed: int) -> np.ndarray:
+    return REFERENCE + np.random.default_rng(seed).normal(scale=deviation, size=REFERENCE.shape)
+
+
+def test_relative_error_of_a_constant_offset() -> None:
+    gray = REFERENCE.mean(axis=2)
+    assert metrics.rel_mse(REFERENCE + 0.1, REFERENCE) == pytest.approx((0.01 / (1e-3 + gray**2)).mean())
+
+
+def test_the_variance_of_a_reference_is_subtracted() -> None:
+    """A perfect image against a noisy reference has no error, on average."""
+    deviation = 0.05
+    errors = [metrics.rel_mse(REFERENCE, noisy(deviation, seed), np.full_like(REFERENCE, deviation**2)) for seed in range(64)]
+    raw = metrics.rel_mse(REFERENCE, noisy(deviation, 0))
+    assert abs(np.mean(errors)) < 0.1 * raw
+
+
+def test_trimming_removes_one_firefly() -> None:
+    image = np.tile(REFERENCE, (2, 2, 1))
+    reference = image.copy()
+    image[3, 5] += 1e4
+    assert metrics.rel_mse(image, reference) > 1.0
+    assert metrics.rel_mse_trimmed(image, reference) == 0.0
+
+
+def test_similarity_falls_with_noise() -> None:
+    values = [metrics.ssim(noisy(deviation, 1), REFERENCE) for deviation in (0.0, 0.05, 0.5)]
+    assert values[0] == pytest.approx(1.0)
+    assert values[0] > values[1] > values[2]
+
+
+def test_bias_and_variance_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(seeds, "CACHE", tmp_path)
+    count, deviation, bias = 16, 0.2, 0.1
+    none = np.zeros_like(REFERENCE)
+    weight = (1.0 / (1e-3 + REFERENCE.mean(axis=2) ** 2)).mean()
+    errors = []
+    for seed in range(count):
+        image = noisy(deviation, seed) + bias
+        sums = seeds.SeedSum("key")  # read anew each time, as when a run is resumed
+        sums.add(seed, image)
+        sums.add(seed, image)  # the same seed again changes nothing
+        errors.append(metrics.rel_mse(image, REFERENCE, none))
+    found = sums.errors(REFERENCE, none)
+    assert found["seeds_in_mean"] == count
+    squared_bias, variance = seeds.bias_and_variance(float(np.mean(errors)), found["relmse_of_mean"], count)
+    assert squared_bias == pytest.approx(bias**2 * weight, rel=0.1)
+    assert variance == pytest.approx(deviation**2 * weight, rel=0.1)
+
+
+def test_ratios_of_curves() -> None:
+    """Twice as good at every time is twice as fast at every error, for errors that fall like 1/t."""
+    ours = [(t, 0.5 / t) for t in (1.0, 4.0, 16.0)]
+    theirs = [(t, 1.0 / t) for t in (2.0, 8.0, 32.0)]
+    assert metrics.equal_time_ratio(ours, theirs) == pytest.approx(0.5)
+    assert metrics.speed_up(ours, theirs) == pytest.approx(2.0)
+    assert metrics.equal_time_ratio([(1.0, 1.0), (2.0, 0.5)], [(10.0, 1.0), (20.0, 0.5)]) is None
+
+
+def test_slope_is_that_of_the_last_decade() -> None:
+    curve = [(0.01, 5.0), (0.1, 5.0), (1.0, 1.0), (3.0, 1.0 / 3.0), (10.0, 0.1)]
+    assert metrics.slope(curve) == pytest.approx(-1.0)
+    assert metrics.slope(curve[:1]) is None
+
+
+def test_every_mode_has_a_reference() -> None:
+    for mode in modes.MODES.values():
+        assert modes.REFERENCES[mode.engine] in modes.MODES
+
+
+def test_both_forms_of_the_report_say_the_same() -> None:
+    blocks = [document.Text("# Title\n\n- one **bold**\n- two `a<b`"), document.Table(["x", "y"], [["1", "[there](there.md)"]])]
+    assert "| 1 | [there](there.md) |" in document.to_markdown(blocks)
+    page = document.to_html("Title", blocks, "", "")
+    assert '<td>1</td><td><a href="there.md">there</a></td>' in page
+    assert "<li>one <b>bold</b></li><li>two <code>a&lt;b</code></li>" in page
