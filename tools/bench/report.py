@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import figures
+import numpy as np
 import pictures
 import results
 import speed
@@ -14,6 +15,7 @@ import targets
 from document import Block, Figure, HtmlOnly, Table, Text, number, spread, to_html, to_markdown
 from modes import MODES
 from results import FOLDER, Point, SceneResults
+from rooms import CHOICE, ENGINES, ROOMS
 
 HERE = Path(__file__).parent
 TITLE = "Gradus: error against CPU time"
@@ -54,7 +56,7 @@ def sample_costs(scenes: list[SceneResults]) -> list[Block]:
     return [Text("## CPU time of a sample with four bounces"), made]
 
 
-ROOM_COLUMNS = {"PT": ("path", "4.5"), "G-PT": ("gradient-none", "4.5"), "Cycles 4.5": ("cycles", "4.5"), "Cycles 3.4": ("cycles", "3.4")}
+ROOM_COLUMNS = dict(zip(("PT", "G-PT", "Cycles 4.5", "Cycles 3.4"), ENGINES, strict=True))
 
 
 def room() -> list[Block]:
@@ -64,7 +66,12 @@ def room() -> list[Block]:
     costs = speed.costs(rows)
     times = Table(["triangles", *(f"{name}, µs" for name in ROOM_COLUMNS), "PT / Cycles 4.5", "PT / Cycles 3.4", "G-PT / PT", "repeats"])
     counts = Table(["triangles", "mode", "camera rays", "bounce", "shadow", "shift", "shift shadow", "peak memory, MB"])
-    for name in sorted(costs, key=lambda name: facts[name]["triangles"]):
+    choices = Table(["room", "PT, CPU-s", "AUTO, CPU-s", "AUTO / PT"])
+    for name in (name for name, room in ROOMS.items() if name in costs and room.turns == CHOICE):
+        path, auto = (costs[name].get(turn, speed.Cost()) for turn in CHOICE)
+        medians = [number(float(np.median(list(cost.total.values()))) if cost.total else None) for cost in (path, auto)]
+        choices.rows.append([name, *medians, spread(auto.total_over(path), ".3f")])
+    for name in (name for name, room in ROOMS.items() if name in costs and room.turns == ENGINES):
         found = {label: costs[name].get(key, speed.Cost()) for label, key in ROOM_COLUMNS.items()}
         path, triangles = found["PT"], f"{facts[name]['triangles']:,}"
         ratios = [path.over(found["Cycles 4.5"]), path.over(found["Cycles 3.4"]), found["G-PT"].over(path)]
@@ -77,7 +84,10 @@ def room() -> list[Block]:
         return []
     size = f"{rows[-1]['width']}×{rows[-1]['height']}"
     about = f"Diffuse box room with nine bumpy spheres, one area lamp, four bounces, {size} pixels; slope between 4 and 16 samples"
-    return [Text(f"## The room\n\n{about}; ratios by repeat: median (lowest–highest)."), times, Text("Rays per sample:"), counts]
+    made = [Text(f"## The room\n\n{about}; ratios by repeat: median (lowest–highest)."), times, Text("Rays per sample:"), counts]
+    if choices.rows:
+        made += [Text("Where gradients cannot pay: direct light alone, and the room behind glass; whole renders of 16 samples."), choices]
+    return made
 
 
 def agreement() -> list[Block]:

@@ -1,13 +1,13 @@
-"""The room: a closed box with nine bumpy spheres under one area lamp, all of it diffuse, in three sizes of geometry."""
+"""Builds a room of rooms.py: a closed box with nine bumpy spheres under one area lamp, all of it diffuse."""
 
 from __future__ import annotations
 
 import bpy
 import numpy as np
+from rooms import Room
 
-CELLS = {"room-1k": 8, "room-300k": 128, "room-2m": 354}  # 9 spheres of 2·cells² triangles, and 12 for the box
-BOX_CORNERS = [(x, y, z) for x in (-3.0, 3.0) for y in (-3.0, 3.0) for z in (0.0, 3.0)]
 BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+PANE_FACES = [face[::-1] for face in BOX_FACES]  # outwards
 
 
 def bumpy_sphere(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -29,33 +29,44 @@ def bumpy_sphere(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     return direction * radius, np.concatenate(triangles)
 
 
-def build(name: str, width: int, height: int) -> int:
+def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> list[tuple[float, float, float]]:
+    """Corners in the order of BOX_FACES."""
+    return [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+
+
+def build(room: Room, width: int, height: int) -> int:
     """Replaces the open file by the room; returns its number of triangles."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (0.0, 0.0, 0.0)
-    white = _diffuse()
+    white = _material("White", "ShaderNodeBsdfDiffuse", (0.7, 0.7, 0.7, 1.0))
     triangles = 2 * len(BOX_FACES)
-    _mesh("Box", BOX_CORNERS, BOX_FACES, white)
+    _mesh("Box", box((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0)), BOX_FACES, white)
     for i in range(9):
-        vertices, faces = bumpy_sphere(CELLS[name], i)
+        vertices, faces = bumpy_sphere(room.cells, i)
         place = np.array((-2.0 + 2.0 * (i % 3), -1.2 + 1.8 * (i // 3), 0.8 + 0.1 * i))
         _mesh(f"Sphere {i}", (vertices + place).tolist(), faces.tolist(), white)
         triangles += len(faces)
+    if room.pane:
+        glass = _material("Glass", "ShaderNodeBsdfGlass", (1.0, 1.0, 1.0, 1.0), Roughness=0.0, IOR=1.5)
+        _mesh("Pane", box((-3.1, -2.8, -0.1), (3.1, -2.75, 3.1)), PANE_FACES, glass)
+        triangles += 2 * len(PANE_FACES)
     _lamp()
     _camera()
     return triangles
 
 
-def _diffuse() -> bpy.types.Material:
-    material = bpy.data.materials.new("White")
+def _material(name: str, kind: str, color: tuple[float, float, float, float], **inputs: float) -> bpy.types.Material:
+    material = bpy.data.materials.new(name)
     material.use_nodes = True
     tree = material.node_tree
     tree.nodes.clear()
-    node, output = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeOutputMaterial")
-    node.inputs["Color"].default_value = (0.7, 0.7, 0.7, 1.0)
+    node, output = tree.nodes.new(kind), tree.nodes.new("ShaderNodeOutputMaterial")
+    node.inputs["Color"].default_value = color
+    for socket, value in inputs.items():
+        node.inputs[socket].default_value = value
     tree.links.new(node.outputs[0], output.inputs["Surface"])
     return material
 

@@ -18,18 +18,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from rooms import ROOMS
 from scenes import ROOT
 from version import cpu_name, version_of_build
 
 RESULTS = ROOT / "docs" / "benchmark" / "speed.jsonl"
 WORKER = str(Path(__file__).with_name("speed_worker.py"))
-ROOMS = ("room-1k", "room-300k", "room-2m")
 SAMPLES = (4, 16)
+Spread = tuple[float, float, float]
 HOSTS = {
     "4.5": [str(ROOT / ".venv/bpy45/bin/python3"), WORKER],
     "3.4": [os.environ.get("BLENDER") or "blender", "-b", "--factory-startup", "-noaudio", "--python", WORKER],
 }
-TURNS = (("path", "4.5"), ("gradient-none", "4.5"), ("cycles", "4.5"), ("cycles", "3.4"))  # mode and host, in this order again and again
 
 
 class Host:
@@ -69,7 +69,7 @@ def measure(room: str, arguments: argparse.Namespace, deadline: float) -> None:
     version = version_of_build()
     identity = ("room", "width", "version", "mode", "host", "samples", "repeat")
     done = {tuple(row[k] for k in identity) for row in load()}
-    turns = [turn for turn in TURNS if turn[0] in arguments.modes]
+    turns = [turn for turn in ROOMS[room].turns if not arguments.modes or turn[0] in arguments.modes]
     jobs = [
         {"room": room, "width": size[0], "version": version, "mode": mode, "host": host, "samples": samples, "repeat": repeat}
         for repeat in range(arguments.repeats)
@@ -102,16 +102,24 @@ class Cost:
     """CPU microseconds per sample of one mode in one room, one figure per repeat, and what is counted besides."""
 
     per_sample: dict[int, float] = field(default_factory=dict)
+    total: dict[int, float] = field(default_factory=dict)  # CPU seconds of the larger count, export, build and what AUTO tries included
     rays: dict[str, float] = field(default_factory=dict)  # per sample
     peak_memory_bytes: int = 0
 
     def median(self) -> float | None:
         return float(np.median(list(self.per_sample.values()))) if self.per_sample else None
 
-    def over(self, other: Cost) -> tuple[float, float, float] | None:
-        """Ratio to another mode, repeat by repeat: median, lowest, highest."""
-        ratios = [self.per_sample[i] / other.per_sample[i] for i in self.per_sample.keys() & other.per_sample.keys()]
-        return (float(np.median(ratios)), min(ratios), max(ratios)) if ratios else None
+    def over(self, other: Cost) -> Spread | None:
+        return ratio(self.per_sample, other.per_sample)
+
+    def total_over(self, other: Cost) -> Spread | None:
+        return ratio(self.total, other.total)
+
+
+def ratio(ours: dict[int, float], theirs: dict[int, float]) -> Spread | None:
+    """Repeat by repeat: median, lowest, highest."""
+    found = [ours[repeat] / theirs[repeat] for repeat in ours.keys() & theirs.keys()]
+    return (float(np.median(found)), min(found), max(found)) if found else None
 
 
 def costs(rows: list[dict]) -> dict[str, dict[tuple[str, str], Cost]]:
@@ -127,6 +135,7 @@ def costs(rows: list[dict]) -> dict[str, dict[tuple[str, str], Cost]]:
         count = row["width"] * row["height"] * (SAMPLES[-1] - SAMPLES[0])
         cost = table.setdefault(row["room"], {}).setdefault((row["mode"], row["host"]), Cost())
         cost.per_sample[row["repeat"]] = 1e6 * (row["cpu"] - first["cpu"]) / count
+        cost.total[row["repeat"]] = row["cpu"]
         cost.rays = {kind: (n - first["rays"][kind]) / count for kind, n in row.get("rays", {}).items()}
         cost.peak_memory_bytes = max(cost.peak_memory_bytes, row["peak_memory_bytes"])
     return table
@@ -137,7 +146,7 @@ def main() -> None:
     parser.add_argument("--rooms", type=lambda t: t.split(","), default=list(ROOMS))
     parser.add_argument("--width", type=int, default=1280)
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--modes", type=lambda t: t.split(","), default=[mode for mode, _ in TURNS])
+    parser.add_argument("--modes", type=lambda t: t.split(","), default=[])
     parser.add_argument("--minutes", type=float, default=600.0)
     arguments = parser.parse_args()
     deadline = time.monotonic() + 60.0 * arguments.minutes

@@ -21,14 +21,13 @@ import memory  # noqa: E402
 import modes  # noqa: E402
 import room  # noqa: E402
 from gradus import store  # noqa: E402
+from rooms import ROOMS  # noqa: E402
 
-BOUNCES = 4
 
-
-def render(job: dict) -> dict:
+def render(job: dict, bounces: int) -> dict:
     scene = bpy.context.scene
     modes.apply(scene, job["mode"], job["samples"], job["seed"])
-    set_bounces(scene.gradus if scene.render.engine == modes.GRADUS else scene.cycles)
+    set_bounces(scene.gradus if scene.render.engine == modes.GRADUS else scene.cycles, bounces)
     memory.reset_peak()
     wall, cpu = time.perf_counter(), time.process_time()
     bpy.ops.render.render()
@@ -40,19 +39,19 @@ def render(job: dict) -> dict:
     return answer
 
 
-def set_bounces(target: bpy.types.PropertyGroup) -> None:
+def set_bounces(target: bpy.types.PropertyGroup, bounces: int) -> None:
     for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces"):
-        setattr(target, name, BOUNCES)
+        setattr(target, name, bounces)
 
 
 def main() -> None:
     name, width, height = sys.argv[sys.argv.index("--") + 1 :]
     gradus.register()
-    triangles = room.build(name, int(width), int(height))
+    triangles = room.build(ROOMS[name], int(width), int(height))
     print("RESULT " + json.dumps({"blender": bpy.app.version_string, "triangles": triangles}), flush=True)
     for line in sys.stdin:
         try:
-            answer = render(json.loads(line))
+            answer = render(json.loads(line), ROOMS[name].bounces)
         except (ValueError, RuntimeError) as error:  # one failed job must not end the others
             answer = {"error": str(error)}
         print("RESULT " + json.dumps(answer), flush=True)

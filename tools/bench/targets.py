@@ -7,10 +7,10 @@ import json
 import numpy as np
 import solve
 import speed
-from document import Table, number
+from document import Table, number, spread
 from results import FOLDER, SceneResults
 
-PATH, GRADIENT, CYCLES = ("path", "4.5"), ("gradient-none", "4.5"), ("cycles", "4.5")
+PATH, GRADIENT, CYCLES, AUTO = ("path", "4.5"), ("gradient-none", "4.5"), ("cycles", "4.5"), ("auto", "4.5")
 SUITE = FOLDER / "suite.json"
 Found = tuple[str, bool | None]
 NOT_MEASURED: Found = ("not measured", None)
@@ -23,6 +23,8 @@ def table(scenes: list[SceneResults]) -> Table:
         ("four offsets ≤ 1.6× of PT, 1 k triangles (stretch 1.4×)", "G-PT 2015: 2.5×", room("room-1k", GRADIENT, PATH, 1.6)),
         ("the same, 2 M triangles", "G-PT 2015: 2.5×", room("room-2m", GRADIENT, PATH, 1.6)),
         ("the same, on the scenes", "thesis: 2.2×–3.2× by scene", every(cost_ratios(scenes), 1.6)),
+        ("AUTO within 3 % of PT's time: direct light alone", "plain PT", chosen("direct-light", 1.03)),
+        ("AUTO within 3 % of PT's time: room seen through glass", "plain PT", chosen("behind-glass", 1.03)),
         ("L2, unbiased: R ≤ 0.25 on diffuse interiors", "G-BDPT 2015: 0.2–0.5 of BDPT", every(interiors(scenes), 0.25)),
         ("L2: median R ≤ 0.5 over all scenes", "path reusing 2017: almost 0.1", median(ratios(scenes, "gradient-l2", "path"), 0.5)),
         ("L2: R never > 1.05", "G-PT 2015: worse than PT on some specular objects", every(ratios(scenes, "gradient-l2", "path"), 1.05)),
@@ -89,6 +91,12 @@ def room(name: str, ours: tuple[str, str], theirs: tuple[str, str], most: float)
         return NOT_MEASURED
     micros = f"{number(costs[ours].median())} against {number(costs[theirs].median())} µs"
     return f"{ratio[0]:.2f} ({ratio[1]:.2f}–{ratio[2]:.2f}); {micros}", ratio[0] <= most
+
+
+def chosen(name: str, most: float) -> Found:
+    costs = speed.costs(speed.load()).get(name, {})
+    found = costs[AUTO].total_over(costs[PATH]) if AUTO in costs and PATH in costs else None
+    return (spread(found, ".3f"), found[0] <= most) if found else NOT_MEASURED
 
 
 def solved(mode: str, most: float) -> Found:
