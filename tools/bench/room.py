@@ -6,8 +6,7 @@ import bpy
 import numpy as np
 from rooms import Room
 
-BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-PANE_FACES = [face[::-1] for face in BOX_FACES]  # outwards
+BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]  # normals outwards
 
 
 def bumpy_sphere(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -43,7 +42,7 @@ def build(room: Room, width: int, height: int) -> int:
     scene.world.color = (0.0, 0.0, 0.0)
     white = _material("White", "ShaderNodeBsdfDiffuse", (0.7, 0.7, 0.7, 1.0))
     triangles = 2 * len(BOX_FACES)
-    _mesh("Box", box((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0)), BOX_FACES, white)
+    _mesh("Box", box((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0)), [face[::-1] for face in BOX_FACES], white)
     for i in range(9):
         vertices, faces = bumpy_sphere(room.cells, i)
         place = np.array((-2.0 + 2.0 * (i % 3), -1.2 + 1.8 * (i // 3), 0.8 + 0.1 * i))
@@ -51,8 +50,8 @@ def build(room: Room, width: int, height: int) -> int:
         triangles += len(faces)
     if room.pane:
         glass = _material("Glass", "ShaderNodeBsdfGlass", (1.0, 1.0, 1.0, 1.0), Roughness=0.0, IOR=1.5)
-        _mesh("Pane", box((-3.1, -2.8, -0.1), (3.1, -2.75, 3.1)), PANE_FACES, glass)
-        triangles += 2 * len(PANE_FACES)
+        _mesh("Pane", box((-3.1, -2.8, -0.1), (3.1, -2.75, 3.1)), BOX_FACES, glass)
+        triangles += 2 * len(BOX_FACES)
     _lamp()
     _camera()
     return triangles
