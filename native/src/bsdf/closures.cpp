@@ -202,9 +202,11 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   has_smooth_.fill(false);
   drop_black_lobes();
   keep_originals();
+  ignores_wo_ = true;
   for (int i = 0; i < count_; i++) {
     prepare(i, wo);
     add_entries(i, wo, roughness_threshold);
+    ignores_wo_ = ignores_wo_ && is_lambert(lobes_[static_cast<size_t>(i)]);
   }
   normalise();
 }

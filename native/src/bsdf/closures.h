@@ -110,6 +110,9 @@ class Closures {
   const Lobe& lobe(int i) const { return lobes_[i]; }
   bool empty() const { return count_ == 0; }
 
+  // Value, density and class probabilities are the same for every wo on one side: all lobes are Lambert's.
+  bool ignores_wo() const { return ignores_wo_; }
+
   // P(class); the probabilities of the classes that are present sum to one. 0: class absent.
   float class_probability(ScatterClass c) const { return class_probability_[static_cast<int>(c)]; }
   // The class has lobes that are not Dirac, so that evaluate() can be non-zero.
@@ -168,6 +171,7 @@ class Closures {
   std::array<int, kScatterClasses> entry_count_{};
   std::array<float, kScatterClasses> class_probability_{};
   std::array<bool, kScatterClasses> has_smooth_{};
+  bool ignores_wo_ = false;
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
   Vec3 smooth_normal_ = Vec3(0.0f);
 };

@@ -49,15 +49,15 @@ float disney(float roughness, const Vec3& wo, const Vec3& wi) {
 }  // namespace
 
 BsdfEval evaluate_diffuse(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t) {
+  if (is_lambert(lobe)) {
+    return evaluate_lambert(lobe, wi.z);
+  }
   if (!(wi.z > 0.0f)) {
     return {};
   }
   const float pdf = wi.z * kInvPi;
   if (lobe.fresnel == FresnelType::Schlick) {
     return {lobe.weight * (std::max(0.0f, disney(lobe.alpha_x, wo, wi)) * pdf), pdf};
-  }
-  if (lobe.alpha_x <= 0.0f) {
-    return {lobe.weight * pdf, pdf};
   }
   const float cos_o = std::max(0.0f, wo.z);
   float t = glm::dot(wo, wi) - wi.z * cos_o;

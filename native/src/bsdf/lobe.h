@@ -13,6 +13,15 @@ using EvaluateLobe = BsdfEval (*)(const Lobe& lobe, const Vec3& wo, const Vec3& 
 // u_side: chooses reflection or transmission where both are asked for. False: the sample is lost.
 using SampleLobe = bool (*)(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
 
+// Lambert's lobe needs no more than the cosine of wi and its normal.
+inline bool is_lambert(const Lobe& lobe) {
+  return lobe.type == LobeType::Diffuse && lobe.fresnel != FresnelType::Schlick && lobe.alpha_x <= 0.0f;
+}
+inline BsdfEval evaluate_lambert(const Lobe& lobe, float cos_i) {
+  const float pdf = cos_i * kInvPi;
+  return cos_i > 0.0f ? BsdfEval{lobe.weight * pdf, pdf} : BsdfEval{};
+}
+
 BsdfEval evaluate_diffuse(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
 bool sample_diffuse(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
 

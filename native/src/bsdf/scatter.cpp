@@ -45,13 +45,18 @@ bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_normal_
 
 BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const {
   const Lobe& source = lobes_[entry.lobe];
-  const Frame3 frame = make_frame(source.normal, source.tangent);
-  const Vec3 local = frame.to_local(wi);
   // Shading and geometric side must agree: no light through walls, and a test that a shifted path meets in the same form.
-  if ((local.z < 0.0f) != transmitted) {
+  const float cos_i = glm::dot(wi, source.normal);
+  if ((cos_i < 0.0f) != transmitted) {
     return {};
   }
-  BsdfEval eval = functions_of(source).evaluate(source, frame.to_local(wo), local, entry.sides);
+  BsdfEval eval;
+  if (is_lambert(source)) {
+    eval = evaluate_lambert(source, cos_i);
+  } else {
+    const Frame3 frame = make_frame(source.normal, source.tangent);
+    eval = functions_of(source).evaluate(source, frame.to_local(wo), frame.to_local(wi), entry.sides);
+  }
   eval.pdf *= entry.probability;
   if (source.type == LobeType::Diffuse && smooth_normal_ != Vec3(0.0f) && smooth_normal_ != source.normal) {
     eval.value *= bump_shadowing(smooth_normal_, source.normal, wi);

@@ -28,8 +28,9 @@ double defended(double weight, double sum, int groups) {
 }  // namespace
 
 GroupChoice EmitterTable::choose_group(const Receiver& receiver) const {
-  const bool only_tree = suns.empty() && world.black();
-  const double in_tree = tree.empty() ? 0.0 : (only_tree ? 1.0 : tree.irradiance(receiver));
+  if (suns.empty() && world.black()) return {tree.empty() ? 0.0 : 1.0, 0.0, 0.0};
+  if (suns.empty() && tree.empty()) return {0.0, 0.0, 1.0};
+  const double in_tree = tree.empty() ? 0.0 : tree.irradiance(receiver);
   double in_suns = 0.0;
   for (size_t i = 0; i < suns.size(); ++i) in_suns += sun_importance(sun_irradiance[i], lamps[suns[i]], receiver);
   const double in_world = world.black() ? 0.0 : world.mean() * kPi;

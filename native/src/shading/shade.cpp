@@ -15,13 +15,14 @@ const MaterialData& material_of(const Snapshot& snapshot, uint32_t index) {
 void clear(ShadeResult* result) {
   result->closures.clear();
   result->emission = result->transparency = result->holdout = Rgb(0.0f);
-  result->fallback = result->complete = false;
+  result->fallback = result->complete = result->ignores_wo = false;
   if (result->tape) result->tape->clear();
 }
 
 // Once all closures are added.
-void complete(const ShadeContext& context, const Vec3& wo, float roughness_threshold, ShadeResult* result) {
+void complete(const MaterialData& material, const ShadeContext& context, const Vec3& wo, float roughness_threshold, ShadeResult* result) {
   result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
+  result->ignores_wo = !material.values_look_at_ray && result->closures.ignores_wo();
   result->complete = true;
 }
 
@@ -50,7 +51,7 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
   const ShadeContext context = surface_context(snapshot, point, wo, ray);
   run_program(material.surface, context, result);
   if (result->tape) result->tape->finish();
-  complete(context, wo, roughness_threshold, result);
+  complete(material, context, wo, roughness_threshold, result);
 }
 
 void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
@@ -64,7 +65,7 @@ void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const Clos
     return;
   }
   result->fallback = material.uses_fallback;
-  complete(context, wo, roughness_threshold, result);
+  complete(material, context, wo, roughness_threshold, result);
 }
 
 void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,

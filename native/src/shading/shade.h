@@ -37,7 +37,8 @@ struct ShadeResult {
   Rgb transparency = Rgb(0.0f);  // weight of the ray that goes straight on
   Rgb holdout = Rgb(0.0f);
   bool fallback = false;        // the material holds a replaced node
-  bool complete = false;        // the closures are there
+  bool complete = false;        // the closures are there; then:
+  bool ignores_wo = false;      // all of this is the same seen from anywhere on this side
   ClosureTape* tape = nullptr;  // not owned: if there is one, shade_surface() records the closures for shade_again()
 };
 

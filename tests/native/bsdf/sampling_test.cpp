@@ -171,5 +171,31 @@ TEST(A4_Densities, ByPassSumsToValue) {
   EXPECT_GT(closures.evaluate_by_pass(ScatterClass::Diffuse, wo, below)[2].x, 0.0f);
 }
 
+// Offsets take the base's view of such a vertex for their own.
+TEST(ClosuresThatIgnoreWo, AreTheSameFromEverywhereOnOneSide) {
+  std::vector<LobeCase> cases = diffuse_cases();
+  for (const LobeCase& c : microfacet_cases(0.5f)) cases.push_back(c);
+  const Vec3 views[] = {glm::normalize(Vec3(0.1f, 0.2f, 1.0f)), glm::normalize(Vec3(-1.0f, 0.3f, 0.2f))};
+  const Vec3 lights[] = {glm::normalize(Vec3(0.4f, -0.5f, 0.7f)), glm::normalize(Vec3(0.9f, 0.1f, 0.1f)), Vec3(0, 0, -1)};
+  for (const LobeCase& c : cases) {
+    Closures seen[2];
+    for (int i = 0; i < 2; ++i) {
+      *seen[i].add() = make_lobe(LobeType::Diffuse);
+      Lobe lobe = c.lobe;
+      lobe.normal = glm::normalize(Vec3(0.2f, 0.0f, 1.0f));  // bumped
+      *seen[i].add() = lobe;
+      seen[i].finish(views[i], Vec3(0, 0, 1), 0.1f, Vec3(0, 0, 1));
+    }
+    EXPECT_EQ(seen[0].ignores_wo(), c.name == "Lambert") << c.name;
+    if (!seen[0].ignores_wo()) continue;
+    EXPECT_EQ(seen[0].class_probability(ScatterClass::Diffuse), seen[1].class_probability(ScatterClass::Diffuse));
+    for (const Vec3& wi : lights) {
+      const BsdfEval a = seen[0].evaluate(ScatterClass::Diffuse, views[0], wi), b = seen[1].evaluate(ScatterClass::Diffuse, views[1], wi);
+      EXPECT_EQ(a.value, b.value);
+      EXPECT_EQ(a.pdf, b.pdf);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gradus::testing

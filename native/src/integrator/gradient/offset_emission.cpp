@@ -168,12 +168,13 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
     if (o.stage == OffsetStage::Linked) {
       found_linked(k, c, Rgb(1.0f), joint_);
     } else if (o.stage == OffsetStage::Pending) {
-      if (!o.link.open || is_black(o.linked->shade.emission)) {
+      const Rgb emission = o.link.open ? linked_emission(o, vertex) : Rgb(0.0f);
+      if (is_black(emission)) {
         alone(k, c);
         continue;
       }
       const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, emitter_of_surface(context_.scene, vertex.point));
-      const Rgb value = o.link.throughput * o.linked->shade.emission * bsdf_weight(pdf_light, o.link.pdf);
+      const Rgb value = o.link.throughput * emission * bsdf_weight(pdf_light, o.link.pdf);
       pair(k, c, value, o.link.ratio * (joint_ && !o.mixed ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
     }
   }

@@ -83,15 +83,21 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
     alone(k, c);
     return;
   }
-  const LitClass lit = light_class(context_, *o.linked, scatter_class, sample, base_state_.ray.state);
-  if (is_black(lit.value) || !(o.link.kind_ratio > 0.0f)) {
+  const float link_ratio = o.link.ratio * o.link.kind_ratio;
+  see_linked(&o, vertex);
+  if (o.link.alike && link_ratio > 0.0f) {
+    pair(k, c, o.link.throughput * c.tail, link_ratio);
+    return;
+  }
+  const LitClass lit = o.link.alike ? LitClass{} : light_class(context_, *o.linked, scatter_class, sample, base_state_.ray.state);
+  if (is_black(lit.value) || !(link_ratio > 0.0f)) {
     ++counters_.fail_class;
     alone(k, c);
     return;
   }
   const bool all = joint(sample.view, o) && reconnects(scatter_class) && sample.point.found_by_rays;
   const float ratio = all ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
-  pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), o.link.ratio * o.link.kind_ratio * ratio);
+  pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), link_ratio * ratio);
 }
 
 void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {

@@ -1,4 +1,6 @@
 // Reconnection of offsets to the base's next vertex.
+#include <utility>
+
 #include "integrator/gradient/offset_paths.h"
 
 namespace gradus {
@@ -16,19 +18,54 @@ ShiftFailure OffsetPaths::try_link(OffsetPath* o, const Vertex& vertex, ShiftedE
 
 // The offset arrives at the shared vertex. The base's decisions on its segment were made for both paths: the offset's own surfaces on the
 // way weigh with their expectation.
-void OffsetPaths::open_link(OffsetPath* o, const Vertex& vertex, const ShiftedEvent& event, const Rgb& through) {
+void OffsetPaths::open_link(OffsetPath* o, const ShiftedEvent& event, const Rgb& through) {
   o->link.open = true;
   o->link.throughput = o->state.throughput * event.factor * through / base_segment_->probability;
   o->link.ratio = o->ratio * event.ratio;
   o->link.kind_ratio = event.kind_ratio;
   o->link.pdf = event.pdf;
-  o->linked->point = vertex.point;
   o->linked->wo = -event.wi;
+}
+
+// The ray by which the offset arrives there.
+RayState OffsetPaths::linked_ray(const OffsetPath& o, const Vertex& vertex) const {
   RayState ray = base_state_.ray.state;
-  ray.transparent_depth = o->link.transparent_depth;
-  ray.length = glm::length(vertex.point.position - o->here->point.position);
-  shade_again(context_.scene, vertex.point, *vertex.shade.tape, vertex.wo, o->linked->wo, ray, context_.settings.roughness_threshold,
-              &o->linked->shade);
+  ray.transparent_depth = o.link.transparent_depth;
+  ray.length = glm::length(vertex.point.position - o.here->point.position);
+  return ray;
+}
+
+// What the shared vertex emits towards the offset: its closures may not be wanted.
+Rgb OffsetPaths::linked_emission(const OffsetPath& o, const Vertex& vertex) const {
+  const bool same = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o.linked->wo) > 0.0f;
+  return same ? vertex.shade.emission : shade_emission(context_.scene, vertex.point, o.linked->wo, linked_ray(o, vertex));
+}
+
+// The shared vertex, whose closures are known, from the offset's side. Most walls look alike from everywhere.
+void OffsetPaths::see_linked(OffsetPath* o, const Vertex& vertex) const {
+  if (std::exchange(o->link.shaded, true)) {
+    return;
+  }
+  o->link.alike = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o->linked->wo) > 0.0f;
+  if (!o->link.alike) {
+    o->linked->point = vertex.point;
+    shade_again(context_.scene, vertex.point, *vertex.shade.tape, vertex.wo, o->linked->wo, linked_ray(*o, vertex),
+                context_.settings.roughness_threshold, &o->linked->shade);
+  }
+}
+
+// The base's event at the shared vertex.
+ShiftedEvent OffsetPaths::linked_event(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) const {
+  see_linked(o, vertex);
+  if (!o->link.alike) {
+    return event_towards(event, *o->linked, event.sample.wi, 1.0f);
+  }
+  ShiftedEvent same;
+  same.wi = event.sample.wi;
+  same.factor = event.factor;
+  same.pdf = event.pdf;
+  same.ratio = 1.0f;
+  return same;
 }
 
 // Connects all pending offsets that have not tried yet.
@@ -69,7 +106,7 @@ void OffsetPaths::link_all(const Vertex& vertex) {
     if (is_black(through)) {
       ++counters_.fail_occluded;
     } else {
-      open_link(&offsets_[k], vertex, events[k], through);
+      open_link(&offsets_[k], events[k], through);
     }
   }
 }
@@ -104,7 +141,7 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
       fail(&o, ShiftFailure::Side);
       continue;
     }
-    const ShiftedEvent shared = event_towards(event, *o.linked, event.sample.wi, 1.0f);
+    const ShiftedEvent shared = linked_event(&o, vertex, event);
     if (shared.failure != ShiftFailure::None) {
       fail(&o, shared.failure);
       continue;

@@ -30,6 +30,8 @@ enum class OffsetStage : uint8_t {
 struct OffsetLink {
   bool known = false;
   bool open = false;
+  bool shaded = false;  // the shared vertex as seen from the offset is known: see_linked()
+  bool alike = false;   // and it is what the base sees
   Rgb throughput = Rgb(0.0f);
   float ratio = 0.0f;
   float kind_ratio = 0.0f;  // for light and paths that go on; emission looks at `ratio` alone (ShiftedEvent)

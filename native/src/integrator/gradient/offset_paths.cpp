@@ -141,6 +141,7 @@ void OffsetPaths::survived(float probability, const Vertex& vertex) {
       o.link.throughput *= factor;  // a connection that emission already asked for
     }
     if (o.stage == OffsetStage::Traced) {
+      shade_vertex(context_, o.state.ray.state, o.here);
       o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);
     }
   }

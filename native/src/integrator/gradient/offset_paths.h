@@ -62,7 +62,11 @@ class OffsetPaths {
   // Reconnection (offset_link.cpp).
   void link_all(const Vertex& vertex);
   ShiftFailure try_link(OffsetPath* offset, const Vertex& vertex, ShiftedEvent* event) const;
-  void open_link(OffsetPath* offset, const Vertex& vertex, const ShiftedEvent& event, const Rgb& through);
+  void open_link(OffsetPath* offset, const ShiftedEvent& event, const Rgb& through);
+  RayState linked_ray(const OffsetPath& offset, const Vertex& vertex) const;
+  Rgb linked_emission(const OffsetPath& offset, const Vertex& vertex) const;
+  void see_linked(OffsetPath* offset, const Vertex& vertex) const;
+  ShiftedEvent linked_event(OffsetPath* offset, const Vertex& vertex, const ScatterEvent& event) const;
 
   // Emitters (offset_emission.cpp, offset_light.cpp).
   Radiance see(OffsetPath* offset) const;

@@ -9,8 +9,7 @@ namespace gradus {
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
   ++counters_.rays_shift;
   o->advance();
-  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment,
-                base_goes_on() ? Shading::Now : Shading::Later);
+  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment, Shading::Later);
   o->fresh = true;
 }
 
@@ -22,9 +21,6 @@ CameraVertex* OffsetPaths::known_vertex(int k) const {
 }
 
 void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
-  if (base_goes_on() && v->segment.end == SegmentEnd::Surface) {
-    shade_vertex(context_, v->ray.state, &v->vertex);
-  }
   o->here = &v->vertex;
   o->segment = &v->segment;
   o->state.ray = v->ray;
