@@ -7,7 +7,7 @@ BLENDER ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help build render test test-full test-native test-addon stress package format lint clean
-.PHONY: bench bench-errors bench-quick bench-speed bench-suite bench-pictures bench-host bench-report picture
+.PHONY: bench bench-errors bench-agreement bench-quick bench-speed bench-suite bench-pictures bench-host bench-report picture
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -40,6 +40,9 @@ bench:          ## everything below, all scenes; interrupted runs go on: SCENES=
 bench-errors:   ## error against CPU time alone; limited by the same variables
 	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
 	 tools/bench.sh --errors
+
+bench-agreement: ## converged images against those of Cycles and Mitsuba; limited by the same variables
+	@SCENES='$(SCENES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' tools/bench.sh --agreement
 
 bench-quick:    ## errors of two scenes, in under five minutes
 	@tools/bench.sh --quick

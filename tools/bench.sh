@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --speed | --suite | --pictures | --host | --report], all without an option.
+# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --agreement | --speed | --suite | --pictures | --host | --report]; all without one.
 #   --errors  error against CPU time; SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 SEEDS=5 SAMPLES=4,16,64 MINUTES=60 limit it
 #   --quick   the same of two scenes, smaller
+#   --agreement  converged images against those of Cycles and Mitsuba; SCENES, WIDTH and REFERENCE as above
 #   --speed   time of a sample in the room; ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3 MINUTES=60 limit it
 #   --suite   time of the statistical tests and of the reconstructions
 #   --pictures  pictures of the project's own scenes by all modes
@@ -25,6 +26,13 @@ errors() {
   option --samples "${SAMPLES:-}"
   option --minutes "${MINUTES:-}"
   "$python" tools/bench/bench.py "${arguments[@]}"
+}
+agreement() {  # from the references of errors(), where these are there
+  local arguments=()
+  option --scenes "${SCENES:-}"
+  option --width "${WIDTH:-}"
+  option --samples "${REFERENCE:-}"
+  "$python" tools/bench/agreement.py "${arguments[@]}"
 }
 speed() {
   local arguments=()
@@ -50,11 +58,12 @@ report() { "$python" tools/bench/report.py; }
 case $part in
   --errors) set_up; errors; report ;;
   --quick) set_up; errors --quick; report ;;
+  --agreement) set_up; agreement; report ;;
   --speed) set_up blender; speed; report ;;
   --suite) set_up; suite; report ;;
   --pictures) set_up; pictures; report ;;
   --host) set_up blender; host ;;
   --report) tools/setup/setup bpy; report ;;
-  all) set_up blender; host; suite; speed; errors; pictures; report ;;
+  all) set_up blender; host; suite; speed; errors; pictures; agreement || differs=1; report; exit "${differs:-0}" ;;
   *) echo "bench.sh: unknown option $part" >&2; exit 1 ;;
 esac

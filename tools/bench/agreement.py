@@ -1,6 +1,6 @@
 """A9: agreement with Cycles, and with Mitsuba where it loads the scene: 8x8 block means of the converged images of plain path tracing.
 
-    agreement.py [--scenes a,b] [--samples 1024] [--width 160]
+    agreement.py [--scenes a,b] [--samples 4096] [--width 320]
 
 The images are the benchmark's references (references.py), with their variances. A block agrees when its means differ by at most 2 %, or by
 less than the noise of both (3 standard errors; pixels are independent). A scene agrees when 95 % of its blocks do. The figures go to
@@ -98,8 +98,8 @@ def save_strip(name: str, ours: np.ndarray, theirs: np.ndarray) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="")
-    parser.add_argument("--samples", type=int, default=1024)
-    parser.add_argument("--width", type=int, default=160)
+    parser.add_argument("--samples", type=int, default=4096)
+    parser.add_argument("--width", type=int, default=320)
     arguments = parser.parse_args()
     failed = []
     for scene in select(arguments.scenes):

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "sample_blends"
+MADE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "gradus" / "scenes"
 REAL = ROOT.parent / "shared" / "scenes"
 
 
@@ -16,6 +20,7 @@ class Scene:
     path: Path
     diffuse_interior: bool = False  # counts for the target R <= 0.5
     own: bool = False  # pictures may be shown
+    maker: str = ""  # script that makes the file where it is missing
 
 
 SCENES = [
@@ -23,6 +28,7 @@ SCENES = [
     Scene("cornell", SAMPLES / "cornell.blend", diffuse_interior=True, own=True),
     Scene("glass_and_chrome", SAMPLES / "glass_and_chrome.blend", own=True),
     Scene("many_lights", SAMPLES / "many_lights.blend", own=True),
+    Scene("faceted", MADE / "faceted.blend", own=True, maker="faceted.py"),
     Scene("door-ajar", REAL / "door-ajar.blend", diffuse_interior=True),
     Scene("breakfast-room", REAL / "breakfast-room.blend", diffuse_interior=True),
     Scene("kitchen", REAL / "kitchen.blend"),
@@ -43,6 +49,8 @@ def select(names: str) -> list[Scene]:
         raise SystemExit(f"unknown scenes: {', '.join(sorted(unknown))}")
     chosen = [s for s in SCENES if not wanted or s.name in wanted]
     for scene in chosen:
+        if scene.maker and not scene.path.exists():
+            subprocess.run([sys.executable, str(Path(__file__).with_name(scene.maker)), str(scene.path)], check=True)
         if not scene.path.exists():
             print(f"SKIP {scene.name}: its file is not here")
     return [s for s in chosen if s.path.exists()]
