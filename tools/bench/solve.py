@@ -1,6 +1,6 @@
 """CPU time of the reconstructions at 1920×1080, RGB: the room of 1 k triangles with a few samples, several times each.
 
-    solve.py [--repeats 5]
+    solve.py [--repeats 3]
 
 Appends to docs/benchmark/solve.jsonl what the library says its solver took (`cpu_seconds.reconstruct` of the stats).
 """
@@ -28,7 +28,7 @@ def newest() -> list[dict]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--samples", type=int, default=SAMPLES)
     arguments = parser.parse_args()
     host = Host(HOSTS["4.5"], "room-1k", SIZE)
