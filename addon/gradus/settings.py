@@ -41,9 +41,10 @@ INTEGRATORS = (
     ("GRADIENT", "Gradient", "Path tracing that also samples the differences between neighbouring pixels", 2),
 )
 RECONSTRUCTIONS = (
-    ("AUTO", "Automatic", "L2 for gradients, none for plain path tracing", 0),
+    ("AUTO", "Automatic", "Weighted for gradients, none for plain path tracing", 0),
     ("NONE", "None", "Deliver the sampled image", 1),
     ("L2", "L2", "Least squares: unbiased; outliers may leave small dipoles, and single values may be negative", 2),
+    ("WEIGHTED", "Weighted", "Least squares by the measured noise of every pixel and difference: least error; consistent", 3),
     ("L1", "L1", "Least absolute deviations: robust to outliers, without dipoles; biased, it may darken", 4),
 )
 FILTERS = (
@@ -88,7 +89,7 @@ SETTINGS: tuple[Setting, ...] = (
         FLOAT,
         0.0,
         "Primal Weight",
-        "Weight of the sampled image against its gradients in the reconstruction. 0 = automatic: 0.4 for L2, 0.2 for L1",
+        "Weight of the sampled image against its gradients in the reconstruction. 0 = automatic: 0.4 for L2, 0.2 for L1. Weighted takes its weights from the noise; here it smooths what keeps its means",
         0.0,
         1e3,
         1,

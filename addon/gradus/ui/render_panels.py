@@ -36,11 +36,11 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "integrator")
         column = layout.column()
         column.prop(settings, "reconstruction")
-        if settings.reconstruction in ("L2", "L1", "AUTO"):
+        if settings.reconstruction != "NONE":
             column.prop(settings, "reconstruction_alpha")
-        if settings.integrator == "PATH" and settings.reconstruction in ("L2", "L1"):
+        if settings.integrator == "PATH" and settings.reconstruction not in ("NONE", "AUTO"):
             layout.label(text="Plain paths have no gradients to reconstruct from", icon="ERROR")
-        elif settings.reconstruction == "L1":
+        elif settings.reconstruction in ("L1", "WEIGHTED") or (settings.reconstruction == "AUTO" and settings.integrator != "PATH"):
             layout.label(text="Consistent", icon="INFO")
         elif settings.noise_threshold > 0.0:
             layout.label(text="Unbiased at threshold 0", icon="INFO")

@@ -32,14 +32,14 @@ void check_count(size_t count, const Region& region, uint32_t channels) {
 uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
   switch (reconstruction) {
     case GRADUS_RECONSTRUCTION_AUTO:
-      return frame.gradients ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE;
+      return frame.gradients ? GRADUS_RECONSTRUCTION_WEIGHTED : GRADUS_RECONSTRUCTION_NONE;
     case GRADUS_RECONSTRUCTION_NONE:
     case GRADUS_RECONSTRUCTION_L2:
     case GRADUS_RECONSTRUCTION_L1:
-      return reconstruction;
     case GRADUS_RECONSTRUCTION_WEIGHTED:
+      return reconstruction;
     case GRADUS_RECONSTRUCTION_REGULARIZED:
-      throw unsupported("this reconstruction does not work yet: use l2, l1, none or auto");
+      throw unsupported("this reconstruction does not work yet: use weighted, l2, l1, none or auto");
     default:
       throw invalid_argument("there is no reconstruction " + std::to_string(reconstruction));
   }

@@ -107,10 +107,15 @@ struct GradientImages {
   std::vector<float> dx, dy;  // forward differences, y up; last column, row are 0
   // The same from one half alone, for variances; empty unless asked for.
   std::array<std::vector<float>, kHalves> primal_half, dx_half, dy_half;
+  // Estimated standard deviations of the means, one value per pixel: the root mean square over RGB of half the difference between the two
+  // halves (contract 1.2). NaN where a half has no samples. Empty unless asked for.
+  std::vector<float> primal_deviation, dx_deviation, dy_deviation;
 };
 
 // Merges halves and pairs. with_halves: also fills the half images.
 GradientImages read_images(const Frame& frame, int component, bool with_halves);
+// Fills the deviations.
+void read_deviations(const Frame& frame, int component, GradientImages* images);
 // Estimated variance of the mean of the primal: ((A - B)/2)², per channel (contract 1.2).
 std::vector<float> read_variance(const Frame& frame);
 

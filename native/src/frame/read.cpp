@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/fpu.h"
@@ -103,6 +104,64 @@ GradientImages read_images(const Frame& frame, int component, bool with_halves) 
     }
   }
   return images;
+}
+
+namespace {
+
+// Both halves of a row, and whether each has samples.
+struct HalfRows {
+  std::vector<float> values[kHalves];
+  std::vector<uint8_t> sampled;
+};
+
+// Root mean square over RGB of half the differences of a row's halves.
+void deviations_of_row(const HalfRows& rows, int channels, float* to) {
+  for (size_t x = 0; x < rows.sampled.size(); ++x) {
+    const float *a = rows.values[0].data() + x * channels, *b = rows.values[1].data() + x * channels;
+    float sum = 0.0f;
+    for (int c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+    to[x] = rows.sampled[x] ? 0.5f * std::sqrt(sum / 3.0f) : std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+// All rows: read_half(half, y, where to); is_sampled(half, pixel).
+template <class ReadHalf, class IsSampled>
+std::vector<float> deviations(const Frame& frame, const ReadHalf& read_half, const IsSampled& is_sampled) {
+  const size_t w = size_t(frame.region.width());
+  std::vector<float> result(w * size_t(frame.region.height()));
+  tbb::parallel_for(0, frame.region.height(), [&](int y) {
+    const FlushDenormals flush;
+    HalfRows rows;
+    rows.sampled.assign(w, 1);
+    for (int h = 0; h < kHalves; ++h) {
+      rows.values[h].resize(w * size_t(frame.channels));
+      read_half(h, y, rows.values[h].data());
+      for (size_t x = 0; x < w; ++x) rows.sampled[x] &= uint8_t(is_sampled(h, size_t(y) * w + x));
+    }
+    deviations_of_row(rows, frame.channels, result.data() + size_t(y) * w);
+  });
+  return result;
+}
+
+}  // namespace
+
+void read_deviations(const Frame& frame, int component, GradientImages* images) {
+  images->primal_deviation = deviations(
+      frame,
+      [&](int half, int y, float* row) {
+        read_primal_row(frame, component, {half, half + 1}, y, row);
+      },
+      [&](int half, size_t i) { return frame.count[half][i] > 0; });
+  const auto of_differences = [&](Offset offset) {
+    return deviations(
+        frame,
+        [&](int half, int y, float* row) {
+          read_difference_row(frame, component, offset, {half, half + 1}, y, row);
+        },
+        [&](int half, size_t i) { return frame.pair_count[half][offset][i] > 0.0f; });
+  };
+  images->dx_deviation = of_differences(kRight);
+  images->dy_deviation = of_differences(kUp);
 }
 
 std::vector<float> read_variance(const Frame& frame) {

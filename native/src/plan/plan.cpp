@@ -38,20 +38,21 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
 
 void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   const uint32_t asked = settings.reconstruction;
-  if (asked == GRADUS_RECONSTRUCTION_WEIGHTED || asked == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    throw unsupported("reconstruction " + choice_of("reconstruction", asked) + " does not work yet: use l2, l1, none or auto");
+  if (asked == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    throw unsupported("reconstruction regularized does not work yet: use weighted, l2, l1, none or auto");
   }
-  const bool needs_gradients = asked == GRADUS_RECONSTRUCTION_L2 || asked == GRADUS_RECONSTRUCTION_L1;
+  const bool needs_gradients = asked != GRADUS_RECONSTRUCTION_AUTO && asked != GRADUS_RECONSTRUCTION_NONE;
   if (needs_gradients && !plan->gradients) {
     throw invalid_argument("reconstruction " + choice_of("reconstruction", asked) + " needs gradients, but the integrator is path: use " +
                            "integrator gradient or reconstruction none");
   }
   plan->reconstruction = asked;
   if (asked == GRADUS_RECONSTRUCTION_AUTO) {
-    plan->reconstruction = plan->gradients ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE;
+    plan->reconstruction = plan->gradients ? GRADUS_RECONSTRUCTION_WEIGHTED : GRADUS_RECONSTRUCTION_NONE;
   }
   plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
-  const char* why = asked != GRADUS_RECONSTRUCTION_AUTO ? "set by the user" : "automatic: exact and unbiased";
+  const char* why =
+      asked != GRADUS_RECONSTRUCTION_AUTO ? "set by the user" : "automatic: every difference and pixel counts by its measured noise";
   if (plan->solves) {
     plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
   } else {
@@ -125,7 +126,8 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
                               settings.noise_threshold > 0.0f ? "too few samples to judge by" : "noise_threshold is 0");
   }
   const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
-  plan.unbiased = plan.reconstruction != GRADUS_RECONSTRUCTION_L1 && !plan.adaptive && !clamps;
+  const bool is_linear = plan.reconstruction == GRADUS_RECONSTRUCTION_L2 || plan.reconstruction == GRADUS_RECONSTRUCTION_NONE;
+  plan.unbiased = is_linear && !plan.adaptive && !clamps;
   list_scene(settings, snapshot, &plan);
   list_passes(settings, &plan);
   return plan;

@@ -3,16 +3,14 @@
 #include <functional>
 
 #include "base/error.h"
-#include "reconstruct/l1.h"
 #include "reconstruct/l2.h"
+#include "reconstruct/minimise_by_noise.h"
+#include "reconstruct/minimise_l1.h"
 #include "reconstruct/solver.h"
+#include "reconstruct/twiced_solver.h"
 
 namespace gradus {
 namespace {
-
-PoissonPlanes planes_of(const GradientImages& images, int channel) {
-  return {images.primal.data() + channel, images.dx.data() + channel, images.dy.data() + channel, size_t(images.channels)};
-}
 
 // Rows of a frame, which its images would take longer to write down than to make. A thread goes from one row to the next, so the row below
 // is often there already.
@@ -43,7 +41,24 @@ class FrameRows {
   tbb::enumerable_thread_specific<Rows> rows_;
 };
 
+std::unique_ptr<TwicedSolver> make_solver(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                                          SolveReport* report) {
+  switch (reconstruction) {
+    case GRADUS_RECONSTRUCTION_L1:
+      return std::make_unique<TwicedSolver>(images, minimise_l1(images, alpha, cancel, report), alpha);
+    case GRADUS_RECONSTRUCTION_WEIGHTED:
+      return std::make_unique<TwicedSolver>(images, minimise_by_noise(images, cancel, report), alpha);
+    default:
+      throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
+  }
+}
+
 }  // namespace
+
+std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                                            SolveReport* report) {
+  return make_solver(images, reconstruction, chosen_alpha(reconstruction, alpha), cancel, report);
+}
 
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report) {
@@ -51,14 +66,13 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
     return solve_l2(images.width, images.height, images.channels, alpha, rows_of(planes_of(images, 0), images.width));
   }
-  if (reconstruction != GRADUS_RECONSTRUCTION_L1) throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   std::vector<float> result(images.primal.size());
-  const L1Solver l1(images, alpha, cancel, report);
+  const auto solver = make_solver(images, reconstruction, alpha, cancel, report);
   for (int c = 0; c < images.channels && !cancel(); ++c) {
-    if (c < l1.solved_channels()) {
-      l1.read_solution(planes_of(images, c), c, result.data() + c);
+    if (c < solver->solved_channels()) {
+      solver->read_solution(planes_of(images, c), c, result.data() + c);
     } else {
-      l1.apply(planes_of(images, c), result.data() + c);  // alpha, by the same weights
+      solver->apply(planes_of(images, c), result.data() + c);  // alpha, by the same weights
     }
   }
   return result;
@@ -66,11 +80,13 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
 
 std::vector<float> reconstruct(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report) {
-  if (reconstruction != GRADUS_RECONSTRUCTION_L2) {
-    return reconstruct(read_images(frame, component, false), reconstruction, alpha, cancel, report);
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
+    FrameRows rows(frame, component);
+    return solve_l2(frame.region.width(), frame.region.height(), frame.channels, chosen_alpha(reconstruction, alpha), std::ref(rows));
   }
-  FrameRows rows(frame, component);
-  return solve_l2(frame.region.width(), frame.region.height(), frame.channels, chosen_alpha(reconstruction, alpha), std::ref(rows));
+  GradientImages images = read_images(frame, component, false);
+  if (reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED) read_deviations(frame, component, &images);
+  return reconstruct(images, reconstruction, alpha, cancel, report);
 }
 
 }  // namespace gradus

@@ -20,6 +20,10 @@ struct PoissonPlanes {
   size_t stride = 1;  // floats from pixel to pixel (interleaved channels)
 };
 
+inline PoissonPlanes planes_of(const GradientImages& images, int channel) {
+  return {images.primal.data() + channel, images.dx.data() + channel, images.dy.data() + channel, size_t(images.channels)};
+}
+
 // A frozen linear operator on (primal, dx, dy).
 class LinearOperator {
  public:
@@ -39,8 +43,10 @@ using CancelTest = std::function<bool()>;
 
 // L2, exact by DCT: minimises α²‖x−I‖² + ‖Dx−g‖². Unbiased. (Thesis eq. 5.13 with k = 2; Bhat et al. 2008 for the DCT.)
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
-// L1 by IRLS with weights estimated from `images` (all channels together) and then frozen. Consistent, not unbiased.
-std::unique_ptr<LinearOperator> make_l1(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
+// L1, or WEIGHTED, for which `images` have deviations: with weights estimated from the images (all channels together) and then frozen.
+// Consistent, not unbiased.
+std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                                            SolveReport* report);
 
 // Weight of the primal against the gradients; 0: what measures best. Noisy differences, of paths that met other surfaces than their
 // neighbours did, ask L2 for a larger one than the thesis's 0.2; L1's weights do that by themselves.
@@ -48,7 +54,7 @@ inline float chosen_alpha(uint32_t reconstruction, float alpha) {
   return alpha > 0.0f ? alpha : reconstruction == GRADUS_RECONSTRUCTION_L2 ? 0.4f : 0.2f;
 }
 
-// Reconstructs all channels; returns width·height·channels. L2 or L1 by `reconstruction` (GradusReconstruction, never AUTO).
+// Reconstructs all channels; returns width·height·channels. L2, L1 or WEIGHTED by `reconstruction` (GradusReconstruction, never AUTO).
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report);
 

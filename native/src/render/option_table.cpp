@@ -36,9 +36,9 @@ constexpr Option kOptions[] = {
     OPTION(integrator, kEnum, GRADUS_INTEGRATOR_AUTO, 0, 4, kIntegrators, kSampling,
            "How light is sampled; auto: the planner decides. bidirectional and metropolis are refused until they work"),
     OPTION(reconstruction, kEnum, GRADUS_RECONSTRUCTION_AUTO, 0, 5, kReconstructions, kOther,
-           "How the image is reconstructed from samples and gradients; l2 is unbiased, l1 biased but without dipoles. "
-           "weighted and regularized are refused until they work"),
-    OPTION(reconstruction_alpha, kFloat, 0.0, 0.0, 1e3, "", kOther, "Weight of the primal image against the gradients; 0 = automatic: 0.4 for L2, 0.2 for L1"),
+           "How the image is reconstructed from samples and gradients; l2 is unbiased; weighted (auto) goes by the "
+           "measured noise and l1 is robust: both consistent. regularized is refused until it works"),
+    OPTION(reconstruction_alpha, kFloat, 0.0, 0.0, 1e3, "", kOther, "Weight of the primal image against the gradients; 0 = automatic: 0.4 for L2, 0.2 for L1 and for the means of weighted"),
     OPTION(max_bounces, kInt, 12, 0, 1024, "", kSampling, "Most bounces of a path"),
     OPTION(diffuse_bounces, kInt, 4, 0, 1024, "", kSampling, "Most diffuse bounces of a path"),
     OPTION(glossy_bounces, kInt, 4, 0, 1024, "", kSampling, "Most glossy bounces of a path"),

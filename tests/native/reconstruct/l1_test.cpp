@@ -3,7 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "reconstruct/l1_minimiser.h"
+#include "reconstruct/minimise_l1.h"
 #include "reconstruct/test_images.h"
 #include "reconstruct/twicing.h"
 
@@ -63,8 +63,7 @@ TEST(B2_Solver, L1ReportsItsResidual) {
 
 std::vector<float> minimise(const GradientImages& images) {
   SolveReport report;
-  const L1Minimiser minimiser(images, 0.2f, never, &report);
-  const Field& x = minimiser.solution();
+  const Field x = minimise_l1(images, 0.2f, never, &report).solution;
   return make_image(x.width(), x.height(), x.channels(), [&](int px, int py, int c) { return x.row(py, c)[px]; });
 }
 
@@ -172,7 +171,7 @@ TEST(B2_Solver, L1WeightsAreALinearOperator) {
   GradientImages images = with_own_gradients(48, 32, 4, smooth_image(48, 32, 4));
   add_noise(&images.primal, 0.2f, 1);
   SolveReport report;
-  const auto solver = make_l1(images, 0.2f, never, &report);
+  const auto solver = make_twiced(images, GRADUS_RECONSTRUCTION_L1, 0.2f, never, &report);
   const size_t pixels = 48 * 32;
   std::vector<float> a(pixels * 4), b(pixels * 4), sum(pixels * 4);
   GradientImages both = images;

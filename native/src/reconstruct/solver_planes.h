@@ -1,0 +1,22 @@
+// Primal and differences as the iterative solvers' fields.
+#pragma once
+
+#include "reconstruct/field.h"
+#include "reconstruct/solver.h"
+
+namespace gradus {
+
+struct SolverPlanes {
+  SolverPlanes(int width, int height, int channels)
+      : primal(width, height, channels), dx(width, height, channels), dy(width, height, channels) {}
+  Field primal, dx, dy;
+};
+
+// Takes channels [0, channels) from interleaved planes.
+SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int channels);
+// Scale of the image: the median of the luminances that are not 0; 1 for a black image. Residuals and noise are measured in it.
+float robust_scale(const SolverPlanes& planes);
+// Writes one channel of a field as every `stride`-th value of `out`.
+void store_channel(const Field& from, int channel, size_t stride, float* out);
+
+}  // namespace gradus

@@ -1,0 +1,83 @@
+#include "reconstruct/weighted_least_squares.h"
+
+#include "base/types.h"
+#include "reconstruct/rows.h"
+
+namespace gradus {
+namespace {
+
+// The frozen operator is linear as far as it is solved: parts that add up must add up to much better than the noise.
+constexpr float kOperatorTolerance = 1e-6f;
+constexpr int kMostOperatorSteps = 200;
+
+// What stands for a value that is missing; its row's weight is 0, so any finite value would do.
+float finite_or_zero(float v) { return is_finite(v) ? v : 0.0f; }
+
+// b = W_d I + Dᵀ W_g g
+void right_side(const Field& data_weights, const Stencil& matrix, const SolverPlanes& planes, Field* b) {
+  const int w = data_weights.width(), h = data_weights.height(), channels = planes.primal.channels();
+  for_rows(h, [&](int y) {
+    const float *data = data_weights.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y);
+    const float* down = y > 0 ? matrix.up.row(y - 1) : nullptr;
+    for (int c = 0; c < channels; ++c) {
+      const float *primal = planes.primal.row(y, c), *dx = planes.dx.row(y, c), *dy = planes.dy.row(y, c);
+      const float* below = y > 0 ? planes.dy.row(y - 1, c) : nullptr;
+      float* to = b->row(y, c);
+      float flux = 0.0f;  // of the difference from the left
+      for (int i = 0; i < w; ++i) {
+        const float out = right[i] * finite_or_zero(dx[i]);
+        to[i] = data[i] * finite_or_zero(primal[i]) + flux - out - up[i] * finite_or_zero(dy[i]);
+        flux = out;
+      }
+      if (!down) continue;
+      for (int i = 0; i < w; ++i) to[i] += down[i] * finite_or_zero(below[i]);
+    }
+  });
+}
+
+}  // namespace
+
+void WeightedLeastSquares::update() {
+  Stencil& matrix = multigrid_.matrix();
+  for_rows(matrix.height(), [&](int y) {
+    const float *data = data_weights_.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y), *down = matrix.up.row(y - 1);
+    float* diagonal = matrix.diagonal.row(y);
+    for (int x = 0; x < matrix.width(); ++x) diagonal[x] = data[x] + right[x] + right[x - 1] + up[x] + down[x];
+  });
+  matrix.finish();
+  multigrid_.update();
+}
+
+CgReport WeightedLeastSquares::solve(const SolverPlanes& planes, float tolerance, int most_steps, const CancelTest& cancel, Field* x) {
+  right_side(data_weights_, multigrid_.matrix(), planes, &b_);
+  return conjugate_gradient(&multigrid_, b_, x, &fields_, tolerance, most_steps, cancel);
+}
+
+void WeightedLeastSquares::apply(const PoissonPlanes& planes, const Field& start, float* out) const {
+  const int w = data_weights_.width(), h = data_weights_.height();
+  WeightedLeastSquares one(w, h, 1);
+  one.data_weights_ = data_weights_;
+  one.matrix() = multigrid_.matrix();
+  one.multigrid_.update();
+  Field x = start;
+  one.solve(
+      load_planes(planes, w, h, 1), kOperatorTolerance, kMostOperatorSteps, [] { return false; }, &x);
+  store_channel(x, 0, planes.stride, out);
+}
+
+Field start_from_l2(const PoissonPlanes& planes, int width, int height, int channels, float alpha) {
+  Field x(width, height, channels);
+  const std::unique_ptr<LinearOperator> l2 = make_l2(width, height, alpha);
+  std::vector<float> plane(size_t(width) * height * planes.stride);
+  for (int c = 0; c < channels; ++c) {
+    l2->apply({planes.primal + c, planes.dx + c, planes.dy + c, planes.stride}, plane.data());
+    for_rows(height, [&](int y) {
+      const float* from = plane.data() + size_t(y) * width * planes.stride;
+      float* to = x.row(y, c);
+      for (int i = 0; i < width; ++i, from += planes.stride) to[i] = *from;
+    });
+  }
+  return x;
+}
+
+}  // namespace gradus
