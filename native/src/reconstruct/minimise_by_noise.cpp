@@ -16,8 +16,10 @@ constexpr float kBeside = 0.36f;
 // Weight of pixels against differences where nobody knows their noise: as of the L2 solver.
 constexpr float kUnknownAlpha = 0.4f;
 
-constexpr float kTolerance = 1e-4f;
-constexpr int kMostSteps = 60;
+// Six steps give the error against the truth that sixty give, to 0.5 % (measured). The residual falls more slowly, for weights of six
+// decades make it that of the rows with little noise.
+constexpr float kTolerance = 1e-3f;
+constexpr int kMostSteps = 30;
 
 // Sums of a value over a row and its neighbours left and right.
 void blur_row(const float* in, int width, float* out) {
