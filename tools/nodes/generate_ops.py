@@ -20,6 +20,7 @@ ENUMS = {
     "GradusProjection": ("Projection", "PROJECTION_"),
     "GradusNoiseType": ("NoiseType", "NOISE_"),
     "GradusGradientMode": ("Gradient", "GRADIENT_"),
+    "GradusSkyMode": ("Sky", "SKY_"),
     "GradusMappingMode": ("Mapping", "MAPPING_"),
     "GradusBlend": ("Blend", "BLEND_"),
     "GradusMath": ("Math", "MATH_"),

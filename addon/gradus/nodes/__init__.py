@@ -8,7 +8,18 @@
 
 from __future__ import annotations
 
-from . import colors, inputs, normals, numbers, principled, shaders, tables, textures, vectors  # noqa: F401  (they register themselves)
+from . import (  # noqa: F401  (they register themselves)
+    colors,
+    inputs,
+    normals,
+    numbers,
+    principled,
+    shaders,
+    sky,
+    tables,
+    textures,
+    vectors,
+)
 from .program import Program
 from .translate import translate
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import convert, sky
+from . import convert
 from .ops import Op
 from .program import COLOR, FLOAT, NO_NORMAL, SHADER, Value, constant_color, constant_float
 from .tree import find_socket
@@ -24,9 +24,6 @@ def replace(view: Any) -> Value | None:
     """The value of an output of a node without translator."""
     name = view.node.bl_idname
     kind = convert.kind_of(view.socket)
-    if name == "ShaderNodeTexSky":
-        view.warn_replaced("is replaced by its mean radiance")
-        return constant_color(sky.mean_radiance(view.node))
     if kind == SHADER:
         view.warn_replaced("is not supported yet and is replaced by a diffuse surface or its input")
         return _closure(view)

@@ -40,6 +40,7 @@ class Op(IntEnum):
     WAVE = 70
     MAGIC = 71
     BRICK = 72
+    SKY = 73
     MAPPING = 96
     VECTOR_TRANSFORM = 97
     VECTOR_ROTATE = 98
@@ -140,6 +141,14 @@ class Gradient(IntEnum):
     RADIAL = 4
     QUADRATIC_SPHERE = 5
     SPHERICAL = 6
+
+
+class Sky(IntEnum):
+    PREETHAM = 0
+    HOSEK_WILKIE = 1
+    NISHITA = 2
+    SINGLE_SCATTERING = 3
+    MULTIPLE_SCATTERING = 4
 
 
 class Mapping(IntEnum):
@@ -302,6 +311,7 @@ INPUTS = {
     Op.WAVE: 7,
     Op.MAGIC: 3,
     Op.BRICK: 10,
+    Op.SKY: 1,
     Op.MAPPING: 4,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 5,
@@ -362,6 +372,7 @@ OUTPUTS = {
     Op.WAVE: 1,
     Op.MAGIC: 2,
     Op.BRICK: 2,
+    Op.SKY: 1,
     Op.MAPPING: 1,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 1,

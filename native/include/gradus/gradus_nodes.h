@@ -66,7 +66,9 @@
  *   MAGIC         vector, scale, distortion -> color, factor     mode: depth
  *   BRICK         vector, color1, color2, mortar, scale, mortar size, mortar smooth, bias, brick width, row height -> color, factor
  *                                                       floats: offset, offset frequency, squash, squash frequency
-
+ *   SKY           vector                                mode: GradusSkyMode; floats: PREETHAM and HOSEK_WILKIE: sun direction (3),
+ *                                                       turbidity, ground albedo; others: sun elevation, sun rotation, sun size (negative:
+ *                                                       no disc), sun intensity, altitude (m), air, dust or aerosols, ozone
  *
  * Vectors, colours, numbers
  *   MAPPING       vector, location, rotation, scale     mode: GradusMappingMode
@@ -127,6 +129,7 @@
   X(WAVE, 70, 7, 1, 0)             \
   X(MAGIC, 71, 3, 2, 0)            \
   X(BRICK, 72, 10, 2, 0)           \
+  X(SKY, 73, 1, 1, 0)              \
   X(MAPPING, 96, 4, 1, 0)          \
   X(VECTOR_TRANSFORM, 97, 1, 1, 0) \
   X(VECTOR_ROTATE, 98, 5, 1, 0)    \
@@ -244,6 +247,14 @@ typedef enum GradusGradientMode {
 
 /* type: 0 bands, 1 rings; direction: 0–2 x y z, 3 diagonal or spherical; profile: 0 sine, 1 saw, 2 triangle */
 #define GRADUS_WAVE_MODE(type, direction, profile) ((type) | (direction) << 1 | (profile) << 3)
+
+typedef enum GradusSkyMode {
+  GRADUS_SKY_PREETHAM = 0,
+  GRADUS_SKY_HOSEK_WILKIE = 1,
+  GRADUS_SKY_NISHITA = 2, /* Blender before 5.0 */
+  GRADUS_SKY_SINGLE_SCATTERING = 3,
+  GRADUS_SKY_MULTIPLE_SCATTERING = 4
+} GradusSkyMode;
 
 typedef enum GradusMappingMode {
   GRADUS_MAPPING_POINT = 0,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/cone.h"
+
 namespace gradus {
 
 namespace {
@@ -11,14 +13,7 @@ namespace {
 constexpr double kDefensive = 0.2;
 
 float sun_importance(float irradiance, const Lamp& sun, const Receiver& receiver) {
-  if (receiver.normal == Vec3(0.0f)) return irradiance;
-  float cosine = -glm::dot(receiver.normal, sun.shine);
-  if (receiver.transmits) cosine = std::fabs(cosine);
-  // The part of the disk that is highest; its sine is that of half the sun's angle.
-  const float c = 1.0f - sun.one_minus_cos_sun;
-  const float s = std::sqrt(std::max(0.0f, 1.0f - c * c));
-  const float highest = cosine > c ? 1.0f : cosine * c + std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) * s;
-  return irradiance * std::max(highest, 0.0f);
+  return irradiance * Cone{-sun.shine, sun.one_minus_cos_sun}.highest_cosine(receiver.normal, receiver.transmits);
 }
 
 double defended(double weight, double sum, int groups) {
@@ -33,7 +28,7 @@ GroupChoice EmitterTable::choose_group(const Receiver& receiver) const {
   const double in_tree = tree.empty() ? 0.0 : tree.irradiance(receiver);
   double in_suns = 0.0;
   for (size_t i = 0; i < suns.size(); ++i) in_suns += sun_importance(sun_irradiance[i], lamps[suns[i]], receiver);
-  const double in_world = world.black() ? 0.0 : world.mean() * kPi;
+  const double in_world = world.irradiance(receiver);
   const double sum = in_tree + in_suns + in_world;
   const int groups = (in_tree > 0.0) + (in_suns > 0.0) + (in_world > 0.0);
   if (groups == 0 || !std::isfinite(sum)) return {};

@@ -91,10 +91,10 @@ EmitterSample sample_suns(const Snapshot& snapshot, const Receiver& receiver, do
   return sample;
 }
 
-EmitterSample sample_world(const Snapshot& snapshot, const Vec2& u) {
+EmitterSample sample_world(const Snapshot& snapshot, const Receiver& receiver, const Vec2& u) {
   EmitterSample sample;
   sample.point.kind = EmitterKind::World;
-  sample.point.direction = snapshot.emitters->world.sample(u, &sample.point.barycentric);
+  sample.point.direction = snapshot.emitters->world.sample(receiver, u, &sample.point.barycentric);
   return sample;
 }
 
@@ -111,7 +111,7 @@ EmitterSample sample_any(const Snapshot& snapshot, const Receiver& receiver, dou
     sample = sample_suns(snapshot, receiver, rest / group.suns, u);
   } else if (group.world > 0.0) {
     of_group = group.world;
-    sample = sample_world(snapshot, u);
+    sample = sample_world(snapshot, receiver, u);
   }
   sample.probability *= of_group;
   return sample;
@@ -179,11 +179,11 @@ EmitterView view_triangle(const Snapshot& snapshot, const EmitterPoint& point, c
   return view;
 }
 
-EmitterView view_world(const Snapshot& snapshot, const EmitterPoint& point) {
+EmitterView view_world(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
   EmitterView view;
   view.direction = point.direction;
   view.visibility = snapshot.world.visibility;
-  view.pdf = snapshot.emitters->world.density(point.direction, point.barycentric);
+  view.pdf = snapshot.emitters->world.density(point.direction, point.barycentric, receiver);
   return view;
 }
 
@@ -193,7 +193,7 @@ EmitterView view_geometry(const Snapshot& snapshot, const EmitterPoint& point, c
                           const float* solid_angle = nullptr) {
   if (point.kind == EmitterKind::Lamp) return view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position, solid_angle);
   if (point.kind == EmitterKind::Triangle) return view_triangle(snapshot, point, receiver, solid_angle);
-  return point.kind == EmitterKind::World ? view_world(snapshot, point) : EmitterView();
+  return point.kind == EmitterKind::World ? view_world(snapshot, point, receiver) : EmitterView();
 }
 
 void multiply_choice(double probability, EmitterView* view) {

@@ -48,8 +48,8 @@ struct EmitterView {
 
 // The receiver of light; normal 0 for points without an orientation.
 struct Receiver {
-  Vec3 position;
-  Vec3 normal;
+  Vec3 position = Vec3(0.0f);
+  Vec3 normal = Vec3(0.0f);
   bool transmits = false;  // also lit from behind
 };
 

@@ -60,8 +60,7 @@ bool hit_flat(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* dist
 }
 
 bool hit_cone(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  const Vec3 d = ray.direction + lamp.shine;
-  if (ray.t_max != kInfinity || glm::dot(d, d) > 2.0f * lamp.one_minus_cos_sun) return false;
+  if (ray.t_max != kInfinity || !Cone{-lamp.shine, lamp.one_minus_cos_sun}.contains(ray.direction)) return false;
   point->direction = ray.direction;
   *distance = kInfinity;
   return true;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/cone.h"
 #include "scene/frame_basis.h"
 #include "scene/lamp.h"
 #include "scene/spherical_rectangle.h"
@@ -13,16 +14,6 @@ namespace {
 Vec2 uniform_disk(const Vec2& u) {
   const float r = std::sqrt(u.x), phi = 2.0f * kPi * u.y;
   return {r * std::cos(phi), r * std::sin(phi)};
-}
-
-// Uniform in the cone of directions around `axis`.
-Vec3 uniform_cone(const Vec3& axis, float one_minus_cos, const Vec2& u) {
-  Vec3 x, y;
-  orthonormal_basis(axis, &x, &y);
-  const float h = u.x * one_minus_cos;                        // 1 - cos
-  const float s = std::sqrt(std::max(0.0f, h * (2.0f - h)));  // sin
-  const float phi = 2.0f * kPi * u.y;
-  return glm::normalize(x * (s * std::cos(phi)) + y * (s * std::sin(phi)) + axis * (1.0f - h));
 }
 
 // 1 - cos of the half angle under which a sphere is seen; 2 from inside: then all directions are sampled.
@@ -49,7 +40,7 @@ Vec3 sample_visible_normal(const Vec3& axis, float one_minus_cos, const Vec2& u)
 
 // From inside: uniform directions, and where they leave the sphere.
 Vec3 sample_normal_from_inside(const Lamp& lamp, const Vec3& to_centre, const Vec2& u) {
-  const Vec3 direction = uniform_cone(Vec3(0, 0, 1), 2.0f, u);
+  const Vec3 direction = Cone{Vec3(0, 0, 1), 2.0f}.sample(u);
   const float middle = glm::dot(to_centre, direction);
   const Vec3 closest = to_centre - direction * middle;
   const float half_chord = std::sqrt(std::max(0.0f, lamp.radius * lamp.radius - glm::dot(closest, closest)));
@@ -121,7 +112,7 @@ bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint
       point->direction = -lamp.shine;
       return true;
     case Lamp::Shape::Cone:
-      point->direction = uniform_cone(-lamp.shine, lamp.one_minus_cos_sun, u);
+      point->direction = Cone{-lamp.shine, lamp.one_minus_cos_sun}.sample(u);
       return true;
   }
   return false;

@@ -1,6 +1,7 @@
 #include "scene/world_map.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/image_store.h"
 #include "scene/scene_state.h"
@@ -39,6 +40,14 @@ bool same_world(const WorldMap& a, const WorldMap& b) {
   return a.material == b.material && a.images == b.images && a.importance == b.importance && a.map_size == b.map_size;
 }
 
+// Cells and points so close that no sun can hide between them, within reason.
+void look_for_sun(float half_angle, uint32_t map_size, Environment::Resolution* resolution) {
+  constexpr uint32_t kMostPoints = 4;
+  if (map_size == 0) resolution->width = kWidest;
+  const float cell = 2.0f * kPi / float(resolution->width);
+  resolution->points = std::clamp(uint32_t(std::ceil(cell / (1.2f * half_angle))), resolution->points, kMostPoints);
+}
+
 // One point in each cell sees every texel of an image that is no wider than the map: look-ups are interpolated. Otherwise 2×2, so that a
 // small sun is not missed between cell centres.
 Environment::Resolution resolution(const Snapshot& snapshot, const WorldMap& map) {
@@ -47,7 +56,18 @@ Environment::Resolution resolution(const Snapshot& snapshot, const WorldMap& map
   Environment::Resolution result;
   result.width = map.map_size > 0 ? map.map_size : widest > 0 ? std::min(widest, kWidest) : kWidthOfNodes;
   result.points = widest > 0 && widest <= result.width ? 1 : 2;
+  if (map.material->smallest_hidden_sun > 0.0f) look_for_sun(map.material->smallest_hidden_sun, map.map_size, &result);
   return result;
+}
+
+// A little larger than the discs, so that none of the sun's rim is left to the map.
+std::vector<Cone> sun_cones(const MaterialData& material) {
+  std::vector<Cone> cones;
+  for (const SunDisc& sun : material.suns) {
+    const float h = std::sin(0.5f * (1.001f * sun.half_angle + 1e-5f));
+    cones.push_back({sun.direction, 2.0f * h * h});
+  }
+  return cones;
 }
 
 Environment measure_world(const Snapshot& snapshot, const WorldMap& map, const CommitMonitor& monitor) {
@@ -57,7 +77,7 @@ Environment measure_world(const Snapshot& snapshot, const WorldMap& map, const C
   state.flags = 0;
   Environment world;
   const auto radiance = [&](const Vec3& direction) { return shade_world(snapshot, direction, state); };
-  world.build(radiance, resolution(snapshot, map), [&] { return monitor.go_on(); });
+  world.build(radiance, sun_cones(*map.material), resolution(snapshot, map), [&] { return monitor.go_on(); });
   monitor.check();
   return world;
 }

@@ -4,6 +4,7 @@
 #include "shading/interpreter.h"
 #include "shading/material.h"
 #include "shading/scalar.h"
+#include "shading/sky/suns.h"
 
 namespace gradus {
 namespace {
@@ -177,6 +178,9 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   m->uses_fallback = desc.uses_fallback != 0;
   m->pass_index = desc.pass_index;
   m->tangent_maps = tangent_maps(m->surface);
+  const Suns suns = find_suns(graph);
+  m->suns = suns.discs;
+  m->smallest_hidden_sun = suns.smallest_hidden;
   Analysis(m->surface, m.get()).run();
   describe_emission(m.get(), images);
   describe_transparency(m.get());

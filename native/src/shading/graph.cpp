@@ -1,12 +1,17 @@
 #include "shading/graph.h"
 
+#include "base/error.h"
 #include "scene/image_store.h"
 #include "shading/graph_check.h"
 #include "shading/op_info.h"
 #include "shading/ops.h"
+#include "shading/sky/sky.h"
 
 namespace gradus {
 namespace {
+
+// A table of a sky takes 1.5 MB and a third of a second.
+constexpr int kMaxSkies = 16;
 
 GraphValue constant(const Vec4& v) {
   GraphValue g;
@@ -40,6 +45,7 @@ class Builder {
     n.inputs.resize(info.inputs);
     for (uint32_t k = 0; k < source.input_count; k++) input(&n, k, desc_.inputs[source.first_input + k]);
     for (uint32_t k = 0; k < info.outputs; k++) n.outputs.push_back({static_cast<int32_t>(i), k, Vec4(0.0f)});
+    if (n.op == GRADUS_OP_SKY) prepare(&n);
     simplify(&n);
   }
 
@@ -55,6 +61,15 @@ class Builder {
     }
     n->inputs[k] =
         in.node < 0 ? constant(Vec4(in.value[0], in.value[1], in.value[2], in.value[3])) : graph_.nodes[in.node].outputs[in.output];
+  }
+
+  // The settings' place is taken by the table that is made of them.
+  void prepare(GraphNode* n) {
+    if (++skies_ > kMaxSkies) throw invalid_argument("material '" + std::string(desc_.name ? desc_.name : "") + "': too many Sky Textures");
+    const std::vector<float> table = prepare_sky(n->mode, graph_.floats.data() + n->first_float);
+    n->first_float = static_cast<uint32_t>(graph_.floats.size());
+    n->float_count = static_cast<uint32_t>(table.size());
+    graph_.floats.insert(graph_.floats.end(), table.begin(), table.end());
   }
 
   void simplify(GraphNode* n) const {
@@ -97,6 +112,7 @@ class Builder {
   const GradusMaterial& desc_;
   const ImageStore& images_;
   Graph graph_;
+  int skies_ = 0;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "shading/graph.h"
 #include "shading/op_info.h"
+#include "shading/sky/sky.h"
 
 namespace gradus {
 namespace {
@@ -33,6 +34,7 @@ constexpr ModeRange kModes[] = {
     {GRADUS_OP_WHITE_NOISE, 4},
     {GRADUS_OP_WAVE, 31},
     {GRADUS_OP_MAGIC, 10},
+    {GRADUS_OP_SKY, GRADUS_SKY_MULTIPLE_SCATTERING},
     {GRADUS_OP_MAPPING, GRADUS_MAPPING_NORMAL},
     {GRADUS_OP_VECTOR_TRANSFORM, 42},
     {GRADUS_OP_VECTOR_ROTATE, 12},
@@ -64,6 +66,8 @@ bool table_fits(const GradusNode& node) {
     }
     case GRADUS_OP_BRICK:
       return node.float_count >= 4;
+    case GRADUS_OP_SKY:
+      return node.float_count >= kSkySettings || (node.mode <= GRADUS_SKY_HOSEK_WILKIE && node.float_count >= kAnalyticSkySettings);
     case GRADUS_OP_NORMAL_DOT:
       return node.float_count >= 3;
     case GRADUS_OP_TEX_COORD:

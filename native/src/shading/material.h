@@ -8,6 +8,7 @@
 #include "base/types.h"
 #include "gradus/gradus.h"
 #include "shading/program.h"
+#include "shading/sky/sky.h"
 
 namespace gradus {
 
@@ -38,6 +39,8 @@ struct MaterialData {
   Rgb constant_transparency = Rgb(0.0f);
   float emission_estimate = 0.0f;  // luminance for the choice of lights: exact where constant, else textures at their mean
   int32_t pass_index = 0;
+  std::vector<SunDisc> suns;              // of its Sky Textures, if it is the world
+  float smallest_hidden_sun = 0.0f;       // half angle of one whose place is unknown; 0: there is none
   std::vector<std::string> tangent_maps;  // names of UV maps ("": the default) whose tangents it asks for
 };
 

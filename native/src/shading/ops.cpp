@@ -1,5 +1,6 @@
 // One place where the pure operations are named.
 #include "shading/ops.h"
+#include "shading/sky/sky.h"
 
 namespace gradus {
 namespace {
@@ -36,6 +37,9 @@ bool evaluate_texture(uint32_t op, const OpArgs& args, Vec4* out) {
       return true;
     case GRADUS_OP_BRICK:
       brick(args, out);
+      return true;
+    case GRADUS_OP_SKY:
+      out[0] = value(sky(args.mode, args.floats, args.v(0)));
       return true;
     default:
       return false;
@@ -129,6 +133,7 @@ bool is_pure(uint32_t op) {
     case GRADUS_OP_WAVE:
     case GRADUS_OP_MAGIC:
     case GRADUS_OP_BRICK:
+    case GRADUS_OP_SKY:
       return true;
     default:
       return op >= GRADUS_OP_MAPPING && op <= GRADUS_OP_NORMAL_DOT && op != GRADUS_OP_VECTOR_TRANSFORM && op != GRADUS_OP_LIGHT_FALLOFF;

@@ -1,8 +1,13 @@
 // A3: directions of light sampling against its density, which is asked for by rays (everything that a ray in that direction would meet).
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "scene/emitter_table.h"
 #include "scene/emitters.h"
 #include "scene_fixture.h"
+#include "shading/program_builder.h"
+#include "shading/shade.h"
 #include "support/chi_square.h"
 
 namespace gradus::test {
@@ -134,6 +139,74 @@ TEST(A3_EnvironmentSampling, ConstantMapAndManySizes) {
   scene.material(6, MaterialDesc(GRADUS_OP_EMISSION, Rgb(1.0f)));
   scene.world(6);
   expect_matching(*scene.commit(), kReceivers[0], Vec3(0, 0, 1), 1);
+}
+
+// A sky whose sun has this angle across; scale: of its coordinates' height, where that is not 1 the sun's place cannot be told.
+void set_sky(TestScene* scene, float size, float elevation, float scale = 1.0f) {
+  ProgramBuilder b;
+  const int place = b.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
+  const int turned =
+      b.add(GRADUS_OP_MAPPING, {In::from(place), In(Vec3(0.0f)), In(Vec3(0.3f, 0, 0.5f)), In(Vec3(1, 1, scale))}, GRADUS_MAPPING_POINT);
+  const int sky = b.add(GRADUS_OP_SKY, {In::from(turned)}, GRADUS_SKY_NISHITA, {elevation, 0.4f, size, 1, 0, 1, 1, 1});
+  scene->scene.set_material(6, b.desc(b.add(GRADUS_OP_EMISSION, {In::from(sky), In(1.0f)})));
+  scene->world(6);
+}
+
+TEST(A3_EnvironmentSampling, SkyWithSun) {
+  // The rim of the sampled cone, which is a little wider than the disc, lies between rows of the test's grid.
+  const auto size_of = [](float rows) { return 2.0f * (rows * kPi / 80.0f - 1e-5f) / 1.001f; };
+  const std::pair<float, float> suns[] = {{size_of(3.0f), 0.6f}, {size_of(14.0f), 0.05f}};  // size, elevation
+  for (const auto& [size, elevation] : suns) {
+    TestScene scene;
+    set_sky(&scene, size, elevation);
+    const auto snapshot = scene.commit();
+    ASSERT_EQ(snapshot->emitters->world.sun_count(), 1u);
+    const Vec3 axis = snapshot->materials[snapshot->world_material]->suns[0].direction;
+    for (uint32_t i = 0; i < 4; ++i) {
+      SCOPED_TRACE(i);
+      expect_matching(*snapshot, kReceivers[i], axis, i + 1);
+    }
+  }
+}
+
+// Too small for the cells of the chi-square test: what is estimated with the density must be the sky's light, with little noise.
+void expect_light(const Snapshot& snapshot, float noise) {
+  const Receiver receiver{Vec3(0.0f), Vec3(0, 0, 1), false};
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
+  constexpr int kCount = 20000;
+  double sum = 0.0, squares = 0.0, grid = 0.0;
+  for (int i = 0; i < kCount; ++i) {
+    EmitterView view;
+    const Vec2 u(uniform(random), uniform(random));
+    sample_emitter(snapshot, receiver, uniform(random), u, &view);
+    const double x = view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0;
+    sum += x;
+    squares += x * x;
+  }
+  // By a dense grid over the hemisphere; 2000 × 500 points see the sun some eight times.
+  for (int y = 0; y < 500; ++y)
+    for (int x = 0; x < 2000; ++x) {
+      const float z = (float(y) + 0.5f) / 500.0f, phi = 2.0f * kPi * (float(x) + 0.5f) / 2000.0f, s = std::sqrt(1.0f - z * z);
+      grid += double(z * shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), RayState()).x) * 2.0 * double(kPi) / 1e6;
+    }
+  const double mean = sum / kCount, deviation = std::sqrt(squares / kCount - mean * mean);
+  EXPECT_LT(deviation, double(noise) * mean);
+  EXPECT_NEAR(mean, grid, 0.25 * grid);
+}
+
+TEST(A3_EnvironmentSampling, SunOfEarthsSizeHasLittleNoise) {
+  TestScene scene;
+  set_sky(&scene, 0.0095f, 0.6f);
+  expect_light(*scene.commit(), 0.6f);
+}
+
+TEST(A3_EnvironmentSampling, SunBehindAStretchedMappingIsFoundByTheMap) {
+  TestScene scene;
+  set_sky(&scene, 0.0095f, 0.6f, 1.001f);
+  const auto snapshot = scene.commit();
+  EXPECT_EQ(snapshot->emitters->world.sun_count(), 0u);
+  expect_light(*snapshot, 4.0f);
 }
 
 TEST(A3_LightSampling, AllKindsTogether) {

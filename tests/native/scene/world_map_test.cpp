@@ -97,7 +97,7 @@ TEST(WorldMap, OfAConstantWorldIsNotMade) {
   const auto snapshot = scene.commit();
   EXPECT_EQ(map_of(*snapshot), nullptr);
   EXPECT_FLOAT_EQ(snapshot->emitters->world.mean(), 2.0f);
-  EXPECT_FLOAT_EQ(snapshot->emitters->world.density(Vec3(0, 0, 1)), 0.25f * kInvPi);
+  EXPECT_FLOAT_EQ(snapshot->emitters->world.density(Vec3(0, 0, 1), Vec2(0.0f), Receiver()), 0.25f * kInvPi);
 }
 
 TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
@@ -112,7 +112,7 @@ TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
   for (int i = 0; i < 1000; ++i) {
     Vec2 place;
-    const Vec3 d = snapshot->emitters->world.sample({uniform(random), uniform(random)}, &place);
+    const Vec3 d = snapshot->emitters->world.sample(Receiver(), {uniform(random), uniform(random)}, &place);
     hits += shade_world(*snapshot, d, RayState()).x > 1.0f;
   }
   // The sun gives 5000 of about 5800 parts of the light.
@@ -126,7 +126,7 @@ TEST(WorldMap, MeasuresEachCellAsOftenAsAsked) {
     return Rgb(1.0f + d.z);
   };
   Environment world;
-  world.build(radiance, {64, 1}, [] { return true; });
+  world.build(radiance, {}, {64, 1}, [] { return true; });
   EXPECT_EQ(calls, 64u * 32u);
   EXPECT_NEAR(world.mean(), 1.0f, 1e-3f);
 }

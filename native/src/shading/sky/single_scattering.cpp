@@ -1,0 +1,196 @@
+// Sunlight that is scattered once, by air or aerosols, and absorbed by ozone.
+//
+// Nishita et al., "Display of the Earth Taking into Account Atmospheric Scattering" (SIGGRAPH 1993), over 21 wavelengths. The atmosphere,
+// the number of steps and the quadratures are those of Cycles (intern/sky), because they are part of the picture.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shading/sky/dome.h"
+#include "shading/sky/sky_color.h"
+#include "shading/sky/spectrum.h"
+
+namespace gradus {
+namespace {
+
+constexpr double kGroundRadius = 6360e3, kAtmosphereRadius = 6420e3;  // m
+constexpr float kAirHeight = 8e3f, kAerosolHeight = 1.2e3f;           // m, over which the density falls by e
+constexpr float kAerosolScattering = 2e-5f;                           // 1/m
+constexpr float kAerosolExtinction = 1.11f * kAerosolScattering;
+constexpr float kAnisotropy = 0.76f;  // of aerosols
+constexpr int kViewSteps = 32;
+
+using Spectrum = std::array<float, kWavelengths>;
+
+// Relative to the ground: air, aerosols, ozone.
+Vec3 density(float height) {
+  const float ozone = std::max(0.0f, 1.0f - std::fabs(height - 25e3f) / 15e3f);
+  return {std::exp(-height / kAirHeight), std::exp(-height / kAerosolHeight), ozone};
+}
+
+float rayleigh_phase(float mu) { return 3.0f / 16.0f * kInvPi * (1.0f + mu * mu); }
+
+// Cornette and Shanks 1992.
+float aerosol_phase(float mu) {
+  const float g2 = kAnisotropy * kAnisotropy;
+  return 3.0f / 8.0f * kInvPi * (1.0f - g2) * (1.0f + mu * mu) / ((2.0f + g2) * std::pow(1.0f + g2 - 2.0f * kAnisotropy * mu, 1.5f));
+}
+
+// A ray by its start's distance from the centre of the Earth and its cosine to the zenith there.
+struct PolarRay {
+  double radius, cosine;
+  double to_space() const {
+    const double along = radius * cosine;
+    return -along + std::sqrt(std::max(0.0, along * along - radius * radius + kAtmosphereRadius * kAtmosphereRadius));
+  }
+  double radius_at(double t) const { return std::sqrt(radius * radius + 2.0 * radius * cosine * t + t * t); }
+  float height_at(double t) const { return float(radius_at(t) - kGroundRadius); }
+};
+
+// Towards the sun: Gauss-Laguerre quadrature of order 8, for densities that fall like an exponential. On a ray of length 1, so that the
+// last point is still in the atmosphere: points x/25, weights w·exp(x)/25.
+constexpr int kSunSteps = 8;
+constexpr float kSunPoints[kSunSteps] = {0.006811185292f, 0.03614807107f, 0.09004346519f, 0.1706680068f,
+                                         0.2818362161f,   0.4303406404f,  0.6296271457f,  0.9145252695f};
+constexpr float kSunWeights[kSunSteps] = {0.01750893642f, 0.04135477391f, 0.06678839063f, 0.09507698807f,
+                                          0.1283416365f,  0.1707430204f,  0.2327233347f,  0.3562490486f};
+
+// Densities summed up along a ray, m.
+Vec3 optical_depth(const PolarRay& ray) {
+  const double length = ray.to_space();
+  Vec3 sum(0.0f);
+  for (int i = 0; i < kSunSteps; ++i) sum += density(ray.height_at(double(kSunPoints[i]) * length)) * kSunWeights[i];
+  return sum * float(length);
+}
+
+float extinction(const Vec3& depth, int k) {
+  return depth.x * kRayleighScattering[k] + depth.y * kAerosolExtinction + depth.z * kOzoneAbsorption[k];
+}
+
+Rgb to_rgb(const Spectrum& spectrum) {
+  Vec3 xyz(0.0f);
+  for (int k = 0; k < kWavelengths; ++k) xyz += Vec3(kObserver[k][0], kObserver[k][1], kObserver[k][2]) * spectrum[size_t(k)];
+  return xyz_to_rgb(xyz * kWavelengthStep);
+}
+
+// What a row of the table, one elevation, shares: points along the ray with their densities and what lies in front of them.
+class View {
+ public:
+  View(const DomeSettings& settings, float altitude, float elevation)
+      : scale_(settings.air, settings.aerosols, settings.ozone),
+        start_(kGroundRadius + double(altitude)),
+        sun_(std::cos(settings.sun_elevation), std::sin(settings.sun_elevation)),
+        sine_(std::sin(elevation)),
+        cosine_(std::cos(elevation)) {
+    const PolarRay ray{start_, double(sine_)};
+    step_ = ray.to_space() / kViewSteps;
+    Vec3 depth(0.0f);
+    for (int i = 0; i < kViewSteps; ++i) {
+      Point& p = points_[size_t(i)];
+      p.distance = (i + 0.5) * step_;
+      p.radius = ray.radius_at(p.distance);
+      p.density = scale_ * density(ray.height_at(p.distance));
+      p.depth = depth += float(step_) * p.density;
+    }
+  }
+
+  // azimuth: from the sun's.
+  Rgb radiance(float azimuth) const {
+    const Vec3 direction(cosine_ * std::cos(azimuth), cosine_ * std::sin(azimuth), sine_);
+    const float mu = direction.x * sun_.x + direction.z * sun_.y;
+    const float rayleigh = rayleigh_phase(mu), aerosol = aerosol_phase(mu);
+    Spectrum spectrum{};
+    for (const Point& p : points_) {
+      const double along_sun = (p.distance * direction.x) * sun_.x + (start_ + p.distance * direction.z) * sun_.y;
+      if (in_shadow(p.radius, along_sun)) continue;
+      const Vec3 depth = p.depth + scale_ * optical_depth({p.radius, along_sun / p.radius});
+      for (int k = 0; k < kWavelengths; ++k) {
+        const float scattered = rayleigh * p.density.x * kRayleighScattering[k] + aerosol * p.density.y * kAerosolScattering;
+        spectrum[size_t(k)] += std::exp(-extinction(depth, k)) * scattered;
+      }
+    }
+    for (int k = 0; k < kWavelengths; ++k) spectrum[size_t(k)] *= kSunIrradiance[k] * float(step_);
+    return to_rgb(spectrum);
+  }
+
+ private:
+  struct Point {
+    double distance, radius;
+    Vec3 density, depth;
+  };
+
+  // The sun lies below the horizontal plane, and its line through the point meets the Earth.
+  bool in_shadow(double radius, double along_sun) const {
+    return sun_.y < 0.0f && along_sun * along_sun >= radius * radius - kGroundRadius * kGroundRadius;
+  }
+
+  Vec3 scale_;
+  double start_;
+  Vec2 sun_;
+  float sine_, cosine_;
+  double step_ = 0.0;
+  std::array<Point, kViewSteps> points_{};
+};
+
+// Sunlight that arrives from an elevation, spread over the disc; ozone is left out, as in Cycles.
+Rgb sun_radiance(const DomeSettings& settings, float altitude, float elevation) {
+  const Vec3 scale(settings.air, settings.aerosols, 0.0f);
+  const Vec3 depth = scale * optical_depth({kGroundRadius + double(altitude), std::sin(double(elevation))});
+  Spectrum spectrum{};
+  for (int k = 0; k < kWavelengths; ++k)
+    spectrum[size_t(k)] = kSunIrradiance[k] * std::exp(-extinction(depth, k)) / disc_solid_angle(settings.sun_size);
+  return to_rgb(spectrum);
+}
+
+SunColor sun_color(const DomeSettings& settings, float altitude, bool newer) {
+  SunColor sun;
+  const float half = 0.5f * settings.sun_size;
+  const float low = std::max(settings.sun_elevation - half, 0.0f), high = settings.sun_elevation + half;
+  sun.low_elevation = newer ? settings.sun_elevation - half : low;
+  sun.high_elevation = high;
+  sun.replaces_sky = !newer;
+  sun.horizon = newer ? dome_horizon(altitude) : 0.0f;
+  if (settings.sun_size > 0.0f && high > 0.0f) {
+    sun.low = sun_radiance(settings, altitude, low);
+    sun.high = sun_radiance(settings, altitude, high);
+  }
+  return sun;
+}
+
+// Below the horizon its light fades to black.
+float fade(float elevation) {
+  const float f = std::max(0.0f, 1.0f - 2.5f * std::sin(-elevation));
+  return f * f * f;
+}
+
+// Elevations that the rows show; Cycles' older table is read half a row off.
+float row_elevation(int row, bool newer) {
+  constexpr float kHalf = 0.5f * kDomeHeight;
+  const float right_angle = 0.5f * kPi;
+  const float l = float(row) / kHalf - 1.0f;
+  if (newer) return std::copysign(right_angle * l * l, l);
+  if (l >= 0.0f) return (right_angle + 0.25f * kPi / kHalf) * l * l;
+  const float middle = l + 0.5f / kHalf;
+  return -right_angle * middle * middle;
+}
+
+}  // namespace
+
+std::vector<float> prepare_single_scattering(const DomeSettings& settings, bool newer) {
+  // Space begins at 60 km.
+  const float altitude = std::clamp(settings.altitude, 1.0f, 59999.0f);
+  const auto fill = [&](float elevation, Rgb* half) {
+    const View view(settings, altitude, elevation);
+    for (int x = 0; x < kDomeWidth / 2; ++x) half[x] = view.radiance(2.0f * kPi * float(x) / float(kDomeWidth) - kPi);
+  };
+  std::array<Rgb, kDomeWidth / 2> horizon;
+  fill(0.0f, horizon.data());
+  const auto row = [&](int y, Rgb* half) {
+    const float elevation = row_elevation(y, newer);
+    if (elevation >= 0.0f) return fill(elevation, half);
+    for (int x = 0; x < kDomeWidth / 2; ++x) half[x] = fade(elevation) * horizon[size_t(x)];
+  };
+  return make_dome(settings, sun_color(settings, altitude, newer), row);
+}
+
+}  // namespace gradus
