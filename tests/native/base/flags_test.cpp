@@ -1,0 +1,32 @@
+// L5: no flag of any compiler may assume finite or reordered numbers, or belong to the machine that builds.
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace gradus {
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(L5_Flags, NumbersMayBeInfiniteAndSumsKeepTheirOrder) {
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+  FAIL() << "these tests were built with -ffast-math or -ffinite-math-only";
+#endif
+  const std::string commands = text_of(GRADUS_BINARY_DIR "/compile_commands.json");
+  ASSERT_NE(commands.find("native/src/frame/frame.cpp"), std::string::npos);
+  ASSERT_NE(commands.find("-Werror"), std::string::npos);
+  for (const char* flag : {"-ffast-math", "-Ofast", "-ffinite-math", "-funsafe-math", "-fassociative-math", "-freciprocal-math",
+                           "-fno-signed-zeros", "-march=native", "-mtune=native"}) {
+    EXPECT_EQ(commands.find(flag), std::string::npos) << flag;
+  }
+}
+
+}  // namespace
+}  // namespace gradus

@@ -1,0 +1,71 @@
+// B5: what gradients gain in the same time.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "render/clock.h"
+#include "render/combine.h"
+#include "support/path_scene.h"
+#include "support/statistics.h"
+
+namespace gradus {
+namespace {
+
+using test::Scenario;
+
+constexpr uint32_t kWidth = 48, kHeight = 36;
+int seeds() { return test::full_run() ? 32 : 8; }
+uint32_t samples() { return test::full_run() ? 16 : 8; }
+
+struct Measured {
+  double error = 0.0;  // relative squared error of one image, from the spread over seeds: both estimators are unbiased
+  double seconds = 0.0;
+};
+
+Measured measure(const IntegratorContext& base, bool gradient, uint32_t count) {
+  Measured result;
+  test::Moments moments;
+  for (int seed = 0; seed < seeds(); ++seed) {
+    IntegratorContext context = base;
+    context.settings.seed = uint32_t(seed);
+    Frame frame = test::make_test_frame(context.settings, gradient);
+    frame.settings = context.settings;
+    const uint64_t began = thread_cpu_nanoseconds();
+    test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, count, &frame);
+    result.seconds += 1e-9 * double(thread_cpu_nanoseconds() - began);
+    SolveReport report;
+    moments.add(combine(
+        frame, gradient ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE, 0.0f, frame.region, [] { return false; }, &report));
+  }
+  for (size_t i = 0; i < moments.size(); i += 4) {
+    const double gray = (moments.mean(i) + moments.mean(i + 1) + moments.mean(i + 2)) / 3.0;
+    for (size_t c = 0; c < 3; ++c) result.error += moments.variance_of_mean(i + c) * seeds() / (1e-3 + gray * gray);
+  }
+  return result;
+}
+
+// The error of path tracing falls as 1/n, so what it had after the time of the gradients follows from its own samples and time.
+TEST(B5_Benefit, MostScenesAreBetterInTheSameTimeAndNoneMuchWorse) {
+  int better = 0;
+  for (const Scenario scenario :
+       {Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::RoughMetal, Scenario::Glass, Scenario::Transparent}) {
+    test::PathScene scene;
+    test::build(scenario, &scene);
+    // The lamp is out of the picture: at its edge, 160 times as bright as the wall behind, L2 spreads the noise of coverage.
+    scene.camera(Vec3(0.0f, -0.3f, 3.2f), Vec3(0.0f, -0.4f, 0.0f), 0.6f);
+    GradusSettings settings = test::test_settings(kWidth, kHeight);
+    settings.independent_sampler = 0;
+    settings.max_bounces = 6;
+    const IntegratorContext context = scene.context(settings);
+    const Measured path = measure(context, false, samples()), gradient = measure(context, true, samples());
+    const double ratio = gradient.error / path.error * gradient.seconds / path.seconds;
+    std::printf("  %-12s relMSE %.2f of path tracing at the same samples, %.2f of its time: %.2f at the same time\n",
+                test::name_of(scenario), gradient.error / path.error, gradient.seconds / path.seconds, ratio);
+    better += ratio < 1.0 ? 1 : 0;
+    EXPECT_LT(ratio, 1.5) << test::name_of(scenario);
+  }
+  EXPECT_GE(better, 4);
+}
+
+}  // namespace
+}  // namespace gradus
