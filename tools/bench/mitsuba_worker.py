@@ -16,6 +16,7 @@ from pathlib import Path
 
 import memory
 import numpy as np
+from answers import Answers
 
 PASS_SAMPLES = 64  # at most at once: all paths of a pass are in memory together
 
@@ -111,13 +112,14 @@ def main() -> None:
     parser.add_argument("width", type=int)
     parser.add_argument("height", type=int)
     arguments = parser.parse_args()
+    answers = Answers()
     set_variant()
     for line in sys.stdin:
         try:
             answer = render(json.loads(line), str(arguments.scene), arguments.width, arguments.height)
         except Exception as error:  # one failed job must not end the others
             answer = {"error": str(error)}
-        print("RESULT " + json.dumps(answer), flush=True)
+        answers.send(answer)
 
 
 if __name__ == "__main__":

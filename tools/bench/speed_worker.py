@@ -20,6 +20,7 @@ import gradus  # noqa: E402
 import memory  # noqa: E402
 import modes  # noqa: E402
 import room  # noqa: E402
+from answers import Answers  # noqa: E402
 from gradus import store  # noqa: E402
 from rooms import ROOMS  # noqa: E402
 
@@ -46,15 +47,16 @@ def set_bounces(target: bpy.types.PropertyGroup, bounces: int) -> None:
 
 def main() -> None:
     name, width, height = sys.argv[sys.argv.index("--") + 1 :]
+    answers = Answers()
     gradus.register()
     triangles = room.build(ROOMS[name], int(width), int(height))
-    print("RESULT " + json.dumps({"blender": bpy.app.version_string, "triangles": triangles}), flush=True)
+    answers.send({"blender": bpy.app.version_string, "triangles": triangles})
     for line in sys.stdin:
         try:
             answer = render(json.loads(line), ROOMS[name].bounces)
         except (ValueError, RuntimeError) as error:  # one failed job must not end the others
             answer = {"error": str(error)}
-        print("RESULT " + json.dumps(answer), flush=True)
+        answers.send(answer)
     os._exit(0)  # the 4.5 module can hang at exit
 
 

@@ -23,6 +23,7 @@ import memory
 import modes
 import numpy as np
 import twin
+from answers import Answers
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
 import gradus  # noqa: E402
@@ -86,6 +87,7 @@ def main() -> None:
     parser.add_argument("width", type=int)
     parser.add_argument("height", type=int)
     arguments = parser.parse_args()
+    answers = Answers()
     gradus.register()
     bounces = prepare(arguments.scene, arguments.width, arguments.height)
     with tempfile.TemporaryDirectory() as folder:
@@ -95,9 +97,8 @@ def main() -> None:
                 answer = write_twin(job) if "twin" in job else render(job, Path(folder), bounces)
             except Exception as error:  # one failed job must not end the others
                 answer = {"error": str(error).strip()}
-            print("RESULT " + json.dumps(answer), flush=True)
+            answers.send(answer)
     gradus.unregister()
-    sys.stdout.flush()
     os._exit(0)  # the 4.5 module can hang at exit
 
 
