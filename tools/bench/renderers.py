@@ -14,6 +14,7 @@ from scenes import ROOT, Scene
 
 HERE = Path(__file__).parent
 MITSUBA_PYTHON = ROOT / ".venv/bench/bin/python3"
+MITSUBA_READY = ROOT / ".venv/bench/.stamp"  # written when all of it is installed
 
 
 class RefusedError(RuntimeError):
@@ -83,7 +84,7 @@ class Renderers:
 
     def _mitsuba_worker(self) -> Worker:
         if self._mitsuba is None:
-            if not MITSUBA_PYTHON.exists():
+            if not MITSUBA_READY.exists():
                 raise RefusedError("Mitsuba is not installed: tools/setup/setup bench")
             twin = Path(self._folder.name) / "twin.npz"
             self._blender.ask({"twin": str(twin)})
