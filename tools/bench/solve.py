@@ -17,7 +17,7 @@ from version import cpu_name, version_of_build
 RESULTS = ROOT / "docs" / "benchmark" / "solve.jsonl"
 MODES = ("gradient-l2", "gradient-weighted", "gradient-l1")
 SIZE = (1920, 1080)
-SAMPLES = 4
+SAMPLES = 2
 
 
 def newest() -> list[dict]:
