@@ -165,6 +165,10 @@ void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold)
   reflected = sides & kReflects ? std::max(reflected, least) : 0.0f;
   transmitted = sides & kTransmits ? std::max(transmitted, least) : 0.0f;
   lobe.sample_weight = reflected + transmitted;
+  if (is_dirac(lobe.type)) {
+    dirac_count_[static_cast<size_t>(ScatterClass::Reflection)] += (sides & kReflects) != 0;
+    dirac_count_[static_cast<size_t>(ScatterClass::Transmission)] += (sides & kTransmits) != 0;
+  }
   const bool rough = !is_dirac(lobe.type) && sharpness(lobe) >= roughness_threshold;
   if (!is_microfacet(lobe.type) || rough) {
     lobe.scatter_class = ScatterClass::Diffuse;
@@ -199,6 +203,7 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   geometric_normal_ = geometric_normal;
   smooth_normal_ = smooth_normal;
   entry_count_.fill(0);
+  dirac_count_.fill(0);
   has_smooth_.fill(false);
   drop_black_lobes();
   keep_originals();

@@ -118,6 +118,9 @@ class Closures {
   // The class has lobes that are not Dirac, so that evaluate() can be non-zero.
   bool has_smooth(ScatterClass c) const { return has_smooth_[static_cast<int>(c)]; }
 
+  // Dirac lobes of the class.
+  int dirac_count(ScatterClass c) const { return dirac_count_[static_cast<int>(c)]; }
+
   // Any class has.
   bool has_smooth() const { return has_smooth_[0] || has_smooth_[1] || has_smooth_[2]; }
 
@@ -171,6 +174,7 @@ class Closures {
   std::array<int, kScatterClasses> entry_count_{};
   std::array<float, kScatterClasses> class_probability_{};
   std::array<bool, kScatterClasses> has_smooth_{};
+  std::array<int, kScatterClasses> dirac_count_{};
   bool ignores_wo_ = false;
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
   Vec3 smooth_normal_ = Vec3(0.0f);

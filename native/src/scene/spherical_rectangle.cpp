@@ -8,7 +8,7 @@ namespace gradus {
 
 namespace {
 
-float safe_acos(float c) { return std::acos(std::clamp(c, -1.0f, 1.0f)); }
+float sine_of(float cosine) { return std::sqrt(std::max(0.0f, (1.0f - cosine) * (1.0f + cosine))); }
 
 // A complex number whose argument is the solid angle of the rectangle from the foot of the perpendicular, of length z, to (x, y).
 std::complex<double> corner(double x, double y, double z) { return {z * std::sqrt(x * x + y * y + z * z), x * y}; }
@@ -52,8 +52,14 @@ Vec3 SphericalRectangle::sample(const Vec2& u) const {
   // z components of the unit normals of the four planes through the point and an edge; the others follow from them.
   const float n0 = -y0_ / std::sqrt(z0_ * z0_ + y0_ * y0_), n2 = y1_ / std::sqrt(z0_ * z0_ + y1_ * y1_);
   const float n3 = -x0_ / std::sqrt(z0_ * z0_ + x0_ * x0_);
-  const float au = u.x * solid_angle_ + (2.0f * kPi - safe_acos(-n2 * n3) - safe_acos(-n3 * n0));
-  const float fu = (std::cos(au) * n0 - n2) / std::sin(au);
+  // The paper's angle is a share of the solid angle less two angles at corners, whose cosines are known: addition theorems need no
+  // inverse functions.
+  const float cos_a = -n2 * n3, cos_b = -n3 * n0;
+  const float sin_a = sine_of(cos_a), sin_b = sine_of(cos_b);
+  const float cos_ab = cos_a * cos_b - sin_a * sin_b, sin_ab = sin_a * cos_b + cos_a * sin_b;
+  const float part = u.x * solid_angle_, cos_part = std::cos(part), sin_part = std::sin(part);
+  const float cos_u = cos_part * cos_ab + sin_part * sin_ab, sin_u = sin_part * cos_ab - cos_part * sin_ab;
+  const float fu = (cos_u * n0 - n2) / sin_u;
   const float cu = std::clamp(std::copysign(1.0f, fu) / std::sqrt(fu * fu + n0 * n0), -1.0f, 1.0f);
   const float xu = std::clamp(-(cu * z0_) / std::sqrt(std::max(1e-12f, 1.0f - cu * cu)), x0_, x1_);
   const float d2 = xu * xu + z0_ * z0_;

@@ -17,12 +17,15 @@ class ClosureTape {
     complete_ = false;
   }
   void finish() { complete_ = count_ <= kRoom; }
+  // inputs: that have to be kept; 0: they are the program's constants.
   void add(const ClosureArgs& args, int inputs) {
     if (count_ < kRoom) {
       Entry& entry = entries_[static_cast<size_t>(count_)];
       entry.args = args;
-      std::copy_n(args.in, inputs, entry.in);
-      entry.args.in = entry.in;
+      if (inputs > 0) {
+        std::copy_n(args.in, inputs, entry.in);
+        entry.args.in = entry.in;
+      }
     }
     ++count_;
   }

@@ -40,6 +40,8 @@ class Emitter {
     // Blocks may ask for further blocks.
     for (size_t b = 1; b < program_.blocks.size(); b++) emit_height(b);
     allocate_registers(&program_, outputs_, name_);
+    for (Instruction& i : program_.code)
+      if (is_closure_op(i.op)) lay_out_inputs(&i);
     return std::move(program_);
   }
 
@@ -215,6 +217,18 @@ class Emitter {
     if (n.op == GRADUS_OP_PRINCIPLED && part_ == ProgramPart::Emission) i.mode |= kEmissionOnly;
     i.weight = weight;
     push(i, 0, 0);
+  }
+
+  // Most inputs are constants: a closure reads them where they lie.
+  void lay_out_inputs(Instruction* i) {
+    i->first_input = static_cast<uint32_t>(program_.inputs.size());
+    i->first_computed = static_cast<uint32_t>(program_.computed.size());
+    for (uint32_t k = 0; k < i->input_count; k++) {
+      const Operand value = program_.operands[i->first_operand + k];
+      program_.inputs.push_back(value < 0 ? program_.constants[static_cast<size_t>(~value)] : Vec4(0.0f));
+      if (value >= 0) program_.computed.push_back({k, value});
+    }
+    i->computed_count = static_cast<uint32_t>(program_.computed.size()) - i->first_computed;
   }
 
   // What both sides need runs before either: one of them may be skipped.

@@ -1,5 +1,7 @@
 #include "shading/interpreter.h"
 
+#include <algorithm>
+
 #include "shading/bump.h"
 #include "shading/closure_tape.h"
 #include "shading/context_ops.h"
@@ -23,6 +25,10 @@ class Machine {
   uint32_t step(const Instruction& i, uint32_t pc) {
     const Operand* operands = program_.operands.data() + i.first_operand;
     if (i.op == kOpJumpIfZero) return at(operands[0]).x == 0.0f && is_zero(at(operands[0])) ? i.first_float : pc + 1;
+    if (i.op <= GRADUS_OP_METALLIC) {
+      if (result_) run_closure(i);
+      return pc + 1;
+    }
     Vec4 in[kMaxInputs];
     for (int k = 0; k < i.input_count; k++) in[k] = at(operands[k]);
     Vec4 out[kMaxOutputs];
@@ -30,6 +36,25 @@ class Machine {
     for (int k = 0; k < kMaxOutputs; k++)
       if (i.outputs[k] != kNoRegister) registers_[i.outputs[k]] = out[k];
     return pc + 1;
+  }
+
+  void run_closure(const Instruction& i) {
+    const Vec4* in = program_.inputs.data() + i.first_input;
+    Vec4 mixed[kMaxInputs];
+    if (i.computed_count > 0) {
+      std::copy_n(in, i.input_count, mixed);
+      for (uint32_t k = 0; k < i.computed_count; k++) {
+        const ComputedInput& input = program_.computed[i.first_computed + k];
+        mixed[input.slot] = registers_[input.value];
+      }
+      in = mixed;
+    }
+    ClosureArgs args;
+    fill(&args, i, in, program_.floats.data() + i.first_float);
+    args.op = i.op;
+    args.weight = Rgb(at(i.weight));
+    add_closure(args, context_, result_);
+    if (result_->tape) result_->tape->add(args, i.computed_count > 0 ? i.input_count : 0);
   }
 
   static bool is_zero(const Vec4& v) { return v.x == 0.0f && v.y == 0.0f && v.z == 0.0f; }
@@ -42,17 +67,6 @@ class Machine {
       return;
     }
     const float* floats = program_.floats.data() + i.first_float;
-    if (i.op <= GRADUS_OP_METALLIC) {
-      ClosureArgs args;
-      fill(&args, i, in, floats);
-      args.op = i.op;
-      args.weight = Rgb(at(i.weight));
-      if (result_) {
-        add_closure(args, context_, result_);
-        if (result_->tape) result_->tape->add(args, i.input_count);
-      }
-      return;
-    }
     ResourceArgs args;
     fill(&args, i, in, floats);
     if (i.op == GRADUS_OP_BUMP) {

@@ -33,6 +33,10 @@ struct Instruction {
   uint32_t float_count = 0;
   uint32_t resource = 0;  // image: index in ImageStore; names: index + 1 in Program::names; BUMP: block of the height
   Operand weight = -1;    // closures: what the lobe is multiplied by
+  // Closures: their inputs lie in a row in Program::inputs, but for those that are computed.
+  uint32_t first_input = 0;
+  uint32_t first_computed = 0;  // in Program::computed
+  uint32_t computed_count = 0;
   int16_t outputs[kMaxOutputs] = {kNoRegister, kNoRegister, kNoRegister, kNoRegister, kNoRegister};
 };
 
@@ -42,11 +46,19 @@ struct Block {
   Operand result = -1;  // blocks of BUMP: the height
 };
 
+// An input of a closure that is not constant.
+struct ComputedInput {
+  uint32_t slot = 0;
+  Operand value = 0;
+};
+
 struct Program {
   std::vector<Block> blocks;  // the first is the entry; empty: no program, no closures
   std::vector<Instruction> code;
   std::vector<Operand> operands;
   std::vector<Vec4> constants;  // the first is 1
+  std::vector<Vec4> inputs;     // of closures
+  std::vector<ComputedInput> computed;
   std::vector<float> floats;
   std::vector<std::string> names;
   int register_count = 0;

@@ -1,7 +1,5 @@
 #include "shift/class_match.h"
 
-#include "shift/half_vector.h"
-
 namespace gradus {
 
 bool same_form(const Closures& x, const Closures& y, ScatterClass c) {
@@ -9,7 +7,7 @@ bool same_form(const Closures& x, const Closures& y, ScatterClass c) {
   if (present != (y.class_probability(c) > 0.0f)) {
     return false;
   }
-  return !present || (x.has_smooth(c) == y.has_smooth(c) && dirac_rank(x, c, x.count()) == dirac_rank(y, c, y.count()));
+  return !present || (x.has_smooth(c) == y.has_smooth(c) && x.dirac_count(c) == y.dirac_count(c));
 }
 
 bool same_classes(const Closures& x, const Closures& y) {

@@ -172,6 +172,23 @@ TEST(NodeProgram, ClosuresFromATapeAreThoseOfTheProgram) {
   }
 }
 
+TEST(NodeProgram, ATapeOfConstantsReadsTheProgram) {
+  ProgramBuilder b;
+  const int red = b.add(GRADUS_OP_DIFFUSE, {In(Vec3(0.7f, 0.1f, 0.2f)), In(0.0f), In(Vec3(0.0f))});
+  const int green = b.add(GRADUS_OP_DIFFUSE, {In(Vec3(0.1f, 0.6f, 0.2f)), In(0.3f), In(Vec3(0.0f))});
+  const auto m = b.compile(b.add(GRADUS_OP_ADD_SHADER, {In::from(red), In::from(green)}));
+  ClosureTape tape;
+  ShadeResult first, replayed;
+  first.tape = &tape;
+  run_program(m->surface, seen_from(Vec3(0, 0, 1)), &first);
+  tape.finish();
+  ASSERT_TRUE(tape.replay(seen_from(Vec3(1, 0, 1)), &replayed));
+  ASSERT_EQ(replayed.closures.count(), 2);
+  EXPECT_EQ(replayed.closures.lobe(0).weight, Rgb(0.7f, 0.1f, 0.2f));
+  EXPECT_EQ(replayed.closures.lobe(1).weight, Rgb(0.1f, 0.6f, 0.2f));
+  EXPECT_EQ(replayed.closures.lobe(1).alpha_x, 0.3f);
+}
+
 TEST(NodeProgram, ATapeWithoutRoomGivesNothing) {
   ProgramBuilder b;
   int sum = emission(&b, In(Vec3(1.0f)));

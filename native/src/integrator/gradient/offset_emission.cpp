@@ -50,6 +50,9 @@ Radiance OffsetPaths::see(OffsetPath* o) const {
       return seen - Radiance(0.0f, 0.0f, 0.0f, all);
     }
     const float hole = o->from_camera ? held_out(o->state.throughput, shade.holdout) : 0.0f;
+    if (is_black(shade.emission)) {
+      return seen - Radiance(0.0f, 0.0f, 0.0f, hole);
+    }
     seen += Radiance(emission_contribution(context_, o->source(), o->state, *o->here).clamped, -hole);
   }
   return seen;
@@ -59,7 +62,10 @@ void OffsetPaths::seen() {
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
-      gradient_[k] += pairs_[k].paired(seen_, see(&o), o.ratio);
+      const Radiance seen = see(&o);
+      if (seen != Radiance(0.0f) || seen_ != Radiance(0.0f)) {
+        gradient_[k] += pairs_[k].paired(seen_, seen, o.ratio);
+      }
     }
     if (o.stage == OffsetStage::Traced || o.stage == OffsetStage::Linked) {
       include_kind(&o);
