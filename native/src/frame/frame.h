@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/types.h"
@@ -96,6 +97,11 @@ struct HalfRange {
   int last = kHalves;
 };
 
+// In the place of a difference of which no samples were taken: solvers leave it out.
+inline constexpr float kAbsentPair = std::numeric_limits<float>::quiet_NaN();
+// Whether all differences between neighbours have samples.
+bool has_all_pairs(const Frame& frame);
+
 // Rows of what read_images() gives, y counted from the region's first row. `offset`: kRight for dx, kUp for dy.
 void read_primal_row(const Frame& frame, int component, HalfRange halves, int y, float* row);
 void read_difference_row(const Frame& frame, int component, Offset offset, HalfRange halves, int y, float* row);
@@ -104,7 +110,7 @@ void read_difference_row(const Frame& frame, int component, Offset offset, HalfR
 struct GradientImages {
   int width = 0, height = 0, channels = 3;
   std::vector<float> primal;  // mean
-  std::vector<float> dx, dy;  // forward differences, y up; last column, row are 0
+  std::vector<float> dx, dy;  // forward differences, y up; last column, row are 0; NaN where a pair has no samples (kAbsentPair)
   // The same from one half alone, for variances; empty unless asked for.
   std::array<std::vector<float>, kHalves> primal_half, dx_half, dy_half;
   // Estimated standard deviations of the means, one value per pixel: the root mean square over RGB of half the difference between the two

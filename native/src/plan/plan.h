@@ -18,6 +18,7 @@ struct Plan {
   uint32_t integrator = GRADUS_INTEGRATOR_PATH;          // never AUTO
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_NONE;  // never AUTO
   bool gradients = false;
+  bool pilot = false;     // a few samples tell where gradients pay
   bool solves = false;    // Combined comes from a solver
   bool unbiased = true;   // contract 2.2
   bool adaptive = false;  // tiles may stop early

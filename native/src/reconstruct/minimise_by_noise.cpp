@@ -57,13 +57,6 @@ class BlurredDeviation {
   Field sum_, known_;
 };
 
-// Whether a row's value is there, in all channels that share the weight.
-bool is_there(const float* value, int channels) {
-  bool there = true;
-  for (int c = 0; c < channels; ++c) there = there && is_finite(value[c]);
-  return there;
-}
-
 }  // namespace
 
 void weigh_by_noise(const GradientImages& images, float scale, Field* data, Stencil* matrix) {
@@ -74,7 +67,7 @@ void weigh_by_noise(const GradientImages& images, float scale, Field* data, Sten
     const float* value = values.data() + size_t(y) * w * stride;
     for (int x = 0; x < w; ++x, value += stride) {
       const float s = weights[x] < 0.0f ? unknown : weights[x] / scale;
-      weights[x] = is_there(value, shared) ? 1.0f / (s * s + kFloor * kFloor) : 0.0f;
+      weights[x] = is_complete(value, shared) ? 1.0f / (s * s + kFloor * kFloor) : 0.0f;
     }
   };
   for_rows(h, [&](int y) {

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "reconstruct/l2.h"
+#include "reconstruct/l2_with_gaps.h"
 #include "reconstruct/minimise_by_noise.h"
 #include "reconstruct/minimise_l1.h"
 #include "reconstruct/solver.h"
@@ -64,6 +65,7 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
                                SolveReport* report) {
   alpha = chosen_alpha(reconstruction, alpha);
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
+    if (has_gaps(images)) return solve_l2_with_gaps(images, alpha, cancel, report);
     return solve_l2(images.width, images.height, images.channels, alpha, rows_of(planes_of(images, 0), images.width));
   }
   std::vector<float> result(images.primal.size());
@@ -80,7 +82,7 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
 
 std::vector<float> reconstruct(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report) {
-  if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2 && has_all_pairs(frame)) {
     FrameRows rows(frame, component);
     return solve_l2(frame.region.width(), frame.region.height(), frame.channels, chosen_alpha(reconstruction, alpha), std::ref(rows));
   }

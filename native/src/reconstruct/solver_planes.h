@@ -1,6 +1,7 @@
 // Primal and differences as the iterative solvers' fields.
 #pragma once
 
+#include "base/types.h"
 #include "reconstruct/field.h"
 #include "reconstruct/solver.h"
 
@@ -16,6 +17,12 @@ struct SolverPlanes {
 SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int channels);
 // Scale of the image: the median of the luminances that are not 0; 1 for a black image. Residuals and noise are measured in it.
 float robust_scale(const SolverPlanes& planes);
+// Whether a row's value is there in all of some channels, interleaved.
+inline bool is_complete(const float* value, int channels) {
+  bool complete = true;
+  for (int c = 0; c < channels; ++c) complete = complete && is_finite(value[c]);
+  return complete;
+}
 // Writes one channel of a field as every `stride`-th value of `out`.
 void store_channel(const Field& from, int channel, size_t stride, float* out);
 

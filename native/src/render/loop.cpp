@@ -64,7 +64,7 @@ void RenderLoop::render() {
   prepare();
   set_phase(GRADUS_PHASE_SAMPLING);
   sample();
-  stats_.cpu_seconds.sample = 1e-9 * double(sample_cpu_.load());
+  stats_.cpu_seconds.sample += 1e-9 * double(sample_cpu_.load());
   stats_.seconds.sample = clock_.seconds() - sampling_began_;
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
@@ -72,30 +72,50 @@ void RenderLoop::render() {
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
 }
 
+IntegratorContext RenderLoop::integrator_context(const GradusSettings& settings) const {
+  IntegratorContext context;
+  context.snapshot = input_.snapshot;
+  context.camera = Camera(input_.snapshot->camera, settings.width, settings.height);
+  context.settings = settings;
+  return context;
+}
+
+GradientMap RenderLoop::choose_gradients() {
+  GradientMap map;
+  map.share = plan_.gradients ? 1.0 : 0.0;
+  if (!plan_.pilot) return map;
+  const GradusSettings settings = pilot_settings(input_.settings);
+  const uint64_t cpu = process_cpu_nanoseconds();
+  const auto integrator = input_.factory(integrator_context(settings), plan_.integrator);
+  arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.sampled, plan_.channels, stop_); });
+  stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  return map;
+}
+
 void RenderLoop::prepare() {
   const GradusSettings& settings = input_.settings;
+  gradients_ = choose_gradients();
+  const uint32_t integrator = gradients_.none() ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
+  if (plan_.pilot) explain(gradients_, &stats_.chosen, &stats_.skipped);
   std::shared_ptr<Frame> frame;
   if (input_.resumed) {
+    check_gradients(*input_.resumed, !gradients_.none());
     frame = std::make_shared<Frame>(*input_.resumed);
   } else {
-    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, 1, plan_.gradients);
+    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, 1, !gradients_.none());
     frame->passes = make_pass_planes(settings.passes, size_t(plan_.sampled.area()));
     if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
   frame->settings = settings;
   frame->settings.struct_size = sizeof(GradusSettings);
   // AUTO is resolved here, once: whoever reads the frame later must not decide again.
-  frame->settings.integrator = plan_.integrator;
-  frame->settings.reconstruction = plan_.reconstruction;
+  frame->settings.integrator = integrator;
+  frame->settings.reconstruction = gradients_.none() ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan_.reconstruction;
   frame->scene_key = input_.snapshot->content_key;
   frame->frame_number = settings.frame;
   stats_.warnings = input_.snapshot->warnings;
 
-  IntegratorContext context;
-  context.snapshot = input_.snapshot;
-  context.camera = Camera(input_.snapshot->camera, settings.width, settings.height);
-  context.settings = frame->settings;
-  integrator_ = input_.factory(context, plan_.integrator);
+  integrator_ = input_.factory(integrator_context(frame->settings), integrator);
   {
     const std::lock_guard lock(mutex_);
     frame_ = std::move(frame);
@@ -138,7 +158,7 @@ void RenderLoop::sample() {
     tracker_.new_image();
     if (!plan_.adaptive || end < plan_.first_check || end % kLongestBatch != 0) continue;
     const uint64_t cpu = process_cpu_nanoseconds();
-    arena_.execute([&] { noise.update(*frame_, plan_.solves, input_.settings.reconstruction_alpha, cancel); });
+    arena_.execute([&] { noise.update(*frame_, plan_.solves && frame_->gradients, input_.settings.reconstruction_alpha, cancel); });
     stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   }
   stats_.stopped = cancel() ? "cancelled" : noise.all_done() ? "noise" : begin < input_.settings.samples ? "time" : "samples";
@@ -164,6 +184,7 @@ void RenderLoop::sample_tile(size_t tile, uint32_t begin, uint32_t end, const st
   unit.first_sample = input_.settings.first_sample + begin;
   unit.count = end - begin;
   unit.count_map = count_map;
+  if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
   Counters counters;
   const uint64_t cpu = thread_cpu_nanoseconds();
   integrator_->sample(unit, frame_.get(), &counters, stop_);
@@ -208,8 +229,9 @@ void RenderLoop::reconstruct_frame() {
   const uint64_t cpu = process_cpu_nanoseconds();
   const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
   std::vector<float> rgba;
-  arena_.execute(
-      [&] { rgba = combine(*frame_, plan_.reconstruction, input_.settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve); });
+  arena_.execute([&] {
+    rgba = combine(*frame_, frame_->settings.reconstruction, input_.settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve);
+  });
   stats_.seconds.reconstruct = clock_.seconds() - began;
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");

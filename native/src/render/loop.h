@@ -15,6 +15,7 @@
 #include "plan/plan.h"
 #include "render/clock.h"
 #include "render/noise_stop.h"
+#include "render/pilot.h"
 #include "render/render.h"
 #include "render/stats.h"
 #include "render/tiles.h"
@@ -50,6 +51,9 @@ class RenderLoop {
  private:
   void render();
   void prepare();
+  IntegratorContext integrator_context(const GradusSettings& settings) const;
+  // Whether gradients pay, and where; all of the picture if that is not asked.
+  GradientMap choose_gradients();
   void sample();
   void reconstruct_frame();
   // False: nothing more to do.
@@ -76,6 +80,7 @@ class RenderLoop {
   // Set by prepare(), before the phase becomes SAMPLING; the frame's content is the samplers' alone until that phase ends.
   std::shared_ptr<Frame> frame_;
   std::unique_ptr<Integrator> integrator_;
+  GradientMap gradients_;
 
   std::atomic<uint64_t> work_done_{0};  // pixel samples
   std::atomic<uint64_t> sample_cpu_{0};

@@ -57,7 +57,10 @@ void read_gradient(const Frame& frame, const Region& region, bool vertical, floa
     const GradientImages images = read_images(frame, component, false);
     const std::vector<float>& plane = vertical ? images.dy : images.dx;
     for_pixels(frame, region, [&](size_t i, size_t out) {
-      for (int c = 0; c < 3; ++c) pixels[3 * out + c] += exposure * plane[i * images.channels + c];
+      for (int c = 0; c < 3; ++c) {
+        const float difference = plane[i * images.channels + c];
+        if (is_finite(difference)) pixels[3 * out + c] += exposure * difference;
+      }
     });
   }
 }

@@ -36,7 +36,16 @@ bool same_planes(const Frame& a, const Frame& b) {
   return true;
 }
 
+// A pilot may have found that gradients pay nowhere.
+bool may_hold(const Plan& plan, uint32_t integrator) {
+  return integrator == plan.integrator || (plan.pilot && integrator == GRADUS_INTEGRATOR_PATH);
+}
+
 }  // namespace
+
+void check_gradients(const Frame& frame, bool wanted) {
+  if (frame.gradients != wanted) throw invalid_argument(wanted ? "the frame holds no gradients" : "the frame holds gradients");
+}
 
 uint32_t resumed_samples(const Frame& frame) {
   const auto samples = [&](size_t i) { return frame.count[0][i] + frame.count[1][i]; };
@@ -49,7 +58,7 @@ uint32_t resumed_samples(const Frame& frame) {
 
 void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
   if (frame.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
-  if (key_of(frame.settings, plan.integrator) != key_of(settings, plan.integrator) || frame.settings.integrator != plan.integrator) {
+  if (key_of(frame.settings, plan.integrator) != key_of(settings, plan.integrator) || !may_hold(plan, frame.settings.integrator)) {
     throw invalid_argument("the frame was sampled with other settings");
   }
   if (!same(frame.region, plan.sampled) || frame.settings.first_sample != settings.first_sample) {

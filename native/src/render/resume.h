@@ -12,6 +12,8 @@ namespace gradus {
 uint32_t resumed_samples(const Frame& frame);
 // Throws invalid_argument with the reason if a render with these settings cannot go on from the frame.
 void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key);
+// Throws invalid_argument if the frame has gradients and none are wanted, or the other way round.
+void check_gradients(const Frame& frame, bool wanted);
 
 // Adds the samples of `other`, which has other sample numbers. Throws invalid_argument with the reason if they do not fit together.
 void merge_frames(Frame* frame, const Frame& other);

@@ -10,9 +10,11 @@ namespace {
 
 using nlohmann::json;
 
-json reasons(const Reasons& list) {
+json reasons(const Reasons& planned, const Reasons& later) {
   json result = json::object();
-  for (const auto& [what, why] : list) result[what] = why;
+  for (const Reasons* list : {&planned, &later}) {
+    for (const auto& [what, why] : *list) result[what] = why;
+  }
   return result;
 }
 
@@ -62,14 +64,14 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["resolution"] = {settings.width, settings.height};
   j["region"] = {d.x0, d.y0, d.x1, d.y1};
   j["seed"] = settings.seed;
-  j["integrator"] = choice_name(*find_option("integrator"), plan.integrator);
-  j["reconstruction"] = choice_name(*find_option("reconstruction"), plan.reconstruction);
+  j["integrator"] = choice_name(*find_option("integrator"), settings.integrator);
+  j["reconstruction"] = choice_name(*find_option("reconstruction"), settings.reconstruction);
   j["unbiased"] = plan.unbiased;
   j["samples"] = mean_samples(frame);
   j["spp_base"] = j["samples"];
   j["spp_offset"] = 0;
   j["stopped"] = stats.stopped;
-  j["plan"] = {{"chosen", reasons(plan.chosen)}, {"skipped", reasons(plan.skipped)}};
+  j["plan"] = {{"chosen", reasons(plan.chosen, stats.chosen)}, {"skipped", reasons(plan.skipped, stats.skipped)}};
   j["seconds"] = phases(stats.seconds);
   j["seconds"]["total"] = stats.total_seconds;
   j["cpu_seconds"] = phases(stats.cpu_seconds);
@@ -80,7 +82,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["nonfinite_dropped"] = {{"radiance", frame.counters.nonfinite_radiance},
                             {"gradient", frame.counters.nonfinite_gradient},
                             {"feature", frame.counters.nonfinite_feature}};
-  if (plan.solves) {
+  if (settings.reconstruction != GRADUS_RECONSTRUCTION_NONE) {
     j["solver"] = {{"outer_steps", stats.solve.outer_steps},
                    {"inner_steps", stats.solve.inner_steps},
                    {"residual", stats.solve.residual},

@@ -22,6 +22,7 @@ struct RenderStats {
   std::string stopped;  // why sampling ended: samples, noise, time, cancelled
   SolveReport solve;
   std::vector<std::string> warnings;
+  Reasons chosen, skipped;  // what was decided after the plan, by samples
 };
 
 std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& frame);

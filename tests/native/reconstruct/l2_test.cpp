@@ -161,12 +161,42 @@ TEST(B2_Solver, L2IsLinear) {
   EXPECT_LT(max_difference(x, solve(sum)), 1e-5);
 }
 
+// Pairs without samples are no rows: across a column of them, two pictures lie side by side that know nothing of each other.
+TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
+  const int w = 40, h = 24, left = 17;
+  GradientImages images = with_own_gradients(w, h, 3, smooth_image(w, h, 3));
+  add_noise(&images.primal, 0.3f, 1);
+  add_noise(&images.dx, 0.1f, 2);
+  const auto part = [&](int begin, int width) {
+    const auto cut = [&](const std::vector<float>& from) {
+      return make_image(width, h, 3, [&](int x, int y, int c) { return from[3 * (size_t(y) * w + size_t(begin + x)) + c]; });
+    };
+    GradientImages result = images;
+    result.width = width;
+    result.primal = cut(images.primal);
+    result.dx = cut(images.dx);
+    result.dy = cut(images.dy);
+    return solve(result);
+  };
+  const std::vector<float> a = part(0, left), b = part(left, w - left);
+  for (int y = 0; y < h; ++y) {
+    for (int c = 0; c < 3; ++c) images.dx[3 * (size_t(y) * w + left - 1) + c] = kAbsentPair;
+  }
+  const std::vector<float> x = solve(images);
+  for (int y = 0; y < h; ++y) {
+    for (int px = 0; px < w; ++px) {
+      const float expected = px < left ? a[3 * (size_t(y) * left + px)] : b[3 * (size_t(y) * (w - left) + px - left)];
+      ASSERT_NEAR(x[3 * (size_t(y) * w + px)], expected, 1e-4f) << px << ", " << y;
+    }
+  }
+}
+
 // Sums of noise; some pixels without samples.
 Frame noisy_frame(int width, int height, int channels) {
   Frame frame(uint32_t(width), uint32_t(height), {0, 0, width, height}, channels, 1, true);
   std::mt19937 random(1);
   std::normal_distribution<float> normal;
-  std::uniform_int_distribution<uint32_t> samples(0, 3);
+  std::uniform_int_distribution<uint32_t> samples(0, 3), pairs(1, 3);
   const auto fill = [&](std::vector<Radiance>* plane) {
     for (Radiance& value : *plane) value = {normal(random), normal(random), normal(random), normal(random)};
   };
@@ -175,7 +205,7 @@ Frame noisy_frame(int width, int height, int channels) {
     for (uint32_t& count : frame.count[h]) count = samples(random);
     for (int offset = 0; offset < kOffsets; ++offset) {
       fill(&frame.components[0].gradient[h][offset]);
-      for (float& count : frame.pair_count[h][offset]) count = static_cast<float>(samples(random));
+      for (float& count : frame.pair_count[h][offset]) count = static_cast<float>(pairs(random));
     }
   }
   return frame;

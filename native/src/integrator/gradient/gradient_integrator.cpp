@@ -15,7 +15,8 @@ struct Worker {
       : recorder(context, frame, counters),
         vertices(context),
         offsets(context, counters, &vertices),
-        tracer(context, &scratch, &recorder, counters, &offsets) {
+        tracer(context, &scratch, &recorder, counters, &offsets),
+        plain(context, &plain_scratch, &recorder, counters, &nobody) {
     for (int i = 0; i < 2; ++i) scratch.vertices[i].shade.tape = &tapes[i];
   }
   PathScratch scratch;
@@ -24,7 +25,13 @@ struct Worker {
   CameraVertices vertices;
   OffsetPaths offsets;
   PathTracer<OffsetPaths> tracer;
+  // Where no gradients are wanted.
+  PathScratch plain_scratch;
+  NoObserver nobody;
+  PathTracer<NoObserver> plain;
 };
+
+bool has_gradients(const WorkUnit& unit, size_t pixel) { return unit.gradient_map == nullptr || (*unit.gradient_map)[pixel] != 0; }
 
 // Counts of a pixel's half and its neighbours' (contract 1.5): none outside of the sampled region, so that such pairs are absent.
 std::array<PairCount, kOffsets> pair_counts(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, int half) {
@@ -32,7 +39,7 @@ std::array<PairCount, kOffsets> pair_counts(const WorkUnit& unit, const Frame& f
   for (int k = 0; k < kOffsets; ++k) {
     const int32_t nx = x + kOffsetX[k];
     const int32_t ny = y + kOffsetY[k];
-    if (frame.region.contains(nx, ny)) {
+    if (frame.region.contains(nx, ny) && has_gradients(unit, frame.index(nx, ny))) {
       pairs[k].own = static_cast<float>(half_count(unit, frame.index(x, y), half));
       pairs[k].other = static_cast<float>(half_count(unit, frame.index(nx, ny), half));
     }
@@ -49,6 +56,10 @@ class GradientIntegrator final : public Integrator {
     const auto worker = std::make_unique<Worker>(path_, frame, counters);
     for_each_sample(path_, unit, *frame, &worker->vertices, stop, [&](const PixelSample& s) {
       worker->recorder.begin_sample(s.pixel, s.number == path_.settings.first_sample);
+      if (!has_gradients(unit, s.pixel)) {
+        add_primal(worker->plain.trace(s.sampler, s.film, s.first), s, frame, counters);
+        return;
+      }
       const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, s.x, s.y, s.half);
       worker->offsets.start(pairs, s);
       add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, frame, counters);

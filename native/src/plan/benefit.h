@@ -1,0 +1,31 @@
+// What gradients are worth: how much less error the reconstruction has, against what the differences cost.
+#pragma once
+
+#include <cstdint>
+
+namespace gradus {
+
+// What a few samples have shown, of which each pixel takes two. Deviations: between the two, as the mean of their absolute differences, so
+// that one firefly does not decide.
+struct PilotSums {
+  double pixels = 0.0, pixel_deviation = 0.0;
+  double differences = 0.0, difference_deviation = 0.0;
+  double plain_rays = 0.0, shift_rays = 0.0;
+  void add(const PilotSums& other, double weight);
+};
+
+struct Benefit {
+  double error = 1.0;  // of the reconstruction, over that of the noisy image at the same number of samples
+  double cost = 1.0;   // of a sample with differences, over that of one without
+  bool pays() const { return error * cost < 1.0; }
+};
+
+// No noise: nothing to gain.
+Benefit estimate_benefit(const PilotSums& sums);
+
+// Variance of the least-squares reconstruction of a pixel, over the noisy image's, where a pixel's variance is `ratio` times that of a
+// difference: the mean over all frequencies of 1/(1 + ratio·D²), D² = 4 − 2 cos u − 2 cos v. (Thesis eq. 5.19 at the best weight; the mean
+// is the lattice Green's function of the plane, 2/π·K(k)/(1 + 4 ratio) with k = 4 ratio/(1 + 4 ratio).)
+double reconstructed_variance(double ratio);
+
+}  // namespace gradus

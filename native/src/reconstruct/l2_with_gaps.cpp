@@ -1,0 +1,52 @@
+#include "reconstruct/l2_with_gaps.h"
+
+#include <algorithm>
+
+#include "reconstruct/rows.h"
+#include "reconstruct/weighted_least_squares.h"
+
+namespace gradus {
+namespace {
+
+constexpr float kTolerance = 1e-6f;
+constexpr int kMostSteps = 100;
+
+// Weights of rows that are there, all channels alike.
+void weigh(const std::vector<float>& values, int channels, int width, int y, float weight, float* weights) {
+  const float* value = values.data() + size_t(y) * size_t(width) * size_t(channels);
+  for (int x = 0; x < width; ++x, value += channels) weights[x] = is_complete(value, channels) ? weight : 0.0f;
+}
+
+}  // namespace
+
+bool has_gaps(const GradientImages& images) {
+  const auto is_missing = [](float v) { return !is_finite(v); };
+  for (const auto* values : {&images.primal, &images.dx, &images.dy}) {
+    if (std::any_of(values->begin(), values->end(), is_missing)) return true;
+  }
+  return false;
+}
+
+std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report) {
+  const int w = images.width, h = images.height, channels = images.channels;
+  WeightedLeastSquares system(w, h, channels);
+  for_rows(h, [&](int y) {
+    weigh(images.primal, channels, w, y, alpha * alpha, system.data_weights().row(y));
+    weigh(images.dx, channels, w, y, 1.0f, system.matrix().right.row(y));
+    weigh(images.dy, channels, w, y, 1.0f, system.matrix().up.row(y));
+    system.matrix().right.row(y)[w - 1] = 0.0f;  // the last column and row carry no difference
+    if (y == h - 1) std::fill_n(system.matrix().up.row(y), w, 0.0f);
+  });
+  system.update();
+  const PoissonPlanes interleaved = planes_of(images, 0);
+  Field x = start_from_l2(interleaved, w, h, channels, alpha);
+  const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kTolerance, kMostSteps, cancel, &x);
+  report->inner_steps += solve.steps;
+  report->residual = std::max(report->residual, solve.residual);
+  report->hit_cap = report->hit_cap || solve.residual > kTolerance;
+  std::vector<float> result(images.primal.size());
+  for (int c = 0; c < channels; ++c) store_channel(x, c, size_t(channels), result.data() + c);
+  return result;
+}
+
+}  // namespace gradus
