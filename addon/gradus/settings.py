@@ -89,7 +89,7 @@ SETTINGS: tuple[Setting, ...] = (
         FLOAT,
         0.0,
         "Primal Weight",
-        "Weight of the sampled image against its gradients in the reconstruction. 0 = automatic: 0.4 for L2, 0.2 for L1. Weighted takes its weights from the noise; here it smooths what keeps its means",
+        "Weight of the sampled image against its gradients. 0 = automatic: 0.4 for L2, 0.2 for L1 and the means of Weighted",
         0.0,
         1e3,
         1,

@@ -147,6 +147,18 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
   return plan;
 }
 
+namespace {
+
+// Work space of the reconstruction, floats per pixel.
+uint64_t solver_floats(const Plan& plan) {
+  const uint64_t c = uint64_t(plan.channels), shared = std::min<uint64_t>(c, 3);
+  if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return 6 * c;
+  // Images and the result; the solver's planes and vectors; its matrices, of all levels; deviations.
+  return 4 * c + 10 * shared + 20 + 3;
+}
+
+}  // namespace
+
 uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings) {
   // Per half: the primal, and in a gradient render four offsets; then counts, and pair counts.
   uint64_t bytes = kHalves * sizeof(Radiance) * (plan.gradients ? 1 + kOffsets : 1);
@@ -154,7 +166,7 @@ uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings) {
   bytes += pass_bytes_per_pixel(settings.passes);
   if (wants(settings.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
   // Images read for the solver, its work planes, the result.
-  if (plan.solves) bytes += uint64_t(plan.channels) * sizeof(float) * 6;
+  if (plan.solves) bytes += solver_floats(plan) * sizeof(float);
   bytes += 4 * sizeof(float);
   return bytes * uint64_t(plan.sampled.area());
 }
