@@ -15,7 +15,7 @@ build() {  # FOLDER TARGET...
 
 if [ "${1:-}" = sanitizers ]; then
   configure build-sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DGRADUS_SANITIZE=ON
-  build build-sanitize gradus_native_tests
+  build build-sanitize gradus_native_tests gradus_stress_tests
   exit
 fi
 

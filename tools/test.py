@@ -30,6 +30,10 @@ HOSTS = {
 }
 LIMIT = {"native": 900, "host": 300, "full": 3600}  # seconds for one program or file
 
+# L6: scenes, commits, renders, reconstruction and frames in the tests of the C API; nothing of them depends on the clock.
+VALGRIND = ("valgrind", "-q", "--error-exitcode=9", "--num-callers=20")
+VALGRIND_TESTS = "Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.*"
+
 
 @dataclass
 class Result:
@@ -63,9 +67,10 @@ def kill_group(process: subprocess.Popen) -> None:
     process.wait()
 
 
-def native(program: Path, limit: float, environment: dict[str, str]) -> Result:
-    result = Result(f"native {program.relative_to(ROOT)}")
-    code, output = run([str(program), "--gtest_brief=0", "--gtest_color=no"], limit, environment)
+def native(program: Path, limit: float, environment: dict[str, str], choice: str = "*", under: tuple[str, ...] = ()) -> Result:
+    """Runs the chosen tests of a program, under another one if it is given."""
+    result = Result(" ".join(["native", str(program.relative_to(ROOT)), *under[:1]]))
+    code, output = run([*under, str(program), "--gtest_brief=0", "--gtest_color=no", f"--gtest_filter={choice}"], limit, environment)
     # Counted from the log, not from the report file, which a crash would take with it.
     result.passed = len(re.findall(r"^\[       OK \] ", output, re.M))
     skipped = set(re.findall(r"^\[  SKIPPED \] ([^\s,]+)", output, re.M))
@@ -168,8 +173,9 @@ def main() -> int:
             jobs.append(lambda program=program, limit=limit: native(program, limit, environment))
         if options.full:  # memory errors do not need long counts
             short = environment | {"GRADUS_TEST_FULL": "0"}
-            sanitized = ROOT / "build-sanitize" / "tests" / "gradus_native_tests"
-            jobs.append(lambda: native(sanitized, limit, short))
+            for name in ("gradus_native_tests", "gradus_stress_tests"):
+                jobs.append(lambda sanitized=ROOT / "build-sanitize" / "tests" / name: native(sanitized, limit, short))
+            jobs.append(lambda: native(ROOT / "build/tests/gradus_native_tests", limit, short, VALGRIND_TESTS, VALGRIND))
     if options.what in ("all", "addon"):
         limit = LIMIT["full" if options.full else "host"]
         for name in options.hosts.split(","):

@@ -9,7 +9,7 @@ esac
 tools/build.sh tests
 case " $* " in
   *" addon "*) ;;
-  *" --full "*) tools/build.sh sanitizers ;;
+  *" --full "*) tools/setup/setup full; tools/build.sh sanitizers ;;
 esac
 case " $* " in
   *" stress "*) GRADUS_TEST_FULL=1 exec build/tests/gradus_stress_tests --gtest_brief=1 ;;
