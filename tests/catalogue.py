@@ -1,0 +1,113 @@
+"""Which test realises which entry of the catalogue of tests; writes docs/tests.md.
+
+Tests carry the id of their entry in their name: A2_WhiteFurnace, test_h5_missing. Entries that are realised elsewhere name the place here.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# What the entries ask for, in short.
+ENTRIES = {
+    "A1": "furnace spheres: every integrator, sampler and camera sees 1",
+    "A2": "white furnace of every BSDF",
+    "A3": "chi² of every sampler: BSDF, lights, environment, lens",
+    "A4": "densities agree with sampling, values with weights; reciprocity; choice of lights",
+    "A5": "z-tests of noisy images against an independent path tracer",
+    "A6": "global bias: means and sign ratio; a hundredth is seen",
+    "A7": "four times the samples, a quarter of the error",
+    "A8": "the reported variance is that of the spread over seeds",
+    "A9": "agreement with Cycles",
+    "A10": "seeds, threads and neighbours are uncorrelated",
+    "B1": "reconstruction of an image with its own gradients",
+    "B2": "the solvers on known systems",
+    "B3": "L2 without bias, L1 within its bound",
+    "B4": "shifts: Jacobians, way back, swapped ends",
+    "B5": "gradients gain at equal time",
+    "B6": "what is not finite is dropped before the solve",
+    "B7": "gradients are differences of the image",
+    "B8": "MIS weights sum to 1; float against double",
+    "C1": "motion vectors, analytic",
+    "D1": "watertight far from the origin",
+    "D2": "no self-hits",
+    "D3": "meshes of random bits",
+    "D4": "broken rays",
+    "D5": "scenes of any scale",
+    "D6": "scenes far away",
+    "D7": "degenerate and coincident triangles",
+    "G4": "exceptions become codes",
+    "G5": "every allocation may be refused",
+    "G9": "options and versions before anything else",
+    "G10": "100,000 pairs of create and release",
+    "H7": "the add-on on and off, loaded once",
+    "I1": "every failure ends with code 1 and no file",
+    "J1": "memory over many frames",
+    "L1": "equal bits for any number of threads",
+    "L2": "equal bits in other processes and folders",
+    "L3": "16 + 48 samples, tiles, borders",
+    "L4": "random numbers by key",
+    "L5": "no flag that assumes finite numbers; other compilers and levels",
+    "L6": "valgrind",
+    "M1": "stored pictures, bit by bit",
+    "M2": "stored pictures on other machines",
+    "M3": "every fixed bug stays tested",
+    "M4": "twelve seeded faults",
+}
+# Realised outside of tests whose name says so: entry -> (where, how often).
+ELSEWHERE = {
+    "A9": [("docs/benchmark/README.md, Agreement (`make bench`)", "on demand")],
+    "A10": [("L1: threads", "every change")],
+    "B5": [("docs/benchmark/README.md (`make bench`)", "on demand")],
+    "L5": [("`make compilers`: A1, A2, A4 to A6, B8 at -O0 and with clang", "on demand")],
+    "L6": [("tools/test.py: L3, G2 and passes under valgrind; all native tests under sanitizers", "make test-full")],
+    "M3": [("tests named after what went wrong, in all files", "every change")],
+    "M4": [("tests/faults (`make faults`), result in docs/faults.md", "on demand")],
+}
+
+NATIVE = re.compile(r"^(?:INSTANTIATE_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", re.M)
+PYTHON = re.compile(r"^def (test_([a-m]\d+)_\w+)", re.M)
+ID = re.compile(r"([A-M]\d+)_")
+
+
+def how_often(source: str, before: str) -> str:
+    if "full_run()" in source or "GRADUS_TEST_FULL" in source:
+        return "every change a part, make test-full all"
+    return "make test-full" if before.rstrip().endswith("pytest.mark.full") else "every change"
+
+
+def find_tests() -> dict[str, list[tuple[str, str]]]:
+    """Entry -> (file: names, how often)."""
+    found: dict[str, dict[tuple[str, str], list[str]]] = defaultdict(lambda: defaultdict(list))
+    for path in sorted((ROOT / "tests").rglob("*.cpp")):
+        source = path.read_text()
+        for match in NATIVE.finditer(source):
+            entries = [id[1] for id in (ID.match(match[1]), ID.match(match[2])) if id]
+            for entry in dict.fromkeys(entries):
+                found[entry][str(path.relative_to(ROOT)), how_often(source, "")].append(f"{match[1]}.{match[2]}")
+    for path in sorted((ROOT / "tests").rglob("*_test.py")):
+        source = path.read_text()
+        for match in PYTHON.finditer(source):
+            found[match[2].upper()][str(path.relative_to(ROOT)), how_often(source, source[: match.start()])].append(match[1])
+    lines = {entry: [(f"{file}: {', '.join(names)}", often) for (file, often), names in files.items()] for entry, files in found.items()}
+    for entry, places in ELSEWHERE.items():
+        lines.setdefault(entry, []).extend(places)
+    return lines
+
+
+def table() -> str:
+    tests = find_tests()
+    rows = []
+    for entry, meaning in ENTRIES.items():
+        rows += [f"| {entry} | {meaning} | {where} | {often} |" for where, often in tests.get(entry, [("**none**", "")])]
+    title = "# Tests by the entries of the catalogue\n\nWritten by `python3 tests/catalogue.py`.\n\n"
+    return title + "| | what | test | when |\n|---|---|---|---|\n" + "\n".join(rows) + "\n"
+
+
+if __name__ == "__main__":
+    (ROOT / "docs" / "tests.md").write_text(table())
+    sys.exit(0)
