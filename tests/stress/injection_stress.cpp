@@ -50,7 +50,8 @@ struct Images {
 };
 
 Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) {
-  const GradusSettings settings = test::small_settings(size, size, samples);
+  GradusSettings settings = test::small_settings(size, size, samples);
+  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;  // automatic, a pilot would take samples that are thrown away
   Render render(nullptr, test::empty_snapshot(), settings, nullptr,
                 [&](const IntegratorContext& context, uint32_t) { return std::make_unique<Injecting>(context, value); });
   EXPECT_TRUE(render.wait(-1.0));
