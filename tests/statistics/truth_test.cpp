@@ -25,8 +25,8 @@ int reference_samples() { return test::full_run() ? 280 : 28; }
 uint32_t cell_side() { return test::full_run() ? 1 : 4; }
 
 // Light sources are large, so that BSDF sampling alone finds them.
-enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, ManyLights, Count };
-const char* const kNames[] = {"Box", "GlassBalls", "RoughMetal", "Textures", "Environment", "ManyLights"};
+enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, Sky, ManyLights, Count };
+const char* const kNames[] = {"Box", "GlassBalls", "RoughMetal", "Textures", "Environment", "Sky", "ManyLights"};
 
 uint64_t checker(PathScene* scene, uint32_t closure, const Vec3& a, const Vec3& b, float scale) {
   test::ProgramBuilder p;
@@ -35,6 +35,14 @@ uint64_t checker(PathScene* scene, uint32_t closure, const Vec3& a, const Vec3& 
   std::vector<test::In> inputs{test::In::from(color)};
   if (closure == GRADUS_OP_EMISSION) inputs.push_back(1.0f);
   return scene->material(p.desc(p.add(closure, inputs)));
+}
+
+// Its sun is as wide as 70°, and shines in at the side of the camera.
+uint64_t sky(PathScene* scene) {
+  test::ProgramBuilder p;
+  const int where = p.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
+  const int color = p.add(GRADUS_OP_SKY, {test::In::from(where)}, GRADUS_SKY_SINGLE_SCATTERING, {0.9f, 0.5f, 1.2f, 0.1f, 0, 1, 1, 1});
+  return scene->material(p.desc(p.add(GRADUS_OP_EMISSION, {test::In::from(color), 0.3f})));
 }
 
 void add_many_lights(PathScene* scene) {
@@ -59,6 +67,9 @@ void build(Truth truth, PathScene* scene) {
   if (truth == Truth::Environment) {
     scene->world(checker(scene, GRADUS_OP_EMISSION, Vec3(2.0f, 1.5f, 1.0f), Vec3(0.1f, 0.2f, 0.4f), 3.0f), 64);
     scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 1.4f);  // sees past the box
+  } else if (truth == Truth::Sky) {
+    scene->world(sky(scene), 64);
+    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 1.4f);
   } else if (truth == Truth::Textures) {
     const uint64_t light = checker(scene, GRADUS_OP_EMISSION, Vec3(2.0f), Vec3(0.2f, 0.3f, 0.8f), 5.0f);
     scene->quad(Vec3(-0.8f, 0.98f, -0.8f), Vec3(1.6f, 0, 0), Vec3(0, 0, 1.6f), light);
@@ -216,7 +227,7 @@ TEST_P(Truths, A6_NoGlobalBias) {
 
 INSTANTIATE_TEST_SUITE_P(All, Truths,
                          ::testing::Combine(::testing::Values(Truth::Box, Truth::GlassBalls, Truth::RoughMetal, Truth::Textures,
-                                                              Truth::Environment, Truth::ManyLights),
+                                                              Truth::Environment, Truth::Sky, Truth::ManyLights),
                                             ::testing::Values(Estimator::Path, Estimator::Gradient)),
                          [](const ::testing::TestParamInfo<Case>& info) {
                            return std::string(kNames[int(std::get<0>(info.param))]) +
