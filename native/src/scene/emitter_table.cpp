@@ -22,10 +22,10 @@ double defended(double weight, double sum, int groups) {
 
 }  // namespace
 
-GroupChoice EmitterTable::choose_group(const Receiver& receiver) const {
+GroupChoice EmitterTable::choose_group(const Receiver& receiver, const LightTree::Cut& cut) const {
   if (suns.empty() && world.black()) return {tree.empty() ? 0.0 : 1.0, 0.0, 0.0};
   if (suns.empty() && tree.empty()) return {0.0, 0.0, 1.0};
-  const double in_tree = tree.empty() ? 0.0 : tree.irradiance(receiver);
+  const double in_tree = cut.irradiance();
   double in_suns = 0.0;
   for (size_t i = 0; i < suns.size(); ++i) in_suns += sun_importance(sun_irradiance[i], lamps[suns[i]], receiver);
   const double in_world = world.irradiance(receiver);

@@ -38,7 +38,8 @@ struct EmitterTable {
   Environment world;
   std::shared_ptr<const LampScene> lamps_with_extent;
 
-  GroupChoice choose_group(const Receiver& receiver) const;
+  // cut: through the tree, for this receiver.
+  GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
   // Of one sun among the suns.
   double sun_probability(size_t sun, const Receiver& receiver) const;
   // Index in `triangles`, UINT32_MAX if it is not sampled as a light.

@@ -66,10 +66,10 @@ EmitterSample sample_lamp_at(const Snapshot& snapshot, uint32_t lamp, const Rece
   return sample;
 }
 
-EmitterSample sample_tree(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
+EmitterSample sample_tree(const Snapshot& snapshot, const Receiver& receiver, const LightTree::Cut& cut, double choice, const Vec2& u) {
   const EmitterTable& table = *snapshot.emitters;
   double probability;
-  const uint32_t light = table.tree.sample(receiver, choice, &probability);
+  const uint32_t light = table.tree.sample(receiver, cut, choice, &probability);
   const auto lamps = uint32_t(table.tree_lamps.size());
   EmitterSample sample = light < lamps ? sample_lamp_at(snapshot, table.tree_lamps[light], receiver, u)
                                        : sample_triangle(snapshot, light - lamps, receiver, u);
@@ -99,13 +99,14 @@ EmitterSample sample_world(const Snapshot& snapshot, const Receiver& receiver, c
 }
 
 EmitterSample sample_any(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
-  const GroupChoice group = snapshot.emitters->choose_group(receiver);
+  const LightTree::Cut cut = snapshot.emitters->tree.cut(receiver);
+  const GroupChoice group = snapshot.emitters->choose_group(receiver, cut);
   EmitterSample sample;
   double of_group = 0.0;
   const double rest = choice - group.tree;
   if (group.tree > 0.0 && (rest < 0.0 || group.suns + group.world <= 0.0)) {
     of_group = group.tree;
-    sample = sample_tree(snapshot, receiver, std::min(choice / group.tree, 1.0 - 1e-12), u);
+    sample = sample_tree(snapshot, receiver, cut, std::min(choice / group.tree, 1.0 - 1e-12), u);
   } else if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) {
     of_group = group.suns;
     sample = sample_suns(snapshot, receiver, rest / group.suns, u);
@@ -119,13 +120,14 @@ EmitterSample sample_any(const Snapshot& snapshot, const Receiver& receiver, dou
 
 // Probability that the emitter of the point is chosen.
 double choice_probability(const EmitterTable& table, const EmitterPoint& point, const Receiver& receiver) {
-  const GroupChoice group = table.choose_group(receiver);
+  const LightTree::Cut cut = table.tree.cut(receiver);
+  const GroupChoice group = table.choose_group(receiver, cut);
   if (point.kind == EmitterKind::World) return group.world;
   const auto lamps_in_tree = uint32_t(table.tree_lamps.size());
-  if (point.kind == EmitterKind::Triangle) return group.tree * table.tree.probability(lamps_in_tree + point.index, receiver);
+  if (point.kind == EmitterKind::Triangle) return group.tree * table.tree.probability(lamps_in_tree + point.index, receiver, cut);
   const uint32_t slot = table.slot[point.index];
   if (table.lamps[point.index].at_infinity()) return group.suns * table.sun_probability(slot, receiver);
-  return group.tree * table.tree.probability(slot, receiver);
+  return group.tree * table.tree.probability(slot, receiver, cut);
 }
 
 SurfacePoint surface_of(const Snapshot& snapshot, const EmitterPoint& point) {

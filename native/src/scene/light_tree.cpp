@@ -7,6 +7,9 @@ namespace gradus {
 
 namespace {
 
+// Part of the samples that the parts of a cut share evenly: what seems to shine strongest may be hidden.
+constexpr double kDefensive = 0.2;
+
 float sine(float cosine) { return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)); }
 
 // cos and sin of max(0, a - b).
@@ -58,9 +61,74 @@ double LightTree::first_probability(const Node& node, const Receiver& receiver) 
   return x + y > 0.0 && std::isfinite(x + y) ? x / (x + y) : 0.5;
 }
 
-uint32_t LightTree::sample(const Receiver& receiver, double u, double* probability) const {
-  *probability = 1.0;
-  const Node* node = &nodes_[0];
+// Their splitting heuristic (section 5.4), which looks at how much 1/d² varies within the node, comes down to such a ratio.
+bool LightTree::is_near(const Node& node, const Receiver& receiver) {
+  constexpr float kNear = 2.0f;  // radii
+  const Vec3 to_light = node.centre - receiver.position;
+  return !(node.child & kLeaf) && glm::dot(to_light, to_light) < kNear * kNear * node.radius2;
+}
+
+// Level by level, so that where there is no room for all it is the same for the whole neighbourhood.
+void LightTree::refine(const Receiver& receiver, Cut* cut) const {
+  bool found = true;
+  while (found) {
+    found = false;
+    for (int i = 0, count = cut->count_; i < count; ++i) {
+      Cut::Part& part = cut->parts_[size_t(i)];
+      const Node& node = nodes_[part.node];
+      if (!is_near(node, receiver)) continue;
+      if (cut->count_ == Cut::kMost) return;
+      cut->parts_[size_t(cut->count_++)] = {node.child + 1, part.depth + 1, part.trail | (uint64_t(1) << part.depth), 0.0f};
+      part = {node.child, part.depth + 1, part.trail, 0.0f};
+      found = true;
+    }
+  }
+}
+
+// Leaves the parts that can shine. False: nothing reaches the receiver, or more than floats hold.
+bool LightTree::weigh(const Receiver& receiver, Cut* cut) const {
+  int count = 0;
+  double sum = 0.0;
+  for (int i = 0; i < cut->count_; ++i) {
+    Cut::Part part = cut->parts_[size_t(i)];
+    part.weight = importance(nodes_[part.node], receiver);
+    if (!(part.weight > 0.0f)) continue;
+    sum += double(part.weight);
+    cut->parts_[size_t(count++)] = part;
+  }
+  cut->count_ = count;
+  if (count == 0 || !std::isfinite(sum)) return false;
+  const auto share = float(kDefensive * sum / count);
+  for (int i = 0; i < count; ++i) {
+    float& weight = cut->parts_[size_t(i)].weight;
+    weight = (1.0f - float(kDefensive)) * weight + share;
+    cut->sum_ += double(weight);
+  }
+  return true;
+}
+
+LightTree::Cut LightTree::cut(const Receiver& receiver) const {
+  Cut cut;
+  if (nodes_.empty()) return cut;
+  const Cut::Part root{0, 0, 0, 1.0f};
+  cut.parts_[0] = root;
+  cut.count_ = 1;
+  refine(receiver, &cut);
+  if (weigh(receiver, &cut)) return cut;
+  // All of the tree then; that the sum is 0 tells.
+  cut.parts_[0] = root;
+  cut.count_ = 1;
+  return cut;
+}
+
+uint32_t LightTree::sample(const Receiver& receiver, const Cut& cut, double u, double* probability) const {
+  double x = u * cut.total();
+  int i = 0;
+  for (; i + 1 < cut.count_ && x >= double(cut.parts_[size_t(i)].weight); ++i) x -= double(cut.parts_[size_t(i)].weight);
+  const double weight = double(cut.parts_[size_t(i)].weight);
+  u = std::min(x / weight, 1.0 - 1e-12);
+  *probability = weight / cut.total();
+  const Node* node = &nodes_[cut.parts_[size_t(i)].node];
   while (!(node->child & kLeaf)) {
     const double p = first_probability(*node, receiver);
     const bool first = u < p;
@@ -72,30 +140,20 @@ uint32_t LightTree::sample(const Receiver& receiver, double u, double* probabili
   return node->child & ~kLeaf;
 }
 
-double LightTree::probability(uint32_t light, const Receiver& receiver) const {
-  double product = 1.0;
-  const Node* node = &nodes_[0];
-  for (uint64_t trail = trails_[light]; !(node->child & kLeaf); trail >>= 1) {
+double LightTree::probability(uint32_t light, const Receiver& receiver, const Cut& cut) const {
+  const uint64_t trail = trails_[light];
+  const auto holds = [&](const Cut::Part& part) { return ((trail ^ part.trail) & ((uint64_t(1) << part.depth) - 1)) == 0; };
+  const auto end = cut.parts_.begin() + cut.count_;
+  const auto part = std::find_if(cut.parts_.begin(), end, holds);
+  if (part == end) return 0.0;
+  double product = double(part->weight) / cut.total();
+  const Node* node = &nodes_[part->node];
+  for (uint64_t rest = trail >> part->depth; !(node->child & kLeaf); rest >>= 1) {
     const double p = first_probability(*node, receiver);
-    product *= trail & 1 ? 1.0 - p : p;
-    node = &nodes_[node->child + (trail & 1)];
+    product *= rest & 1 ? 1.0 - p : p;
+    node = &nodes_[node->child + (rest & 1)];
   }
   return product;
-}
-
-float LightTree::irradiance(const Receiver& receiver) const {
-  if (nodes_.empty()) return 0.0f;
-  if (nodes_[0].child & kLeaf) return importance(nodes_[0], receiver);
-  // Two levels down: the root alone says little where its emitters surround the receiver.
-  float sum = 0.0f;
-  for (uint32_t i = 0; i < 2; ++i) {
-    const Node& child = nodes_[nodes_[0].child + i];
-    if (child.child & kLeaf)
-      sum += importance(child, receiver);
-    else
-      sum += importance(nodes_[child.child], receiver) + importance(nodes_[child.child + 1], receiver);
-  }
-  return sum;
 }
 
 }  // namespace gradus

@@ -1,10 +1,12 @@
 // Choice of one emitter among many: a binary tree whose nodes bound where, how strongly and in which directions their emitters shine.
 //
-// Conty Estévez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (HPG 2018), without the splitting: at each
-// node a child is taken with probability proportional to a bound of its irradiance. The probability of an emitter can be asked for any
-// receiver, because its path from the root is stored.
+// Conty Estévez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (HPG 2018). Where they split, and take a light
+// from each part, one part is chosen here: near nodes, whose bounds say little, are refined until what is left is a cut through the tree,
+// of which one node is taken in proportion to its bound, and so on to a leaf. That has the variance of splitting at the price of one shadow
+// ray, and one probability for each emitter, which can be asked for any receiver, because its path from the root is stored.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -31,12 +33,37 @@ class LightTree {
   bool empty() const { return nodes_.empty(); }
   size_t size() const { return trails_.size(); }
 
+  // Nodes that hold all lights that can reach a receiver, each light once.
+  class Cut {
+   public:
+    // Estimate of the irradiance of all lights together, to weigh the tree against other emitters; 0: none can reach the receiver.
+    double irradiance() const { return sum_; }
+
+   private:
+    friend class LightTree;
+    // Relative variance of the choice among 10,000 lamps over a plane: 0.72 with 32, 0.21 with 48 (before kDefensive), 7.7 without a cut.
+    static constexpr int kMost = 48;
+    struct Part {
+      uint32_t node;
+      uint32_t depth;
+      uint64_t trail;  // from the root, as in trails_
+      float weight;
+    };
+    // By which weights become probabilities.
+    double total() const { return sum_ > 0.0 ? sum_ : double(parts_[0].weight); }
+
+    std::array<Part, kMost> parts_;
+    int count_ = 0;
+    double sum_ = 0.0;  // of the weights; 0: one part stands for a tree that cannot reach the receiver
+  };
+  Cut cut(const Receiver& receiver) const;
+
   // Index of the chosen light, by u in [0, 1), and the probability of that choice.
-  uint32_t sample(const Receiver& receiver, double u, double* probability) const;
+  uint32_t sample(const Receiver& receiver, const Cut& cut, double u, double* probability) const;
   // Probability that sample() gives `light`: the same bits. Over all lights it sums to one.
-  double probability(uint32_t light, const Receiver& receiver) const;
-  // Estimate of the irradiance of all lights together, to weigh the tree against other emitters; 0: none can reach the receiver.
-  float irradiance(const Receiver& receiver) const;
+  double probability(uint32_t light, const Receiver& receiver, const Cut& cut) const;
+  uint32_t sample(const Receiver& receiver, double u, double* probability) const { return sample(receiver, cut(receiver), u, probability); }
+  double probability(uint32_t light, const Receiver& receiver) const { return probability(light, receiver, cut(receiver)); }
 
  private:
   // Bounds as importance() needs them, 48 bytes; the two children of a node are neighbours.
@@ -52,6 +79,10 @@ class LightTree {
   };
   static constexpr uint32_t kLeaf = 0x80000000u;
   struct Builder;
+  // So near that the bounds of a node tell little of its light.
+  static bool is_near(const Node& node, const Receiver& receiver);
+  void refine(const Receiver& receiver, Cut* cut) const;
+  bool weigh(const Receiver& receiver, Cut* cut) const;
   // Upper bound, in the main, of the irradiance that the emitters of a node can give the receiver.
   static float importance(const Node& node, const Receiver& receiver);
   double first_probability(const Node& node, const Receiver& receiver) const;
