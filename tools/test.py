@@ -32,7 +32,7 @@ LIMIT = {"native": 900, "host": 300, "full": 3600}  # seconds for one program or
 
 # L6: scenes, commits, renders, reconstruction and frames in the tests of the C API; nothing of them depends on the clock.
 VALGRIND = ("valgrind", "-q", "--error-exitcode=9", "--num-callers=20")
-VALGRIND_TESTS = "Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.*"
+VALGRIND_TESTS = "Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.LightAddsUp*/World:All/Passes.LightAddsUp*/RoughGlass"
 
 
 @dataclass
