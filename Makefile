@@ -33,6 +33,13 @@ test-addon:     ## only those in Blender 3.4, 4.5 and 5.0: HOSTS=bpy45 TESTS=tes
 stress:         ## numerical stability: hard scenes, their dropped samples and failed shifts as a table
 	@tools/test.sh stress
 
+faults:         ## twelve kinds of faults put into a copy of the sources: do the tests catch them? docs/faults.md; 10 minutes
+	@tools/setup/setup test
+	@/usr/bin/python3 tests/faults/faults.py
+
+compilers:      ## statistics of a build without optimisation, and of one by clang; half an hour
+	@tools/compilers.sh
+
 bench:          ## everything below, all scenes; interrupted runs go on: SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 MINUTES=60
 	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
 	 tools/bench.sh

@@ -1,0 +1,151 @@
+"""Shows that the tests catch the seeded faults (M4): make faults.
+
+    faults.py [--only PART_OF_A_NAME] [--table FILE]
+
+Each fault is put into a copy of the sources in build-faults/, built, and the tests that are named with it must fail. Before, the same tests
+must pass without any. The table goes to docs/faults.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from catalogue import FAULTS, Fault, Test
+
+ROOT = Path(__file__).resolve().parents[2]
+COPY = ROOT / "build-faults"
+LIMIT = 200  # seconds for one choice of tests; one that does not end has caught its fault, too
+
+
+def copy_sources() -> None:
+    """What git would commit now. Files that did not change keep their times, so that a second run builds little."""
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True, text=True)
+    names = listed.stdout.splitlines()
+    for folder in {name.split("/")[0] for name in names if "/" in name}:
+        for path in (COPY / folder).rglob("*.*"):
+            if path.is_file() and not (ROOT / path.relative_to(COPY)).exists():
+                path.unlink()  # renamed or removed since the last run
+    for name in names:
+        source, target = ROOT / name, COPY / name
+        if not source.is_file() or (target.exists() and target.read_bytes() == source.read_bytes()):
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+        target.chmod(source.stat().st_mode)
+
+
+def build(tests: tuple[Test, ...]) -> None:
+    if not (COPY / "build" / "build.ninja").exists():
+        subprocess.run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja"], cwd=COPY, check=True, stdout=subprocess.DEVNULL)
+    targets = {f"gradus_{test.program}_tests" if test.is_native else "gradus" for test in tests}
+    run(["ninja", "-C", "build", *sorted(targets)], "the build failed")
+    if "gradus" in targets:
+        run([sys.executable, "tools/bundle.py", "build/native/libgradus.so", "addon/gradus/lib"], "the bundle failed")
+
+
+def run(command: list[str], complaint: str) -> None:
+    done = subprocess.run(command, cwd=COPY, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{done.stdout[-4000:]}\n{complaint}")
+
+
+def passes(test: Test) -> bool:
+    """Whether all of these tests pass; that there are some is checked, too."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("BLENDER_")}
+    # Blender takes relative paths from PWD, not from the folder that it runs in.
+    environment |= {"GRADUS_TEST_FULL": "0", "PWD": str(COPY), "PATH": "/usr/bin:/bin:" + environment.get("PATH", "")}
+    with tempfile.TemporaryDirectory() as folder:
+        if test.is_native:
+            command = [f"build/tests/gradus_{test.program}_tests", f"--gtest_filter={test.choice}"]
+        else:
+            blender = ["blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "3"]
+            options = ["-q", "-p", "no:cacheprovider", f"--basetemp={folder}/tmp", "-k", test.choice]
+            command = [*blender, "--python", str(COPY / "tests" / "run_in_host.py"), "--", test.program, *options]
+        try:
+            done = subprocess.run(
+                command, cwd=COPY, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=LIMIT
+            )
+        except subprocess.TimeoutExpired:
+            return False
+    if "Running 0 tests" in done.stdout or "GRADUS-TESTS-FINISHED 5" in done.stdout:
+        sys.exit(f"there are no tests {test.name}")
+    return done.returncode == 0
+
+
+def require_places(faults: list[Fault]) -> None:
+    for fault in faults:
+        count = (COPY / fault.file).read_text().count(fault.old)
+        if count != 1:
+            sys.exit(f"{fault.name} ({fault.meaning}): its text is {count} times in {fault.file}, not once")
+
+
+@contextmanager
+def seeded(fault: Fault) -> Iterator[None]:
+    path = COPY / fault.file
+    whole = path.read_text()
+    path.write_text(whole.replace(fault.old, fault.new))
+    try:
+        yield
+    finally:
+        path.write_text(whole)
+
+
+def row(fault: Fault, caught: dict[Test, bool]) -> str:
+    names = ", ".join(f"`{test.name}`" if found else f"**not by** `{test.name}`" for test, found in caught.items())
+    return f"| {fault.number} | {fault.name} | {fault.meaning} | `{fault.file}` | {names} |"
+
+
+HEAD = """# Seeded faults
+
+Written by `make faults`. The faults of tests/faults/catalogue.py are put into a copy of the sources, one at a time; these tests, which pass
+without them, fail with them.
+
+| | fault | where | seeded in | caught by |
+|---|---|---|---|---|
+"""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="faults whose name holds this")
+    parser.add_argument("--table", type=Path, help="where the table goes; default: docs/faults.md if all faults were tried")
+    options = parser.parse_args()
+    faults = [fault for fault in FAULTS if options.only in fault.name]
+    copy_sources()
+    require_places(faults)
+
+    tests = tuple(dict.fromkeys(test for fault in faults for test in fault.tests))
+    build(tests)
+    broken = [test.name for test in tests if not passes(test)]
+    if broken:
+        sys.exit("these fail without a fault: " + "; ".join(broken))
+    print(f"{len(tests)} choices of tests pass without a fault", flush=True)
+
+    rows, missed = [], 0
+    for fault in faults:
+        with seeded(fault):
+            build(fault.tests)
+            caught = {test: not passes(test) for test in fault.tests}
+        missed += not all(caught.values())
+        rows.append(row(fault, caught))
+        print(rows[-1], flush=True)
+    build(tests)  # the copy is whole again
+    kinds = len({fault.number for fault in faults})
+    summary = f"{kinds} kinds of faults in {len(faults)} places, {missed} of them missed"
+    table = options.table or (None if options.only else ROOT / "docs" / "faults.md")
+    if table:
+        table.write_text(HEAD + "\n".join(rows) + f"\n\n{summary}.\n")
+    print(summary)
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
