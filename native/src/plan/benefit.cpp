@@ -11,6 +11,9 @@ namespace {
 // above the model's, 0.1 in the median (docs/method.md).
 constexpr double kUneven = 0.1;
 
+// CPU time of an offset's ray over that of a base path's, shading included: 0.5 behind glass to 0.85 in diffuse rooms (measured).
+constexpr double kShiftRay = 0.6;
+
 }  // namespace
 
 void PilotSums::add(const PilotSums& other, double weight) {
@@ -29,8 +32,9 @@ double reconstructed_variance(double ratio) {
 
 Benefit estimate_benefit(const PilotSums& sums) {
   Benefit benefit;
-  if (sums.plain_rays > 0.0) benefit.cost += sums.shift_rays / sums.plain_rays;
+  if (sums.plain_rays > 0.0) benefit.cost += kShiftRay * sums.shift_rays / sums.plain_rays;
   if (!(sums.pixel_deviation > 0.0) || !(sums.differences > 0.0)) return benefit;
+  benefit.noisy = true;
   const double pixel = sums.pixel_deviation / sums.pixels, difference = sums.difference_deviation / sums.differences;
   benefit.error = kUneven + (difference > 0.0 ? reconstructed_variance((pixel / difference) * (pixel / difference)) : 0.0);
   return benefit;

@@ -146,7 +146,7 @@ void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped) {
   char text[200];
   std::snprintf(
       text, sizeof(text),
-      "a pilot of %llu samples, thrown away, expects them to leave %.2f of the noise for %.1f times the rays (all of the picture)",
+      "a pilot of %llu samples, thrown away, expects them to leave %.2f of the noise for %.1f times the CPU time (all of the picture)",
       static_cast<unsigned long long>(map.samples), map.benefit.error, map.benefit.cost);
   if (map.none()) {
     skipped->emplace_back("gradients", "they pay nowhere: " + std::string(text));
