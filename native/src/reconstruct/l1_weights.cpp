@@ -44,8 +44,6 @@ void reweight(const SolverPlanes& planes, const Field& x, float alpha, float sca
       right[i] = norm.weight(right[i]);
       up[i] = norm.weight(up[i]);
     }
-    right[w - 1] = 0.0f;  // the last column and row carry no difference
-    if (y == h - 1) std::fill_n(up, w, 0.0f);
   });
 }
 

@@ -34,16 +34,12 @@ std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha,
     weigh(images.primal, channels, w, y, alpha * alpha, system.data_weights().row(y));
     weigh(images.dx, channels, w, y, 1.0f, system.matrix().right.row(y));
     weigh(images.dy, channels, w, y, 1.0f, system.matrix().up.row(y));
-    system.matrix().right.row(y)[w - 1] = 0.0f;  // the last column and row carry no difference
-    if (y == h - 1) std::fill_n(system.matrix().up.row(y), w, 0.0f);
   });
   system.update();
   const PoissonPlanes interleaved = planes_of(images, 0);
   Field x = start_from_l2(interleaved, w, h, channels, alpha);
   const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kTolerance, kMostSteps, cancel, &x);
-  report->inner_steps += solve.steps;
-  report->residual = std::max(report->residual, solve.residual);
-  report->hit_cap = report->hit_cap || solve.residual > kTolerance;
+  add_solve(solve, kTolerance, report);
   std::vector<float> result(images.primal.size());
   for (int c = 0; c < channels; ++c) store_channel(x, c, size_t(channels), result.data() + c);
   return result;

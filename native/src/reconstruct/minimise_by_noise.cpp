@@ -74,8 +74,6 @@ void weigh_by_noise(const GradientImages& images, float scale, Field* data, Sten
     fill(primal, images.primal, 1.0f, y, data->row(y));
     fill(dx, images.dx, kUnknownAlpha, y, matrix->right.row(y));
     fill(dy, images.dy, kUnknownAlpha, y, matrix->up.row(y));
-    matrix->right.row(y)[w - 1] = 0.0f;  // the last column and row carry no difference
-    if (y == h - 1) std::fill_n(matrix->up.row(y), w, 0.0f);
   });
 }
 
@@ -89,9 +87,7 @@ Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel
   result.system.update();
   const CgReport solve = result.system.solve(planes, kTolerance, kMostSteps, cancel, &result.solution);
   ++report->outer_steps;
-  report->inner_steps += solve.steps;
-  report->residual = std::max(report->residual, solve.residual);
-  report->hit_cap = report->hit_cap || solve.residual > kTolerance;
+  add_solve(solve, kTolerance, report);
   return result;
 }
 

@@ -1,5 +1,7 @@
 #include "reconstruct/weighted_least_squares.h"
 
+#include <algorithm>
+
 #include "base/types.h"
 #include "reconstruct/rows.h"
 
@@ -39,10 +41,13 @@ void right_side(const Field& data_weights, const Stencil& matrix, const SolverPl
 
 void WeightedLeastSquares::update() {
   Stencil& matrix = multigrid_.matrix();
-  for_rows(matrix.height(), [&](int y) {
+  const int w = matrix.width(), h = matrix.height();
+  for (int y = 0; y < h; ++y) matrix.right.row(y)[w - 1] = 0.0f;
+  std::fill_n(matrix.up.row(h - 1), w, 0.0f);
+  for_rows(h, [&](int y) {
     const float *data = data_weights_.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y), *down = matrix.up.row(y - 1);
     float* diagonal = matrix.diagonal.row(y);
-    for (int x = 0; x < matrix.width(); ++x) diagonal[x] = data[x] + right[x] + right[x - 1] + up[x] + down[x];
+    for (int x = 0; x < w; ++x) diagonal[x] = data[x] + right[x] + right[x - 1] + up[x] + down[x];
   });
   matrix.finish();
   multigrid_.update();
@@ -63,6 +68,12 @@ void WeightedLeastSquares::apply(const PoissonPlanes& planes, const Field& start
   one.solve(
       load_planes(planes, w, h, 1), kOperatorTolerance, kMostOperatorSteps, [] { return false; }, &x);
   store_channel(x, 0, planes.stride, out);
+}
+
+void add_solve(const CgReport& solve, float tolerance, SolveReport* report) {
+  report->inner_steps += solve.steps;
+  report->residual = std::max(report->residual, solve.residual);
+  report->hit_cap = report->hit_cap || solve.residual > tolerance;
 }
 
 Field start_from_l2(const PoissonPlanes& planes, int width, int height, int channels, float alpha) {

@@ -15,8 +15,8 @@ class WeightedLeastSquares {
         b_(width, height, channels),
         fields_(width, height, channels) {}
 
-  // To be filled, then update(). Those of the differences are the matrix's `right` and `up`, 0 in the last column and row. A row of weight
-  // 0 is absent; its values may be anything.
+  // To be filled, then update(). Those of the differences are the matrix's `right` and `up`; in the last column and row, which carry
+  // none, they may be anything. A row of weight 0 is absent; its values may be anything.
   Field& data_weights() { return data_weights_; }
   Stencil& matrix() { return multigrid_.matrix(); }
   void update();
@@ -33,6 +33,9 @@ class WeightedLeastSquares {
   Field b_;
   CgFields fields_;
 };
+
+// Adds a solve to what is reported of a reconstruction.
+void add_solve(const CgReport& solve, float tolerance, SolveReport* report);
 
 // Weights, and the minimum for the channels that they were estimated from.
 struct Minimum {
