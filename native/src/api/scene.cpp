@@ -22,6 +22,12 @@ GradusError with_scene(GradusScene scene, Function&& function) noexcept {
   });
 }
 
+// What was left out or replaced is told to whoever asks next.
+void commit(SceneObject* object, const volatile int32_t* cancel, float* progress) {
+  object->scene.commit(cancel, progress);
+  for (const std::string& text : object->scene.snapshot()->warnings) object->warnings.add(text);
+}
+
 void check_key(uint64_t key) {
   if (key == 0) throw invalid_argument("key is 0 (none)");
 }
@@ -115,10 +121,7 @@ GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uint64_t key) 
 }
 
 GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cancel, float* progress) {
-  return with_scene(scene, [&](api::SceneObject& s) {
-    s.scene.commit(cancel, progress);
-    for (const std::string& text : s.scene.snapshot()->warnings) s.warnings.add(text);
-  });
+  return with_scene(scene, [&](api::SceneObject& s) { api::commit(&s, cancel, progress); });
 }
 
 GradusError gradus_scene_warning(GradusScene scene, const char** text) {
@@ -151,7 +154,7 @@ GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene
     api::require(scene, "scene") = 0;
     auto object = std::make_shared<api::SceneObject>(api::find_handle<Device>(device));
     const GradusSettings loaded = api::load_scene(&api::require(path, "path"), &object->scene);
-    object->scene.commit(nullptr, nullptr);
+    api::commit(object.get(), nullptr, nullptr);
     if (settings) api::write_struct(settings, loaded, "settings");
     *scene = api::add_handle(std::move(object));
   });

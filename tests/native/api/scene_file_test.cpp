@@ -106,6 +106,27 @@ TEST(SceneFile, RemovedObjectsAreNotSaved) {
   std::filesystem::remove(path);
 }
 
+// Loading commits; what that left out was lost, and the tool rendered a scene without its objects and said nothing.
+TEST(SceneFile, ALoadedSceneTellsWhatWasLeftOut) {
+  const GradusDevice device = make_device();
+  GradusScene scene = 0, loaded = 0;
+  ASSERT_OK(gradus_scene_create(device, &scene));
+  ASSERT_OK(gradus_scene_record(scene, 1));
+  set_everything(scene);
+  ASSERT_OK(gradus_scene_remove(scene, GRADUS_KIND_MESH, 1));
+  const std::string path = temporary("broken.gradus");
+  ASSERT_OK(gradus_scene_save(scene, nullptr, path.c_str()));
+  ASSERT_OK(gradus_scene_load(device, path.c_str(), &loaded, nullptr));
+  const char* text = nullptr;
+  EXPECT_OK(gradus_scene_warning(loaded, &text));
+  ASSERT_NE(text, nullptr);
+  EXPECT_NE(std::string(text).find("mesh that does not exist"), std::string::npos) << text;
+  EXPECT_OK(gradus_scene_release(loaded));
+  EXPECT_OK(gradus_scene_release(scene));
+  EXPECT_OK(gradus_device_release(device));
+  std::filesystem::remove(path);
+}
+
 // F2, light: with checksums repaired, so that damage reaches the readers behind them.
 TEST(F2_Fuzz, DamagedSceneFilesAreRefusedOrRead) {
   const GradusDevice device = make_device();
