@@ -6,7 +6,7 @@ ARGS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build render test test-full test-native test-addon stress package format lint clean
+.PHONY: help build render test test-full test-native test-addon stress faults compilers package format lint clean
 .PHONY: bench bench-errors bench-agreement bench-quick bench-speed bench-suite bench-pictures bench-host bench-report picture
 
 help:           ## this list

@@ -82,7 +82,7 @@ GROUPS: dict[str, tuple[Pass, ...]] = {
 
 def is_reconstructed(integrator: str, reconstruction: str) -> bool:
     """Whether Combined is a reconstruction, so that the sampled image becomes a pass of its own (contract 6.1). Identifiers of
-    settings.py; AUTO means GRADIENT and L2 (contract 5.1)."""
+    settings.py; AUTO may find that gradients do not pay: then both are the same."""
     return integrator != "PATH" and reconstruction != "NONE"
 
 

@@ -342,7 +342,7 @@ typedef enum GradusReconstruction {
   GRADUS_RECONSTRUCTION_AUTO = 0,
   GRADUS_RECONSTRUCTION_NONE = 1,
   GRADUS_RECONSTRUCTION_L2 = 2,
-  GRADUS_RECONSTRUCTION_WEIGHTED = 3,   /* refused until it works */
+  GRADUS_RECONSTRUCTION_WEIGHTED = 3,
   GRADUS_RECONSTRUCTION_L1 = 4,
   GRADUS_RECONSTRUCTION_REGULARIZED = 5 /* refused until it works */
 } GradusReconstruction;
@@ -450,7 +450,7 @@ GRADUS_API GradusError gradus_pass_info(uint32_t pass, const char** name, uint32
 /* Saves what was set since recording began as a .gradus file, images packed (contract 7.3). INVALID_OPERATION without recording.
  * `settings` are saved with it for the tool; may be NULL. */
 GRADUS_API GradusError gradus_scene_save(GradusScene scene, const GradusSettings* settings, const char* path);
-/* The scene is created and committed. *settings (may be NULL) receives the saved settings, or defaults. */
+/* The scene is created and committed; gradus_scene_warning has what was left out. *settings (may be NULL) receives the saved settings, or defaults. */
 GRADUS_API GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene* scene, GradusSettings* settings);
 
 typedef enum GradusPhase {
@@ -469,7 +469,7 @@ typedef struct GradusProgress {
   float seconds;
   uint32_t samples_done;           /* of settings.samples, completed for every pixel */
   uint32_t version;                /* counts images that can be read: changes when there is something new to show */
-  uint64_t memory_bytes;           /* of frame and scene, now */
+  uint64_t memory_bytes;           /* of the frame and the picture, now */
   uint64_t peak_memory_bytes;
 } GradusProgress;
 

@@ -8,8 +8,8 @@
 
 namespace gradus {
 
-// RGBA of `region`, with the film's exposure. reconstruction: NONE, L2 or L1, never AUTO. L2 may be negative (contract 5.5), L1 not; alpha
-// lies in [0, 1].
+// RGBA of `region`, with the film's exposure. reconstruction: never AUTO. L2 may be negative (contract 5.5), the others not; alpha lies in
+// [0, 1].
 std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
                            SolveReport* report);
 
