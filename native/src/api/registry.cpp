@@ -32,8 +32,9 @@ const char* name_of(HandleType type) {
 uint64_t Registry::add(HandleType type, std::shared_ptr<void> object) {
   const std::lock_guard lock(mutex_);
   if (free_.empty()) {
+    // Room for all slots, so that neither this nor remove() can fail once there is one more.
+    if (free_.capacity() == slots_.size()) free_.reserve(2 * slots_.size() + 1);
     slots_.emplace_back();
-    free_.reserve(slots_.size());  // so that remove() cannot fail
     free_.push_back(static_cast<uint32_t>(slots_.size() - 1));
   }
   const uint32_t slot = free_.back();

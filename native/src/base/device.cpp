@@ -30,6 +30,12 @@ void check_embree(RTCDevice device) {
     throw unsupported("the Embree in this process lacks ray masks or user geometry");
 }
 
+// Why Embree did not do what it must: it had no memory, or `otherwise`. device: nullptr if there is none.
+Error failure_of(RTCDevice device, const std::string& otherwise) {
+  const bool no_memory = rtcGetDeviceError(device) == RTC_ERROR_OUT_OF_MEMORY;
+  return no_memory ? Error(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while Embree starts") : unsupported(otherwise);
+}
+
 RTCScene make_test_triangle(RTCDevice device) {
   const RTCScene scene = rtcNewScene(device);
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -78,10 +84,10 @@ Device::Device(const GradusDeviceSettings& settings) : threads_(thread_count(set
   color_ = std::make_unique<ColorManager>(settings.color_config ? settings.color_config : "",
                                           [this](const std::string& text) { warnings_.add(text); });
   embree_ = rtcNewDevice(("threads=" + std::to_string(threads_) + ",set_affinity=0,start_threads=0").c_str());
-  if (!embree_) throw unsupported("Embree cannot start on this processor (AVX2 is needed)");
+  if (!embree_) throw failure_of(nullptr, "Embree cannot start on this processor (AVX2 is needed)");
   try {
     check_embree(embree_);
-    if (!trace_test_ray(embree_)) throw unsupported("Embree's test ray missed: another Embree in this process has taken its place");
+    if (!trace_test_ray(embree_)) throw failure_of(embree_, "Embree's test ray missed: another Embree in this process has taken its place");
     // TBB gives all tasks of an arena the floating-point state of the thread that initialised it.
     const FlushDenormals flush;
     arena_.initialize(int(threads_), 1);
