@@ -118,10 +118,27 @@ void Closures::keep_originals() {
   }
 }
 
+namespace {
+
+// A surface's own normal comes as it is, and stays so to the bit: where a lobe has it, nothing asks for a bump's shadowing.
+Vec3 unit_normal(const Vec3& normal, const Vec3& geometric_normal) {
+  const float length2 = glm::dot(normal, normal);
+  if (std::abs(length2 - 1.0f) < 1e-6f) {
+    return normal;
+  }
+  return is_finite(length2) && length2 > 1e-12f ? normal / std::sqrt(length2) : geometric_normal;
+}
+
+// On the side of the geometric normal.
+Vec3 outward_unit_normal(const Vec3& normal, const Vec3& geometric_normal) {
+  const Vec3 unit = unit_normal(normal, geometric_normal);
+  return glm::dot(unit, geometric_normal) < 0.0f ? -unit : unit;
+}
+
+}  // namespace
+
 void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
-  const float length2 = glm::dot(lobe->normal, lobe->normal);
-  const bool usable = is_finite(length2) && length2 > 1e-12f;
-  Vec3 normal = usable ? lobe->normal / std::sqrt(length2) : geometric_normal;
+  Vec3 normal = unit_normal(lobe->normal, geometric_normal);
   const bool inside = glm::dot(normal, geometric_normal) < 0.0f;
   if (inside) {
     normal = -normal;
@@ -199,6 +216,25 @@ void Closures::normalise() {
   }
 }
 
+bool Closures::is_one_lambert() const { return count_ == 1 && is_lambert(lobes_[0]); }
+
+// The commonest surface: what the general way comes to, probabilities of 1 among them.
+void Closures::finish_lambert() {
+  Lobe& lobe = lobes_[0];
+  lobe.normal = outward_unit_normal(original_[0].normal, geometric_normal_);
+  lobe.tangent = perpendicular(lobe.normal);
+  lobe.energy = Rgb(1.0f);
+  lobe.sample_weight = mean_component(lobe.weight);
+  lobe.scatter_class = ScatterClass::Diffuse;
+  const bool scatters = is_finite(lobe.sample_weight);  // it is not black
+  constexpr size_t k = static_cast<size_t>(ScatterClass::Diffuse);
+  has_smooth_[k] = scatters;
+  entry_count_[k] = scatters ? 1 : 0;
+  entries_[k][0] = {0, kReflects, false, 1.0f};
+  class_probability_.fill(0.0f);
+  class_probability_[k] = scatters ? 1.0f : 0.0f;
+}
+
 void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold, const Vec3& smooth_normal) {
   geometric_normal_ = geometric_normal;
   smooth_normal_ = smooth_normal;
@@ -208,6 +244,10 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   drop_black_lobes();
   keep_originals();
   ignores_wo_ = true;
+  if (is_one_lambert()) {
+    finish_lambert();
+    return;
+  }
   for (int i = 0; i < count_; i++) {
     prepare(i, wo);
     add_entries(i, wo, roughness_threshold);

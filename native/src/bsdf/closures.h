@@ -162,8 +162,12 @@ class Closures {
   void add_entries(int lobe, const Vec3& wo, float roughness_threshold);
   void add_entry(int lobe, uint8_t sides, ScatterClass c, float weight);
   void normalise();
+  bool is_one_lambert() const;
+  void finish_lambert();
   // Value and density (times the entry's probability) of one smooth entry; zero on the wrong side of the geometric surface.
   BsdfEval evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const;
+  template <class Add>
+  void for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, Add&& add) const;
   bool crosses(const Vec3& wi) const;
 
   std::array<Lobe, kMaxLobes> lobes_;

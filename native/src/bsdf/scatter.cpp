@@ -37,26 +37,28 @@ size_t pass_of(const Lobe& lobe, bool transmitted) {
 
 bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse; }
 
+// Compiled once: the density of a sharp lobe shows in how its arithmetic is contracted, and sample() and evaluate() must agree.
+[[gnu::noinline]] BsdfEval evaluate_in_frame(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides) {
+  const Frame3 frame = make_frame(lobe.normal, lobe.tangent);
+  return functions_of(lobe).evaluate(lobe, frame.to_local(wo), frame.to_local(wi), sides);
+}
+
 float stay_below_one(float u) { return std::min(u, 0.99999994f); }
 
 }  // namespace
 
-bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_normal_, wi) < 0.0f; }
+inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_normal_, wi) < 0.0f; }
 
-BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const {
+// Inlined, as are the sums below, so that values stay in registers: what is stored in parts and loaded as a whole stalls.
+[[gnu::always_inline]] inline BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi,
+                                                                bool transmitted) const {
   const Lobe& source = lobes_[entry.lobe];
   // Shading and geometric side must agree: no light through walls, and a test that a shifted path meets in the same form.
   const float cos_i = glm::dot(wi, source.normal);
   if ((cos_i < 0.0f) != transmitted) {
     return {};
   }
-  BsdfEval eval;
-  if (is_lambert(source)) {
-    eval = evaluate_lambert(source, cos_i);
-  } else {
-    const Frame3 frame = make_frame(source.normal, source.tangent);
-    eval = functions_of(source).evaluate(source, frame.to_local(wo), frame.to_local(wi), entry.sides);
-  }
+  BsdfEval eval = is_lambert(source) ? evaluate_lambert(source, cos_i) : evaluate_in_frame(source, wo, wi, entry.sides);
   eval.pdf *= entry.probability;
   if (source.type == LobeType::Diffuse && smooth_normal_ != Vec3(0.0f) && smooth_normal_ != source.normal) {
     eval.value *= bump_shadowing(smooth_normal_, source.normal, wi);
@@ -64,38 +66,44 @@ BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3
   return eval;
 }
 
-BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const { return evaluate(c, wo, wi, false).all; }
-
-KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const {
+// Calls add(lobe, transmitted, BsdfEval) for the smooth entries of a class.
+template <class Add>
+[[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, Add&& add) const {
   const size_t k = static_cast<size_t>(c);
   const bool transmitted = crosses(wi);
-  KindEval sum;
   for (int i = 0; i < entry_count_[k]; i++) {
     const Entry& entry = entries_[k][static_cast<size_t>(i)];
-    if (entry.dirac) {
-      continue;
+    if (!entry.dirac) {
+      add(lobes_[entry.lobe], transmitted, evaluate_entry(entry, wo, wi, transmitted));
     }
-    const BsdfEval part = evaluate_entry(entry, wo, wi, transmitted);
+  }
+}
+
+BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
+  BsdfEval sum;
+  for_smooth(c, wo, wi, [&](const Lobe&, bool, const BsdfEval& part) {
+    sum.value += part.value;
+    sum.pdf += part.pdf;
+  });
+  return sum;
+}
+
+KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const {
+  KindEval sum;
+  for_smooth(c, wo, wi, [&](const Lobe& lobe, bool, const BsdfEval& part) {
     sum.all.value += part.value;
     sum.all.pdf += part.pdf;
-    if (is_diffuse(lobes_[entry.lobe]) == diffuse) {
+    if (is_diffuse(lobe) == diffuse) {
       sum.kind.value += part.value;
       sum.kind.pdf += part.pdf;
     }
-  }
+  });
   return sum;
 }
 
 std::array<Rgb, 3> Closures::evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
-  const size_t k = static_cast<size_t>(c);
-  const bool transmitted = crosses(wi);
   std::array<Rgb, 3> sum{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
-  for (int i = 0; i < entry_count_[k]; i++) {
-    const Entry& entry = entries_[k][static_cast<size_t>(i)];
-    if (!entry.dirac) {
-      sum[pass_of(lobes_[entry.lobe], transmitted)] += evaluate_entry(entry, wo, wi, transmitted).value;
-    }
-  }
+  for_smooth(c, wo, wi, [&](const Lobe& lobe, bool transmitted, const BsdfEval& part) { sum[pass_of(lobe, transmitted)] += part.value; });
   return sum;
 }
 
@@ -147,15 +155,22 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   }
   out->wi = glm::normalize(frame.to_world(local));
   out->diffuse = is_diffuse(source);
-  const KindEval kinds = evaluate(c, wo, out->wi, out->diffuse);
-  const BsdfEval& eval = kinds.all;
-  out->value = eval.value;
-  out->pdf = eval.pdf;
-  out->kind = kinds.kind;
+  BsdfEval all, kind;
+  for_smooth(c, wo, out->wi, [&](const Lobe& lobe, bool, const BsdfEval& part) {
+    all.value += part.value;
+    all.pdf += part.pdf;
+    if (is_diffuse(lobe) == out->diffuse) {
+      kind.value += part.value;
+      kind.pdf += part.pdf;
+    }
+  });
+  out->value = all.value;
+  out->pdf = all.pdf;
+  out->kind = kind;
   out->dirac = false;
   out->transmitted = crosses(out->wi);
   out->lobe = entry.lobe;
-  return eval.pdf > 0.0f && is_finite(eval.pdf) && is_finite(eval.value);
+  return all.pdf > 0.0f && is_finite(all.pdf) && is_finite(all.value);
 }
 
 Rgb Closures::albedo(LightPass pass, const Vec3& wo) const {

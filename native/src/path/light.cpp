@@ -14,7 +14,7 @@ bool sample_light(const PathContext& context, const VertexSample& u, const Verte
     return false;
   }
   const Receiver receiver = receiver_of(vertex);
-  light->point = sample_emitter(context.scene, receiver, u.light_choice.x, u.light, &light->view);
+  sample_emitter(context.scene, receiver, u.light_choice.x, u.light, &light->point, &light->view);
   if (light->point.kind == EmitterKind::None) {
     return false;
   }

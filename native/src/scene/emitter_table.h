@@ -38,6 +38,8 @@ struct EmitterTable {
   Environment world;
   std::shared_ptr<const LampScene> lamps_with_extent;
 
+  // There is nothing to choose.
+  bool is_single_light() const { return tree.size() == 1 && suns.empty() && world.black(); }
   // cut: through the tree, for this receiver.
   GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
   // Of one sun among the suns.

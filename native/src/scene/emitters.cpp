@@ -27,28 +27,26 @@ Vec2 sample_triangle_area(const Vec2& u) {
 }
 
 // The surface is that of the emissive triangle with this index.
-EmitterPoint triangle_point(uint32_t index, const SurfacePoint& surface) {
-  EmitterPoint point;
-  point.kind = EmitterKind::Triangle;
-  point.index = index;
-  point.instance = surface.hit.instance;
-  point.triangle = surface.hit.triangle;
-  point.barycentric = surface.hit.barycentric;
-  point.position = surface.position;
-  point.normal = surface.geometric_normal;
-  point.error = surface.error;
-  return point;
+void set_triangle_point(uint32_t index, const SurfacePoint& surface, EmitterPoint* point) {
+  point->kind = EmitterKind::Triangle;
+  point->index = index;
+  point->instance = surface.hit.instance;
+  point->triangle = surface.hit.triangle;
+  point->barycentric = surface.hit.barycentric;
+  point->position = surface.position;
+  point->normal = surface.geometric_normal;
+  point->error = surface.error;
 }
 
-// An emitter point with what was found on the way: the probability with which its emitter was chosen (of all, or of its group), and the
-// solid angle in which it was sampled uniformly, 0 if it was not.
-struct EmitterSample {
-  EmitterPoint point;
+// What is found on the way to an emitter point, which is written in place: the probability with which its emitter was chosen (of all, or
+// of its group), and the solid angle in which it was sampled uniformly, 0 if it was not.
+struct Finding {
   double probability = 1.0;
   float solid_angle = 0.0f;
 };
 
-EmitterSample sample_triangle(const Snapshot& snapshot, uint32_t index, const Receiver& receiver, const Vec2& u) {
+void sample_triangle(const Snapshot& snapshot, uint32_t index, const Receiver& receiver, const Vec2& u, EmitterPoint* point,
+                     Finding* finding) {
   const EmissiveTriangle& t = snapshot.emitters->triangles[index];
   const std::array<Vec3, 3> corners = snapshot.corners(t.instance, t.triangle);
   const SphericalTriangle seen(corners, receiver.position);
@@ -56,28 +54,26 @@ EmitterSample sample_triangle(const Snapshot& snapshot, uint32_t index, const Re
   hit.instance = t.instance;
   hit.triangle = t.triangle;
   hit.barycentric = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
-  return {triangle_point(index, snapshot.surface_point(hit)), 1.0, seen.sampled_solid_angle()};
+  set_triangle_point(index, snapshot.surface_point(hit), point);
+  finding->solid_angle = seen.sampled_solid_angle();
 }
 
-EmitterSample sample_lamp_at(const Snapshot& snapshot, uint32_t lamp, const Receiver& receiver, const Vec2& u) {
-  EmitterSample sample;
-  if (!sample_lamp(snapshot.emitters->lamps[lamp], receiver.position, u, &sample.point, &sample.solid_angle)) return {};
-  sample.point.index = lamp;
-  return sample;
+void sample_lamp_at(const Snapshot& snapshot, uint32_t lamp, const Receiver& receiver, const Vec2& u, EmitterPoint* point,
+                    Finding* finding) {
+  point->index = lamp;
+  if (!sample_lamp(snapshot.emitters->lamps[lamp], receiver.position, u, point, &finding->solid_angle)) point->kind = EmitterKind::None;
 }
 
-EmitterSample sample_tree(const Snapshot& snapshot, const Receiver& receiver, const LightTree::Cut& cut, double choice, const Vec2& u) {
-  const EmitterTable& table = *snapshot.emitters;
-  double probability;
-  const uint32_t light = table.tree.sample(receiver, cut, choice, &probability);
-  const auto lamps = uint32_t(table.tree_lamps.size());
-  EmitterSample sample = light < lamps ? sample_lamp_at(snapshot, table.tree_lamps[light], receiver, u)
-                                       : sample_triangle(snapshot, light - lamps, receiver, u);
-  sample.probability = probability;
-  return sample;
+void sample_light_of_tree(const Snapshot& snapshot, uint32_t light, const Receiver& receiver, const Vec2& u, EmitterPoint* point,
+                          Finding* finding) {
+  const std::vector<uint32_t>& lamps = snapshot.emitters->tree_lamps;
+  if (light < lamps.size())
+    sample_lamp_at(snapshot, lamps[light], receiver, u, point, finding);
+  else
+    sample_triangle(snapshot, light - uint32_t(lamps.size()), receiver, u, point, finding);
 }
 
-EmitterSample sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
+void sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, EmitterPoint* point, Finding* finding) {
   const EmitterTable& table = *snapshot.emitters;
   size_t sun = 0;
   double below = 0.0, probability;
@@ -86,40 +82,37 @@ EmitterSample sample_suns(const Snapshot& snapshot, const Receiver& receiver, do
     below += probability;
     if (choice < below || sun + 1 == table.suns.size()) break;
   }
-  EmitterSample sample = sample_lamp_at(snapshot, table.suns[sun], receiver, u);
-  sample.probability = probability;
-  return sample;
+  sample_lamp_at(snapshot, table.suns[sun], receiver, u, point, finding);
+  finding->probability = probability;
 }
 
-EmitterSample sample_world(const Snapshot& snapshot, const Receiver& receiver, const Vec2& u) {
-  EmitterSample sample;
-  sample.point.kind = EmitterKind::World;
-  sample.point.direction = snapshot.emitters->world.sample(receiver, u, &sample.point.barycentric);
-  return sample;
+void sample_world(const Snapshot& snapshot, const Receiver& receiver, const Vec2& u, EmitterPoint* point) {
+  point->kind = EmitterKind::World;
+  point->direction = snapshot.emitters->world.sample(receiver, u, &point->barycentric);
 }
 
-EmitterSample sample_any(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u) {
-  const LightTree::Cut cut = snapshot.emitters->tree.cut(receiver);
-  const GroupChoice group = snapshot.emitters->choose_group(receiver, cut);
-  EmitterSample sample;
-  double of_group = 0.0;
+void sample_any(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, EmitterPoint* point, Finding* finding) {
+  const EmitterTable& table = *snapshot.emitters;
+  if (table.is_single_light()) return sample_light_of_tree(snapshot, 0, receiver, u, point, finding);
+  const LightTree::Cut cut = table.tree.cut(receiver);
+  const GroupChoice group = table.choose_group(receiver, cut);
   const double rest = choice - group.tree;
   if (group.tree > 0.0 && (rest < 0.0 || group.suns + group.world <= 0.0)) {
-    of_group = group.tree;
-    sample = sample_tree(snapshot, receiver, cut, std::min(choice / group.tree, 1.0 - 1e-12), u);
+    const uint32_t light = table.tree.sample(receiver, cut, std::min(choice / group.tree, 1.0 - 1e-12), &finding->probability);
+    sample_light_of_tree(snapshot, light, receiver, u, point, finding);
+    finding->probability *= group.tree;
   } else if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) {
-    of_group = group.suns;
-    sample = sample_suns(snapshot, receiver, rest / group.suns, u);
+    sample_suns(snapshot, receiver, rest / group.suns, u, point, finding);
+    finding->probability *= group.suns;
   } else if (group.world > 0.0) {
-    of_group = group.world;
-    sample = sample_world(snapshot, receiver, u);
+    sample_world(snapshot, receiver, u, point);
+    finding->probability = group.world;
   }
-  sample.probability *= of_group;
-  return sample;
 }
 
 // Probability that the emitter of the point is chosen.
 double choice_probability(const EmitterTable& table, const EmitterPoint& point, const Receiver& receiver) {
+  if (table.is_single_light()) return 1.0;
   const LightTree::Cut cut = table.tree.cut(receiver);
   const GroupChoice group = table.choose_group(receiver, cut);
   if (point.kind == EmitterKind::World) return group.world;
@@ -166,36 +159,34 @@ float triangle_solid_angle(const Snapshot& snapshot, const EmitterPoint& point, 
 }
 
 // Geometry and solid angle density of an emissive triangle.
-EmitterView view_triangle(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver, const float* solid_angle) {
-  EmitterView view;
-  view.visibility = snapshot.instances[point.instance].visibility & GRADUS_VISIBLE_ALL;
+void view_triangle(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver, const float* solid_angle,
+                   EmitterView* view) {
+  view->visibility = snapshot.instances[point.instance].visibility & GRADUS_VISIBLE_ALL;
   const Vec3 to_light = point.position - receiver.position;
   const float distance2 = glm::dot(to_light, to_light);
-  if (!(distance2 > 0.0f)) return view;
-  view.distance = std::sqrt(distance2);
-  view.direction = to_light / view.distance;
-  view.cosine = std::fabs(glm::dot(point.normal, view.direction));
-  if (!(view.cosine > 0.0f)) return view;
+  if (!(distance2 > 0.0f)) return;
+  view->distance = std::sqrt(distance2);
+  view->direction = to_light / view->distance;
+  view->cosine = std::fabs(glm::dot(point.normal, view->direction));
+  if (!(view->cosine > 0.0f)) return;
   const float angle = solid_angle != nullptr ? *solid_angle : triangle_solid_angle(snapshot, point, receiver);
-  view.pdf = angle > 0.0f ? 1.0f / angle : distance2 / (view.cosine * snapshot.emitters->triangles[point.index].area);
-  return view;
+  view->pdf = angle > 0.0f ? 1.0f / angle : distance2 / (view->cosine * snapshot.emitters->triangles[point.index].area);
 }
 
-EmitterView view_world(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
-  EmitterView view;
-  view.direction = point.direction;
-  view.visibility = snapshot.world.visibility;
-  view.pdf = snapshot.emitters->world.density(point.direction, point.barycentric, receiver);
-  return view;
+void view_world(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver, EmitterView* view) {
+  view->direction = point.direction;
+  view->visibility = snapshot.world.visibility;
+  view->pdf = snapshot.emitters->world.density(point.direction, point.barycentric, receiver);
 }
 
 // All but the radiance of triangles and world, and the lamp's program; the density without the choice. solid_angle: in which the point was
 // sampled from there, if that is known.
-EmitterView view_geometry(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver,
-                          const float* solid_angle = nullptr) {
-  if (point.kind == EmitterKind::Lamp) return view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position, solid_angle);
-  if (point.kind == EmitterKind::Triangle) return view_triangle(snapshot, point, receiver, solid_angle);
-  return point.kind == EmitterKind::World ? view_world(snapshot, point, receiver) : EmitterView();
+void view_geometry(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver, const float* solid_angle,
+                   EmitterView* view) {
+  *view = EmitterView();
+  if (point.kind == EmitterKind::Lamp) view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position, solid_angle, view);
+  if (point.kind == EmitterKind::Triangle) view_triangle(snapshot, point, receiver, solid_angle, view);
+  if (point.kind == EmitterKind::World) view_world(snapshot, point, receiver, view);
 }
 
 void multiply_choice(double probability, EmitterView* view) {
@@ -230,38 +221,40 @@ Rgb emitter_radiance(const Snapshot& snapshot, const EmitterPoint& point, const 
   return shade_emission(snapshot, surface_of(snapshot, point), -view.direction, ray);
 }
 
-EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u) {
-  return sample_any(snapshot, receiver, choice, u).point;
-}
-
-EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterView* view) {
-  const EmitterSample sample = sample_any(snapshot, receiver, choice, u);
-  *view = view_geometry(snapshot, sample.point, receiver, &sample.solid_angle);
-  multiply_choice(sample.probability, view);
-  if (!(view->pdf > 0.0f)) return sample.point;
+void sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterPoint* point,
+                    EmitterView* view) {
+  *point = EmitterPoint();
+  Finding finding;
+  sample_any(snapshot, receiver, choice, u, point, &finding);
+  view_geometry(snapshot, *point, receiver, &finding.solid_angle, view);
+  multiply_choice(finding.probability, view);
+  if (!(view->pdf > 0.0f)) return;
   if (comes_from_behind(receiver, view->direction))
     view->radiance = Rgb(0.0f);
   else
-    shade_view(snapshot, sample.point, view);
-  return sample.point;
+    shade_view(snapshot, *point, view);
 }
 
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
-  EmitterView view = view_geometry(snapshot, point, receiver);
+  EmitterView view;
+  view_geometry(snapshot, point, receiver, nullptr, &view);
   if (view.pdf > 0.0f) multiply_choice(choice_probability(*snapshot.emitters, point, receiver), &view);
   shade_view(snapshot, point, &view);
   return view;
 }
 
 float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
-  EmitterView view = view_geometry(snapshot, point, receiver);
+  EmitterView view;
+  view_geometry(snapshot, point, receiver, nullptr, &view);
   if (view.pdf > 0.0f) multiply_choice(choice_probability(*snapshot.emitters, point, receiver), &view);
   return view.pdf;
 }
 
 EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& surface) {
   const uint32_t index = snapshot.emitters->find_triangle(surface.hit.instance, surface.hit.triangle);
-  return index != UINT32_MAX ? triangle_point(index, surface) : EmitterPoint();
+  EmitterPoint point;
+  if (index != UINT32_MAX) set_triangle_point(index, surface, &point);
+  return point;
 }
 
 EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction) {

@@ -53,11 +53,12 @@ struct Receiver {
   bool transmits = false;  // also lit from behind
 };
 
-// Samples a point on some emitter. choice: which one; u: where. kind None if there is nothing to sample from here.
-EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u);
-// The same, with the view that view_emitter() would give: cheaper, because the choice is made and its probability found in one go. Only
-// the radiance is left out, as 0, where the light comes from behind a receiver that does not transmit.
-EmitterPoint sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterView* view);
+// Samples a point on some emitter. choice: which one; u: where. kind None if there is nothing to sample from here. view: what
+// view_emitter() would give, but cheaper, because the choice is made and its probability found in one go; only the radiance is left out,
+// as 0, where the light comes from behind a receiver that does not transmit. Both are written where the caller keeps them: copies of what
+// has just been written stall.
+void sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterPoint* point,
+                    EmitterView* view);
 // The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine there.
 EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
 // Radiance of a triangle or the world towards the receiver, for a ray of this kind.

@@ -46,11 +46,12 @@ bool make_lamp(const GradusLight& desc, const Vec3& origin, Lamp* lamp);
 // Of lamps that are not at infinity.
 LightBounds lamp_bounds(const Lamp& lamp);
 
-// A point of the lamp as sampled from `from`; false: it does not shine there. solid_angle: see view_lamp().
+// A point of the lamp as sampled from `from`, written to a fresh one; false: it does not shine there. solid_angle: see view_lamp().
 bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point, float* solid_angle);
 // Direction, distance, cosine, radiance (material left out), and the density of sample_lamp() in solid angle (1 if Dirac).
 // solid_angle: what sample_lamp() found from there, so that it need not be found again; 0: the lamp is sampled in another way.
-EmitterView view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle = nullptr);
+// view: a fresh one.
+void view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle, EmitterView* view);
 // Where a ray crosses a lamp with extent; false: nowhere between t_min and t_max.
 bool intersect_lamp(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance);
 

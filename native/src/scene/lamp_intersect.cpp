@@ -69,7 +69,6 @@ bool hit_cone(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* dist
 }  // namespace
 
 bool intersect_lamp(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  *point = EmitterPoint();
   point->kind = EmitterKind::Lamp;
   switch (lamp.shape) {
     case Lamp::Shape::Sphere:

@@ -141,18 +141,18 @@ void view_at_infinity(const Lamp& lamp, const EmitterPoint& point, EmitterView* 
   view->pdf = lamp.shape == Lamp::Shape::Cone ? 1.0f / (2.0f * kPi * lamp.one_minus_cos_sun) : 1.0f;
 }
 
-void view_sphere(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, EmitterView* view) {
+void view_sphere(const Lamp& lamp, const Vec3& normal, const Vec3& from, EmitterView* view) {
   const Vec3 to_centre = lamp.position - from;
   const float one_minus_cos = sphere_one_minus_cos(lamp, to_centre);
-  const float cosine = -glm::dot(point.normal, view->direction);
+  const float cosine = -glm::dot(normal, view->direction);
   view->cosine = std::fabs(cosine);
   if (one_minus_cos < 2.0f && cosine <= 0.0f) return;  // the far side
   view->pdf = 1.0f / (2.0f * kPi * one_minus_cos);
   view->radiance = lamp.intensity * spot_falloff(lamp, -view->direction);
 }
 
-void view_flat(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle, EmitterView* view) {
-  const float cosine = -glm::dot(point.normal, view->direction);
+void view_flat(const Lamp& lamp, const Vec3& normal, const Vec3& from, const float* solid_angle, EmitterView* view) {
+  const float cosine = -glm::dot(normal, view->direction);
   if (!(cosine > 0.0f) || (lamp.shape != Lamp::Shape::FacingDisk && !in_front(lamp, from))) return;
   view->cosine = cosine;
   view->pdf = view->distance * view->distance / (cosine * lamp.area);
@@ -165,31 +165,26 @@ void view_flat(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, co
 
 }  // namespace
 
-EmitterView view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle) {
-  EmitterView view;
-  view.casts_shadow = lamp.casts_shadow;
-  view.visibility = lamp.visibility;
-  view.max_bounces = lamp.max_bounces;
-  if (lamp.at_infinity()) {
-    view_at_infinity(lamp, point, &view);
-    return view;
-  }
-  EmitterPoint here = point;
-  if (lamp.shape == Lamp::Shape::FacingDisk) here.position = facing_disk_position(lamp, from, point.barycentric, &here.normal);
-  const Vec3 to_light = here.position - from;
+void view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle, EmitterView* view) {
+  view->casts_shadow = lamp.casts_shadow;
+  view->visibility = lamp.visibility;
+  view->max_bounces = lamp.max_bounces;
+  if (lamp.at_infinity()) return view_at_infinity(lamp, point, view);
+  Vec3 position = point.position, normal = point.normal;
+  if (lamp.shape == Lamp::Shape::FacingDisk) position = facing_disk_position(lamp, from, point.barycentric, &normal);
+  const Vec3 to_light = position - from;
   const float distance = glm::length(to_light);
-  if (!(distance > 0.0f)) return view;
-  view.distance = distance;
-  view.direction = to_light / distance;
+  if (!(distance > 0.0f)) return;
+  view->distance = distance;
+  view->direction = to_light / distance;
   if (lamp.shape == Lamp::Shape::Point) {
-    view.radiance = lamp.intensity * (spot_falloff(lamp, -view.direction) / (distance * distance));
-    view.pdf = 1.0f;
+    view->radiance = lamp.intensity * (spot_falloff(lamp, -view->direction) / (distance * distance));
+    view->pdf = 1.0f;
   } else if (lamp.shape == Lamp::Shape::Sphere) {
-    view_sphere(lamp, here, from, &view);
+    view_sphere(lamp, normal, from, view);
   } else {
-    view_flat(lamp, here, from, solid_angle, &view);
+    view_flat(lamp, normal, from, solid_angle, view);
   }
-  return view;
 }
 
 }  // namespace gradus

@@ -59,13 +59,13 @@ TEST(A4_LightDensity, SampledPointsHaveADensity) {
   for (int i = 0; i < 100000; ++i) {
     const Receiver receiver = random_receiver(random);
     const float choice = u(random), x = u(random), y = u(random);
-    const EmitterPoint point = sample_emitter(*snapshot, receiver, choice, Vec2(x, y));
+    EmitterPoint point;
+    EmitterView at_once;
+    sample_emitter(*snapshot, receiver, choice, Vec2(x, y), &point, &at_once);
     if (point.kind == EmitterKind::None) continue;
     const EmitterView view = view_emitter(*snapshot, point, receiver);
     ++sampled;
     without += !(view.pdf > 0.0f);
-    EmitterView at_once;
-    sample_emitter(*snapshot, receiver, choice, Vec2(x, y), &at_once);
     EXPECT_EQ(view.pdf, at_once.pdf);
     EXPECT_EQ(view.pdf, emitter_pdf(*snapshot, point, receiver));
     EXPECT_GE(view.pdf, 0.0f);
@@ -84,7 +84,9 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
   for (int i = 0; i < 100000; ++i) {
     const Receiver receiver = random_receiver(random);
     const float choice = u(random), x = u(random);
-    const EmitterPoint point = sample_emitter(*snapshot, receiver, choice, Vec2(x, u(random)));
+    EmitterPoint point;
+    EmitterView sampled_view;
+    sample_emitter(*snapshot, receiver, choice, Vec2(x, u(random)), &point, &sampled_view);
     if (point.kind != EmitterKind::Lamp || point.dirac) continue;
     const EmitterView view = view_emitter(*snapshot, point, receiver);
     if (!(view.pdf > 0.0f)) continue;
@@ -204,7 +206,9 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
     double mean = 0.0, second = 0.0;
     constexpr int kCount = 2000;
     for (int i = 0; i < kCount; ++i) {
-      const EmitterPoint point = sample_emitter(*snapshot, receiver, v(random), Vec2(0.5f));
+      EmitterPoint point;
+      EmitterView sampled_view;
+      sample_emitter(*snapshot, receiver, v(random), Vec2(0.5f), &point, &sampled_view);
       const EmitterView view = view_emitter(*snapshot, point, receiver);
       const double x = view.radiance.x * view.direction.z / view.pdf;
       mean += x / kCount;
@@ -286,9 +290,10 @@ TEST(E4_ManyLights, HundredThousandTrianglesAreBetterChosenThanUniformly) {
     const Receiver receiver{Vec3(x(random), x(random), 0.0f), Vec3(0, 0, 1), false};
     Spread by_tree, by_chance;
     for (int i = 0; i < 10000; ++i) {
+      EmitterPoint point;
       EmitterView view;
       const Vec2 at(u(random), u(random));
-      sample_emitter(*snapshot, receiver, u(random), at, &view);
+      sample_emitter(*snapshot, receiver, u(random), at, &point, &view);
       by_tree.add(view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0);
     }
     for (int i = 0; i < 100000; ++i) by_chance.add(by_uniform_choice(*snapshot, receiver, &random));

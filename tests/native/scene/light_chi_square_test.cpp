@@ -38,7 +38,9 @@ double density(const Snapshot& snapshot, const Receiver& receiver, const Vec3& d
 
 void expect_matching(const Snapshot& snapshot, const Receiver& receiver, const Vec3& axis, uint32_t seed) {
   const auto sample = [&](const Vec2& u, const Vec2& v, Vec3* direction) {
-    const EmitterPoint point = sample_emitter(snapshot, receiver, v.x, u);
+    EmitterPoint point;
+    EmitterView sampled_view;
+    sample_emitter(snapshot, receiver, v.x, u, &point, &sampled_view);
     if (point.kind == EmitterKind::None) return false;
     const EmitterView view = view_emitter(snapshot, point, receiver);
     *direction = view.direction;
@@ -177,9 +179,10 @@ void expect_light(const Snapshot& snapshot, float noise) {
   constexpr int kCount = 20000;
   double sum = 0.0, squares = 0.0, grid = 0.0;
   for (int i = 0; i < kCount; ++i) {
+    EmitterPoint point;
     EmitterView view;
     const Vec2 u(uniform(random), uniform(random));
-    sample_emitter(snapshot, receiver, uniform(random), u, &view);
+    sample_emitter(snapshot, receiver, uniform(random), u, &point, &view);
     const double x = view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0;
     sum += x;
     squares += x * x;

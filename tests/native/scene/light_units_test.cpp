@@ -18,7 +18,9 @@ double irradiance(const Snapshot& snapshot, const Receiver& receiver, int count 
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
     const float choice = uniform(random), x = uniform(random);
-    const EmitterPoint point = sample_emitter(snapshot, receiver, choice, Vec2(x, uniform(random)));
+    EmitterPoint point;
+    EmitterView sampled_view;
+    sample_emitter(snapshot, receiver, choice, Vec2(x, uniform(random)), &point, &sampled_view);
     if (point.kind == EmitterKind::None) continue;
     const EmitterView view = view_emitter(snapshot, point, receiver);
     const float cosine = glm::dot(receiver.normal, view.direction);

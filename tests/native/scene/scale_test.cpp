@@ -57,7 +57,8 @@ std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
     const SurfacePoint point = snapshot->surface_point(hit);
     const Receiver receiver{point.position, point.geometric_normal, false};
     EmitterView view;
-    const EmitterPoint emitter = sample_emitter(*snapshot, receiver, choice, u, &view);
+    EmitterPoint emitter;
+    sample_emitter(*snapshot, receiver, choice, u, &emitter, &view);
     const float cosine = glm::dot(view.direction, receiver.normal);
     if (emitter.kind == EmitterKind::None || cosine <= 0.0f || view.pdf <= 0.0f) continue;
     if (snapshot->occluded(shadow_ray(point, emitter, view))) continue;

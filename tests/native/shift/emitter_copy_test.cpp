@@ -73,7 +73,8 @@ TEST_P(B4_EmitterCopy, JacobianAndWayBack) {
     const Receiver offset{base.position + 0.1f * direction(), Vec3(0.0f), true};
     EmitterView there;
     const float choice = random.get();
-    const EmitterPoint point = sample_emitter(snapshot, base, choice, random.get2(), &there);
+    EmitterPoint point;
+    sample_emitter(snapshot, base, choice, random.get2(), &point, &there);
     const EmitterView here = view_emitter(snapshot, point, base), moved = view_emitter(snapshot, point, offset);
     if (point.kind == EmitterKind::None || is_black(here.radiance) || is_black(moved.radiance)) continue;
     if (!(here.cosine > 1e-3f) || !(moved.cosine > 1e-3f)) continue;
