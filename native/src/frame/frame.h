@@ -99,8 +99,6 @@ struct HalfRange {
 
 // In the place of a difference of which no samples were taken: solvers leave it out.
 inline constexpr float kAbsentPair = std::numeric_limits<float>::quiet_NaN();
-// Whether all differences between neighbours have samples.
-bool has_all_pairs(const Frame& frame);
 
 // Rows of what read_images() gives, y counted from the region's first row. `offset`: kRight for dx, kUp for dy.
 void read_primal_row(const Frame& frame, int component, HalfRange halves, int y, float* row);

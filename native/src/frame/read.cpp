@@ -79,19 +79,6 @@ void read_difference_row(const Frame& frame, int component, Offset offset, HalfR
   std::fill(row + last * channels, row + width * channels, 0.0f);
 }
 
-bool has_all_pairs(const Frame& frame) {
-  const int32_t w = frame.region.width(), h = frame.region.height();
-  const auto sampled = [&](int offset, size_t i) { return frame.pair_count[0][offset][i] + frame.pair_count[1][offset][i] > 0.0f; };
-  for (int32_t y = 0; y < h; ++y) {
-    for (int32_t x = 0; x < w; ++x) {
-      const size_t i = size_t(y) * size_t(w) + size_t(x);
-      if (x + 1 < w && !(sampled(kRight, i) && sampled(kLeft, i + 1))) return false;
-      if (y + 1 < h && !(sampled(kUp, i) && sampled(kDown, i + size_t(w)))) return false;
-    }
-  }
-  return true;
-}
-
 GradientImages read_images(const Frame& frame, int component, bool with_halves) {
   const auto primal = [&](HalfRange halves) {
     return read_rows(frame, [&](int y, float* row) { read_primal_row(frame, component, halves, y, row); });

@@ -96,4 +96,25 @@ void Dct::inverse(float* a, float* b, Scratch* scratch) const {
   }
 }
 
+void Dct::filter(const float* gain_a, const float* gain_b, double sum_a, Scratch* scratch) const {
+  const int n = length_;
+  fftwf_execute_dft(forward_, fftw(scratch->time), fftw(scratch->frequency));
+  std::complex<float>* const f = scratch->frequency.get();
+  f[0] = {gain_a[0] * (std::isnan(sum_a) ? f[0].real() : static_cast<float>(sum_a)), gain_b[0] * f[0].imag()};
+  for (int k = 1; 2 * k <= n; ++k) {
+    const float pr = f[k].real(), pi = f[k].imag(), qr = f[n - k].real(), qi = f[n - k].imag();
+    const float wr = twiddle_[k].real(), wi = twiddle_[k].imag();
+    // As in forward().
+    float ar = pr + qr, ai = pi - qi, br = pi + qi, bi = qr - pr;
+    const float ak = gain_a[k] * (wr * ar - wi * ai), an = -gain_a[n - k] * (wr * ai + wi * ar);
+    const float bk = gain_b[k] * (wr * br - wi * bi), bn = -gain_b[n - k] * (wr * bi + wi * br);
+    // As in inverse().
+    ar = wr * ak - wi * an, ai = -wr * an - wi * ak;
+    br = wr * bk - wi * bn, bi = -wr * bn - wi * bk;
+    f[n - k] = {0.5f * (ar + bi), 0.5f * (br - ai)};
+    f[k] = {0.5f * (ar - bi), 0.5f * (ai + br)};
+  }
+  fftwf_execute_dft(backward_, fftw(scratch->frequency), fftw(scratch->time));
+}
+
 }  // namespace gradus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -34,6 +35,13 @@ class Dct {
   // Any number of threads, each with its own scratch.
   void forward(float* a, float* b, Scratch* scratch) const;
   void inverse(float* a, float* b, Scratch* scratch) const;
+
+  // Where x[i] of a pair lies in scratch->time.
+  int place(int i) const { return i % 2 == 0 ? i / 2 : length_ - 1 - i / 2; }
+  // Forth, times gain_a[k] and gain_b[k], and back, of what lies in scratch->time. sum_a: Σx of a where it is known better than by sums of
+  // floats, or kUnknownSum.
+  static constexpr double kUnknownSum = std::numeric_limits<double>::quiet_NaN();
+  void filter(const float* gain_a, const float* gain_b, double sum_a, Scratch* scratch) const;
 
  private:
   int length_;

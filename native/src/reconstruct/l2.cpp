@@ -1,7 +1,9 @@
 // L2: minimises α²‖x−I‖² + ‖Dx−g‖² (thesis eq. 5.13 with k = 2). Linear in its input, hence unbiased if the gradients are.
 #include "reconstruct/l2.h"
 
+#include <algorithm>
 #include <array>
+#include <memory>
 
 #include "base/error.h"
 #include "base/types.h"
@@ -13,103 +15,136 @@ namespace {
 // A value that is missing counts as none: one non-finite number would spread over the whole image.
 float guarded(float v) { return is_finite(v) ? v : 0.0f; }
 
+constexpr int kMostChannels = 4;
+
 // Room for the sums of the transforms, which are as large as the image is long: a power of two, so that no bit is lost.
 constexpr float kRoom = 0x1p-24f;
 
 class L2 {
  public:
-  L2(int width, int height, float alpha) : dct_(width, height), data_weight_(alpha * alpha) {}
-  int width() const { return dct_.width(); }
+  L2(int width, int height, int channels, float alpha)
+      : dct_(width, height), channels_(size_t(channels)), row_size_(size_t(width) * channels_), data_weight_(alpha * alpha) {}
 
-  // Solves kChannels channels side by side, each as if it were alone. rows(y): where row y of all planes begins; `stride`: floats from
-  // pixel to pixel.
-  template <int kChannels>
-  void solve(const L2Rows& rows, size_t stride, float* out) const {
-    const int w = dct_.width(), h = dct_.height();
-    std::vector<std::array<double, kChannels>> row_sums(static_cast<size_t>(h));
-    const auto fill = [&](int y, float* row) {
-      rows(y, [&](const L2Row& in) { row_sums[size_t(y)] = fill_row<kChannels>(in, stride, y, row); });
-    };
+  // As solve_l2().
+  bool solve(const L2Rows& rows, const L2Take& take, float* work) const {
+    std::vector<RightSideRow> done(static_cast<size_t>(dct_.height()));
+    const auto fill = [&](int y, float* row) { rows(y, [&](const L2Row& in) { done[size_t(y)] = fill_row(in, y, row); }); };
     const auto sum = [&](int channel) {
       double total = 0.0;
-      for (const auto& part : row_sums) total += part[size_t(channel)];
+      for (const RightSideRow& row : done) total += row.sums[size_t(channel)];
       return total;
     };
-    const auto take = [&](int y, const float* row) {
-      float* to = out + size_t(y) * w * stride;
-      for (int x = 0; x < w; ++x, to += stride) {
-        for (int c = 0; c < kChannels; ++c) to[c] = row[size_t(c) * w + x] / kRoom;
-      }
+    const auto take_scaled = [&](int y, const float* row) {
+      std::vector<float> values(row, row + row_size_);
+      for (float& v : values) v *= 1.0f / kRoom;
+      take(y, values.data());
     };
-    const std::unique_ptr<float[]> work(new float[size_t(w) * h * kChannels]);
-    dct_.solve(data_weight_, kChannels, fill, sum, take, work.get());
+    dct_.solve(data_weight_, int(channels_), fill, sum, take_scaled, work);
+    return std::all_of(done.begin(), done.end(), [](const RightSideRow& row) { return row.complete; });
   }
 
  private:
-  // α²I + Dᵀg of one row, times kRoom; returns its part of the sum, which is α²ΣI: the gradients' parts cancel over the image.
-  template <int kChannels>
-  std::array<double, kChannels> fill_row(const L2Row& in, size_t stride, int y, float* row) const {
-    const int w = dct_.width();
+  struct RightSideRow {
+    std::array<double, kMostChannels> sums{};  // of α²I by channel: the gradients' parts cancel over the image
+    bool complete = true;
+  };
+
+  // α²I + Dᵀg of one row, times kRoom.
+  RightSideRow fill_row(const L2Row& in, int y, float* row) const {
     const bool has_up = y + 1 < dct_.height(), has_down = y > 0;
-    std::array<double, kChannels> sums{};
-    float left[kChannels] = {};
-    size_t i = 0;
-    for (int x = 0; x < w; ++x, i += stride) {
-      for (int c = 0; c < kChannels; ++c) {
-        const float value = kRoom * data_weight_ * guarded(in.primal[i + c]);
-        const float right = x + 1 < w ? kRoom * guarded(in.dx[i + c]) : 0.0f;
-        const float up = has_up ? kRoom * guarded(in.dy[i + c]) : 0.0f;
-        const float down = has_down ? kRoom * guarded(in.dy_below[i + c]) : 0.0f;
-        row[size_t(c) * w + x] = value + (left[c] - right) + (down - up);
-        left[c] = right;
-        sums[c] += value;
+    const float up = has_up ? kRoom : 0.0f, down = has_down ? kRoom : 0.0f;
+    const float *dy = has_up ? in.dy : in.primal, *dy_below = has_down ? in.dy_below : in.primal;
+    // Differences to the right; none in front of the first pixel and behind the last.
+    std::vector<float> flux(row_size_ + channels_, 0.0f), values(row_size_), right_side(row_size_);
+    int missing = 0;
+    for (size_t i = 0; i + channels_ < row_size_; ++i) {
+      flux[channels_ + i] = kRoom * guarded(in.dx[i]);
+      missing |= !is_finite(in.dx[i]);
+    }
+    for (size_t i = 0; i < row_size_; ++i) {
+      values[i] = kRoom * data_weight_ * guarded(in.primal[i]);
+      right_side[i] = values[i] + (flux[i] - flux[channels_ + i]) + (down * guarded(dy_below[i]) - up * guarded(dy[i]));
+      missing |= !is_finite(in.primal[i]) | !is_finite(dy[i]);
+    }
+    RightSideRow result;
+    result.complete = missing == 0;
+    const size_t width = row_size_ / channels_;
+    for (size_t c = 0; c < channels_; ++c) {
+      for (size_t x = 0; x < width; ++x) {
+        row[c * width + x] = right_side[x * channels_ + c];
+        result.sums[c] += values[x * channels_ + c];
       }
     }
-    return sums;
+    return result;
   }
 
   PoissonDct dct_;
+  size_t channels_, row_size_;
   float data_weight_;
 };
 
 class L2Operator final : public LinearOperator {
  public:
-  L2Operator(int width, int height, float alpha) : l2_(width, height, alpha) {}
+  L2Operator(int width, int height, float alpha) : l2_(width, height, 1, alpha), width_(size_t(width)), height_(size_t(height)) {}
 
-  void apply(const PoissonPlanes& planes, float* out) const override { l2_.solve<1>(rows_of(planes, l2_.width()), planes.stride, out); }
+  void apply(const PoissonPlanes& planes, float* out) const override {
+    const auto take = [&](int y, const float* row) {
+      float* to = out + size_t(y) * width_ * planes.stride;
+      for (size_t x = 0; x < width_; ++x, to += planes.stride) *to = row[x];
+    };
+    const std::unique_ptr<float[]> work(new float[width_ * height_]);
+    l2_.solve(rows_of(planes, int(width_), 1), take, work.get());
+  }
 
  private:
   L2 l2_;
+  size_t width_, height_;
 };
+
+// Row y of the first channels of a plane.
+std::vector<float> compact_row(const float* plane, size_t stride, int width, int channels, int y) {
+  std::vector<float> row;
+  row.reserve(size_t(width) * size_t(channels));
+  const float* from = plane + size_t(y) * size_t(width) * stride;
+  for (int x = 0; x < width; ++x, from += stride) row.insert(row.end(), from, from + channels);
+  return row;
+}
 
 }  // namespace
 
-L2Rows rows_of(const PoissonPlanes& planes, int width) {
-  return [planes, step = ptrdiff_t(width) * ptrdiff_t(planes.stride)](int y, const L2Use& use) {
-    const ptrdiff_t first = y * step;
-    use({planes.primal + first, planes.dx + first, planes.dy + first, y > 0 ? planes.dy + first - step : nullptr});
+L2Rows rows_of(const PoissonPlanes& planes, int width, int channels) {
+  const size_t stride = planes.stride;
+  if (stride == size_t(channels)) {
+    return [planes, step = ptrdiff_t(width) * channels](int y, const L2Use& use) {
+      const ptrdiff_t first = y * step;
+      use({planes.primal + first, planes.dx + first, planes.dy + first, y > 0 ? planes.dy + first - step : nullptr});
+    };
+  }
+  return [planes, stride, width, channels](int y, const L2Use& use) {
+    const auto row = [&](const float* plane, int at) { return compact_row(plane, stride, width, channels, at); };
+    const auto primal = row(planes.primal, y), dx = row(planes.dx, y), dy = row(planes.dy, y), below = row(planes.dy, std::max(y - 1, 0));
+    use({primal.data(), dx.data(), dy.data(), below.data()});
   };
 }
 
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha) { return std::make_unique<L2Operator>(width, height, alpha); }
 
-std::vector<float> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows) {
-  std::vector<float> result(size_t(width) * height * channels);
-  const L2 l2(width, height, alpha);
-  switch (channels) {
-    case 1:
-      l2.solve<1>(rows, 1, result.data());
-      break;
-    case 3:
-      l2.solve<3>(rows, 3, result.data());
-      break;
-    case 4:
-      l2.solve<4>(rows, 4, result.data());
-      break;
-    default:
-      throw unsupported("an image has 1, 3 or 4 channels");
-  }
-  return result;
+bool solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows, const L2Take& take, float* work) {
+  if (channels < 1 || channels > kMostChannels) throw unsupported("an image has 1 to 4 channels");
+  return L2(width, height, channels, alpha).solve(rows, take, work);
+}
+
+std::optional<std::vector<float>> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows) {
+  const size_t w = size_t(width), n = size_t(channels);
+  std::vector<float> image(w * size_t(height) * n);
+  const auto interleave = [&](int y, const float* row) {
+    float* to = image.data() + size_t(y) * w * n;
+    for (size_t x = 0; x < w; ++x) {
+      for (size_t c = 0; c < n; ++c) *to++ = row[c * w + x];
+    }
+  };
+  if (!solve_l2(width, height, channels, alpha, rows, interleave, image.data())) return std::nullopt;
+  return image;
 }
 
 }  // namespace gradus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "reconstruct/solver.h"
@@ -16,10 +17,16 @@ using L2Use = std::function<void(const L2Row& row)>;
 // Lets `use` see row y; called from several threads, each row once.
 using L2Rows = std::function<void(int y, const L2Use& use)>;
 
-// Rows of planes that are there.
-L2Rows rows_of(const PoissonPlanes& planes, int width);
+// Takes row y of the solution, one channel after another; likewise.
+using L2Take = std::function<void(int y, const float* row)>;
 
-// All channels at once; each has the bits that make_l2() gives.
-std::vector<float> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows);
+// Rows of the first channels of planes that are there.
+L2Rows rows_of(const PoissonPlanes& planes, int width, int channels);
+
+// All channels at once; each has the bits that make_l2() gives. work: width·height·channels floats; `take` may write its row y. False:
+// values are missing, which asks for weights; they counted as none.
+bool solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows, const L2Take& take, float* work);
+// The same as an image with interleaved channels; nothing where values are missing.
+std::optional<std::vector<float>> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows);
 
 }  // namespace gradus

@@ -19,14 +19,6 @@ void weigh(const std::vector<float>& values, int channels, int width, int y, flo
 
 }  // namespace
 
-bool has_gaps(const GradientImages& images) {
-  const auto is_missing = [](float v) { return !is_finite(v); };
-  for (const auto* values : {&images.primal, &images.dx, &images.dy}) {
-    if (std::any_of(values->begin(), values->end(), is_missing)) return true;
-  }
-  return false;
-}
-
 std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report) {
   const int w = images.width, h = images.height, channels = images.channels;
   WeightedLeastSquares system(w, h, channels);

@@ -6,9 +6,6 @@
 
 namespace gradus {
 
-// Whether a value is missing inside of the image.
-bool has_gaps(const GradientImages& images);
-
 std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
 
 }  // namespace gradus

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "base/fpu.h"
@@ -70,31 +71,40 @@ void PoissonDct::rows_forward(int channels, const FillRow& fill, float* work) co
 void PoissonDct::columns(float data_weight, int channels, const double* sums, float* work) const {
   const int w = width(), h = height(), blocks = (w + kColumnBlock - 1) / kColumnBlock;
   const size_t row = size_t(w) * size_t(channels);
-  // Both transforms forth and back multiply by the lengths.
+  // Both transforms forth and back multiply by the lengths, and by 4.
   const float scale = 1.0f / (static_cast<float>(w) * static_cast<float>(h));
+  const auto gains = [&](int x, std::vector<float>* to) {
+    const float base = data_weight + eigenvalue_x_[std::min(x, w - 1)];
+    for (int y = 0; y < h; ++y) (*to)[y] = scale / (base + eigenvalue_y_[y]);
+  };
   tbb::parallel_for(Range(0, blocks * channels, 1), [&](const Range& range) {
     const FlushDenormals flush;
-    Dct::Scratch scratch(h);
-    std::vector<float> block(size_t(kColumnBlock) * h);
+    std::vector<Dct::Scratch> pairs;
+    for (int i = 0; i < kColumnBlock / 2; ++i) pairs.emplace_back(h);
+    std::vector<float> gain_a(static_cast<size_t>(h)), gain_b(gain_a);
     for (int part = range.begin(); part < range.end(); ++part) {
       const int channel = part / blocks, x0 = part % blocks * kColumnBlock, n = std::min(kColumnBlock, w - x0);
       float* const first = work + size_t(channel) * w + x0;
       for (int y = 0; y < h; ++y) {
-        for (int i = 0; i < n; ++i) block[size_t(i) * h + y] = first[size_t(y) * row + i];
+        const float* const from = first + size_t(y) * row;
+        const int place = column_.place(y);
+        for (int x = 0; x < n; x += 2) pairs[x / 2].time[place] = {from[x], x + 1 < n ? from[x + 1] : 0.0f};
       }
-      for (int i = 0; i < kColumnBlock; i += 2) {
-        if (i >= n) break;
-        float* const a = block.data() + size_t(i) * h;
-        float* const b = a + h;
-        column_.forward(a, b, &scratch);
-        if (x0 + i == 0 && sums) a[0] = static_cast<float>(4.0 * sums[channel]);
-        const float base_a = data_weight + eigenvalue_x_[x0 + i], base_b = data_weight + eigenvalue_x_[std::min(x0 + i + 1, w - 1)];
-        for (int y = 0; y < h; ++y) a[y] *= scale / (base_a + eigenvalue_y_[y]);
-        for (int y = 0; y < h; ++y) b[y] *= scale / (base_b + eigenvalue_y_[y]);
-        column_.inverse(a, b, &scratch);
+      for (int x = 0; x < n; x += 2) {
+        // Along a row the transform has doubled its sum.
+        const double sum = x0 + x == 0 && sums ? 2.0 * sums[channel] : Dct::kUnknownSum;
+        gains(x0 + x, &gain_a);
+        gains(x0 + x + 1, &gain_b);
+        column_.filter(gain_a.data(), gain_b.data(), sum, &pairs[x / 2]);
       }
       for (int y = 0; y < h; ++y) {
-        for (int i = 0; i < n; ++i) first[size_t(y) * row + i] = block[size_t(i) * h + y];
+        float* const to = first + size_t(y) * row;
+        const int place = column_.place(y);
+        for (int x = 0; x < n; x += 2) {
+          const std::complex<float> pair = pairs[x / 2].time[place];
+          to[x] = pair.real();
+          if (x + 1 < n) to[x + 1] = pair.imag();
+        }
       }
     }
   });

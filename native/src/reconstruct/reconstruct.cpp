@@ -65,8 +65,9 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
                                SolveReport* report) {
   alpha = chosen_alpha(reconstruction, alpha);
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
-    if (has_gaps(images)) return solve_l2_with_gaps(images, alpha, cancel, report);
-    return solve_l2(images.width, images.height, images.channels, alpha, rows_of(planes_of(images, 0), images.width));
+    const L2Rows rows = rows_of(planes_of(images, 0), images.width, images.channels);
+    if (auto image = solve_l2(images.width, images.height, images.channels, alpha, rows)) return *std::move(image);
+    return solve_l2_with_gaps(images, alpha, cancel, report);
   }
   std::vector<float> result(images.primal.size());
   const auto solver = make_solver(images, reconstruction, alpha, cancel, report);
@@ -82,9 +83,12 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
 
 std::vector<float> reconstruct(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report) {
-  if (reconstruction == GRADUS_RECONSTRUCTION_L2 && has_all_pairs(frame)) {
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
+    const int w = frame.region.width(), h = frame.region.height();
     FrameRows rows(frame, component);
-    return solve_l2(frame.region.width(), frame.region.height(), frame.channels, chosen_alpha(reconstruction, alpha), std::ref(rows));
+    alpha = chosen_alpha(reconstruction, alpha);
+    if (auto image = solve_l2(w, h, frame.channels, alpha, std::ref(rows))) return *std::move(image);
+    return solve_l2_with_gaps(read_images(frame, component, false), alpha, cancel, report);
   }
   GradientImages images = read_images(frame, component, false);
   if (reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED) read_deviations(frame, component, &images);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/types.h"
+#include "reconstruct/l2.h"
 #include "reconstruct/rows.h"
 
 namespace gradus {
@@ -78,16 +79,11 @@ void add_solve(const CgReport& solve, float tolerance, SolveReport* report) {
 
 Field start_from_l2(const PoissonPlanes& planes, int width, int height, int channels, float alpha) {
   Field x(width, height, channels);
-  const std::unique_ptr<LinearOperator> l2 = make_l2(width, height, alpha);
-  std::vector<float> plane(size_t(width) * height * planes.stride);
-  for (int c = 0; c < channels; ++c) {
-    l2->apply({planes.primal + c, planes.dx + c, planes.dy + c, planes.stride}, plane.data());
-    for_rows(height, [&](int y) {
-      const float* from = plane.data() + size_t(y) * width * planes.stride;
-      float* to = x.row(y, c);
-      for (int i = 0; i < width; ++i, from += planes.stride) to[i] = *from;
-    });
-  }
+  const auto take = [&](int y, const float* row) {
+    for (int c = 0; c < channels; ++c) std::copy_n(row + size_t(c) * size_t(width), width, x.row(y, c));
+  };
+  const std::unique_ptr<float[]> work(new float[size_t(width) * size_t(height) * size_t(channels)]);
+  solve_l2(width, height, channels, alpha, rows_of(planes, width, channels), take, work.get());
   return x;
 }
 
