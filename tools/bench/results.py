@@ -115,12 +115,12 @@ def mode_of(row: dict) -> str:
 
 
 def load() -> list[SceneResults]:
-    """Scenes in the order of scenes.py; of each mode the newest version and size, in the order of time."""
+    """Scenes in the order of scenes.py; of each the rows of the newest version and size that Gradus PT was measured at, because
+    only interleaved runs of one version can be compared."""
     rows = [json.loads(line) for line in (FOLDER / "results.jsonl").read_text().splitlines()]
-    rows = [row for row in rows if row["mode"] in MODES]
-    newest = {(r["scene"], mode_of(r)): (r["version"], r["width"]) for r in rows}
+    newest = {row["scene"]: (row["version"], row["width"]) for row in rows if row["mode"] == "path"}
     by_scene: dict[str, list[dict]] = defaultdict(list)
     for row in rows:
-        if newest[row["scene"], mode_of(row)] == (row["version"], row["width"]):
+        if row["mode"] in MODES and newest.get(row["scene"]) == (row["version"], row["width"]):
             by_scene[row["scene"]].append(row)
     return [SceneResults(s.name, by_scene[s.name]) for s in SCENES if s.name in by_scene]

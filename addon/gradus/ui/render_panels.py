@@ -55,7 +55,7 @@ class GRADUS_RENDER_PT_advanced(RenderPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         layout, settings = self.columns(), context.scene.gradus
-        for name in ("seed", "use_animated_seed", "min_samples", "roughness_threshold"):
+        for name in ("seed", "min_samples", "roughness_threshold"):
             layout.prop(settings, name)
 
 

@@ -31,7 +31,7 @@ constexpr Option kOptions[] = {
     OPTION(time_limit, kFloat, 0, 0, kMaxFloat, "", kOther,
            "Seconds of sampling, 0 = no limit; the image so far is reconstructed and delivered"),
     OPTION(seed, kInt, 0, 0, kMaxInt, "", kSampling, "Seed of all random values"),
-    OPTION(use_animated_seed, kBool, 1, 0, 1, "", kSampling, "A different seed for each frame"),
+    OPTION(use_animated_seed, kBool, 1, 0, 1, "", kSampling, "Kept for scripts: the frame is part of the key either way"),
     OPTION(frame, kInt, 0, -kMaxInt, kMaxInt, "", kSampling, "Number of the frame, part of the key of every random value"),
     OPTION(integrator, kEnum, GRADUS_INTEGRATOR_AUTO, 0, 4, kIntegrators, kSampling,
            "How light is sampled; auto: the planner decides. bidirectional and metropolis are refused until they work"),
