@@ -81,7 +81,7 @@ SETTINGS: tuple[Setting, ...] = (
         1,
     ),
     Setting("seed", INT, 0, "Seed", "Another seed gives another noise pattern", 0, MAX_INT),
-    Setting("use_animated_seed", BOOL, True, "Animated Seed", "Every frame has a noise pattern of its own, with this switched off, too", 0, 1),
+    Setting("use_animated_seed", BOOL, True, "Animated Seed", "Every frame has its own noise pattern, with this off, too", 0, 1),
     Setting("integrator", ENUM, "AUTO", "Integrator", "How light is sampled", choices=INTEGRATORS),
     Setting("reconstruction", ENUM, "AUTO", "Reconstruction", "How the image is made from samples and gradients", choices=RECONSTRUCTIONS),
     Setting(
