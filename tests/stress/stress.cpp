@@ -152,10 +152,12 @@ Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds, 
   outcome.noisy = read(render, GRADUS_PASS_NOISY_IMAGE, settings);
   outcome.l2 = read(render, GRADUS_PASS_COMBINED, settings);
   const auto frame = render.frame();
-  SolveReport report;
-  outcome.l1 = combine(
-      *frame, GRADUS_RECONSTRUCTION_L1, 0.0f, frame->region, [] { return false; }, &report);
-  expect_finite(outcome.l1, "L1");
+  for (const uint32_t other : {GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_WEIGHTED}) {
+    SolveReport report;
+    const std::vector<float> image = combine(
+        *frame, other, 0.0f, frame->region, [] { return false; }, &report);
+    expect_finite(image, other == GRADUS_RECONSTRUCTION_L1 ? "L1" : "WEIGHTED");
+  }
   outcome.counters = frame->counters;
   check(outcome.counters, bounds);
   const double from_double = bounds.from_double < 0.0 ? 0.0 : compare_with_double(context);
