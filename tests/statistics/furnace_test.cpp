@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/path_scene.h"
+#include "support/statistics.h"
 
 namespace gradus {
 namespace {
@@ -36,7 +37,8 @@ TEST_P(A1_Furnace, RadianceIsOne) {
   settings.independent_sampler = independent ? 1 : 0;
   const IntegratorContext context = scene.context(settings);
   Frame frame = test::make_test_frame(settings, gradient);
-  test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 64, &frame);
+  test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, test::full_run() ? 256 : 64,
+                     &frame);
   const GradientImages images = read_images(frame, 0, false);
   double sum = 0.0;
   for (float value : images.primal) sum += value;

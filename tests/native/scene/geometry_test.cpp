@@ -1,9 +1,11 @@
 // D1, D2, D4 of the catalogue, and what a hit tells.
-#include <chrono>
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include "render/clock.h"
+#include "scene/camera.h"
+#include "scene/emitters.h"
 #include "scene_fixture.h"
 
 namespace gradus::test {
@@ -107,24 +109,115 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
   EXPECT_EQ(again, 0);
 }
 
+// A shadow ray ends before the emitter that it goes to, whatever the size of both.
+TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> exponent(-8.0f, 8.0f), uniform;
+  int blocked = 0, asked = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const float size = std::pow(10.0f, exponent(random));
+    Soup floor, light;
+    floor.triangle(size * Vec3(-1, -1, 0), size * Vec3(1, -1, 0), size * Vec3(0, 1, 0.1f));
+    light.triangle(size * Vec3(-1, -1, 1), size * Vec3(0, 1, 1.1f), size * Vec3(1, -1, 1));
+    TestScene scene;
+    scene.material(5, MaterialDesc(GRADUS_OP_EMISSION, Rgb(1.0f)));
+    scene.mesh(1, floor);
+    scene.mesh(2, light);
+    scene.instance(1);
+    scene.instance(2, Mat4(1.0f), GRADUS_VISIBLE_ALL, 5);
+    const auto snapshot = scene.commit();
+    for (int k = 0; k < 100; ++k) {
+      Hit hit;
+      hit.instance = hit.triangle = 0;
+      const float root = std::sqrt(uniform(random));
+      hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
+      const SurfacePoint point = snapshot->surface_point(hit);
+      EmitterView view;
+      const float choice = uniform(random), u = uniform(random);
+      const EmitterPoint emitter =
+          sample_emitter(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)), &view);
+      if (emitter.kind == EmitterKind::None || !(view.pdf > 0.0f)) continue;
+      ++asked;
+      blocked += snapshot->occluded(shadow_ray(point, emitter, view));
+    }
+  }
+  EXPECT_GT(asked, 50000);
+  EXPECT_EQ(blocked, 0);
+}
+
+// Random rays from within a ball; the fields of every `broken`-th one are spoilt in turn (0: of none).
+std::vector<Ray> make_rays(int count, int broken) {
+  std::mt19937 random(4);
+  const float bad[3] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
+  std::vector<Ray> rays;
+  for (int i = 0; i < count; ++i) {
+    Ray& ray = rays.emplace_back(Ray{Vec3(0.0f), 0.0f, random_direction(random), kInfinity});
+    const int field = i % 8;
+    const float value = bad[random() % 3], begin = bad[random() % 2], end = bad[2 * (random() % 2)];
+    if (broken == 0 || i % broken != 0) continue;
+    if (field < 3) ray.origin[field] = value;
+    if (field >= 3 && field < 6) ray.direction[field - 3] = value;
+    if (field == 6) ray.t_min = begin;
+    if (field == 7) ray.t_max = end;
+  }
+  return rays;
+}
+
+// CPU seconds of tracing them, the least of some rounds; hits: of one round.
+double time_of(const Snapshot& snapshot, const std::vector<Ray>& rays, int* hits) {
+  double least = kInfinity;
+  for (int round = 0; round < 5; ++round) {
+    *hits = 0;
+    const uint64_t began = thread_cpu_nanoseconds();
+    for (const Ray& ray : rays) {
+      Hit hit;
+      *hits += snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &hit) || snapshot.occluded(ray);
+    }
+    least = std::min(least, 1e-9 * double(thread_cpu_nanoseconds() - began));
+  }
+  return least;
+}
+
 TEST(D4_BrokenRays, AreMissesAndCheap) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 50, 100));
   scene.instance(1);
   const auto snapshot = scene.commit();
-  std::mt19937 random(4);
-  const float bad[3] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
+  constexpr int count = 100000;
+  int hits = 0, broken_hits = 0;
+  const double good = time_of(*snapshot, make_rays(count, 0), &hits), broken = time_of(*snapshot, make_rays(count, 1), &broken_hits);
+  EXPECT_EQ(hits, count);
+  EXPECT_EQ(broken_hits, 0);
+  EXPECT_LT(broken, 2.5 * good);
+}
+
+// What a camera of numbers that are none asks for.
+TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 50, 100));
+  scene.instance(1);
+  const auto snapshot = scene.commit();
+  std::mt19937 random(6);
+  const float bad[4] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, 0.0f};
   for (int i = 0; i < 100000; ++i) {
-    Ray ray{Vec3(0.0f), 0.0f, random_direction(random), kInfinity};
-    const int field = i % 8;
-    const float value = bad[random() % 3];
-    if (field < 3) ray.origin[field] = value;
-    if (field >= 3 && field < 6) ray.direction[field - 3] = value;
-    if (field == 6) ray.t_min = bad[random() % 2];
-    if (field == 7) ray.t_max = bad[2 * (random() % 2)];
+    GradusCamera desc{};
+    desc.type = random() % 2;
+    for (int k = 0; k < 16; ++k) desc.matrix[k] = k % 5 == 0 ? 1.0f : 0.0f;
+    desc.window[0] = desc.window[2] = -0.5f;
+    desc.window[1] = desc.window[3] = 0.5f;
+    desc.clip_start = 0.1f;
+    desc.clip_end = 100.0f;
+    desc.aperture_radius = i % 3 == 0 ? 0.1f : 0.0f;
+    desc.focus_distance = desc.aperture_ratio = 1.0f;
+    float* const fields[] = {desc.matrix + random() % 16, desc.window + random() % 4, &desc.clip_start,     &desc.clip_end,
+                             &desc.aperture_radius,       &desc.focus_distance,       &desc.blade_rotation, &desc.aperture_ratio};
+    *fields[i % 8] = bad[random() % 4];
+    desc.blades = i % 7;
+    const Ray ray = Camera(desc, 64, 48).ray(Vec2(20.5f, 30.5f), Vec2(0.3f, 0.6f));
     Hit hit;
-    EXPECT_FALSE(snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit));
-    EXPECT_FALSE(snapshot->occluded(ray));
+    if (!snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit)) continue;
+    const SurfacePoint point = snapshot->surface_point(hit);
+    EXPECT_TRUE(is_finite(point.position) && is_finite(hit.t)) << i;
   }
 }
 
