@@ -132,10 +132,10 @@ TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
       const float root = std::sqrt(uniform(random));
       hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
       const SurfacePoint point = snapshot->surface_point(hit);
+      EmitterPoint emitter;
       EmitterView view;
       const float choice = uniform(random), u = uniform(random);
-      const EmitterPoint emitter =
-          sample_emitter(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)), &view);
+      sample_emitter(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)), &emitter, &view);
       if (emitter.kind == EmitterKind::None || !(view.pdf > 0.0f)) continue;
       ++asked;
       blocked += snapshot->occluded(shadow_ray(point, emitter, view));
