@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/fake_integrator.h"
+#include "render/options.h"
 #include "render/pilot.h"
 
 namespace gradus {
@@ -99,6 +100,9 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
     }
   }
 }
+
+// A user could choose its seed, and had the samples that chose the map in the picture: L2 was biased.
+TEST(Pilot, ItsSeedIsNoUsers) { EXPECT_GT(pilot_settings(small_settings(8, 8, 1)).seed, find_option("seed")->maximum); }
 
 nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr<const Frame>* frame) {
   GradusSettings s = small_settings(256, 96, 4);
