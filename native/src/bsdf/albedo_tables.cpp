@@ -1,8 +1,9 @@
 #include "bsdf/albedo_tables.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
-#include <vector>
+#include <mutex>
 
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
@@ -120,34 +121,49 @@ const MomentTable& moment_table() {
   return table;
 }
 
-// One table for eta above 1, one for its inverses: the critical angle makes them different functions.
-struct GlassTable {
-  std::vector<Vec4> values;  // reflected, transmitted, crossing: mixed as one vector
-  static size_t at(int i, int a, int c) { return (size_t(i) * kAlphas + size_t(a)) * kCosines + size_t(c); }
-  explicit GlassTable(bool inverse) : values(size_t(kIors) * kAlphas * kCosines) {
-    for (int i = 0; i < kIors; i++) {
-      const float eta = eta_at(i);
-      for (int a = 0; a < kAlphas; a++) {
-        for (int c = 0; c < kCosines; c++) {
-          const GlassAlbedo g = compute_glass(axis_value(a, kAlphas), axis_value(c, kCosines), inverse ? 1.0f / eta : eta);
-          values[at(i, a, c)] = Vec4(g.reflected, g.transmitted, g.crossing, 0.0f);
-        }
-      }
+// (η−1)/(η+1) = x², so that the axis is that of the fourth root of F0.
+float eta_at(int i) {
+  const float root = std::min(axis_value(i, kIors), 0.998f);
+  return (1.0f + root) / (1.0f - root);
+}
+
+// Of one η: reflected, transmitted, crossing, mixed as one vector.
+using GlassPlane = std::array<Vec4, size_t(kAlphas) * kCosines>;
+
+GlassPlane make_glass_plane(float eta) {
+  GlassPlane plane;
+  for (int a = 0; a < kAlphas; a++) {
+    for (int c = 0; c < kCosines; c++) {
+      const GlassAlbedo g = compute_glass(axis_value(a, kAlphas), axis_value(c, kCosines), eta);
+      plane[size_t(a) * kCosines + size_t(c)] = Vec4(g.reflected, g.transmitted, g.crossing, 0.0f);
     }
   }
-  // (eta−1)/(eta+1) = x², so that the axis is that of the fourth root of F0.
-  static float eta_at(int i) {
-    const float root = std::min(axis_value(i, kIors), 0.998f);
-    return (1.0f + root) / (1.0f - root);
+  return plane;
+}
+
+// Made when it is asked for: a scene has few indices, and all of them take half a second.
+class LazyGlassPlane {
+ public:
+  const GlassPlane& get(float eta) {
+    if (!made_.load(std::memory_order_acquire)) {
+      std::call_once(once_, [&] {
+        plane_ = make_glass_plane(eta);
+        made_.store(true, std::memory_order_release);
+      });
+    }
+    return plane_;
   }
+
+ private:
+  std::atomic<bool> made_{false};
+  std::once_flag once_;
+  GlassPlane plane_;
 };
-const GlassTable& glass_table(bool inverse) {
-  if (inverse) {
-    static const GlassTable table(true);
-    return table;
-  }
-  static const GlassTable table(false);
-  return table;
+
+// Place i on the axis of η above 1, or of its inverses: the critical angle makes them different functions.
+const GlassPlane& glass_plane(int i, bool inverse) {
+  static std::array<std::array<LazyGlassPlane, kIors>, 2> planes;
+  return planes[inverse ? 1 : 0][size_t(i)].get(inverse ? 1.0f / eta_at(i) : eta_at(i));
 }
 
 template <typename T, typename Mix>
@@ -178,12 +194,11 @@ float ggx_mean_albedo(float alpha) {
 }
 
 GlassAlbedo glass_albedo(float alpha, float cosine, float eta) {
-  const GlassTable& table = glass_table(eta < 1.0f);
   const Cell i = locate(std::sqrt(std::abs((eta - 1.0f) / (eta + 1.0f))), kIors);
   const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
   const Cell c = locate(std::sqrt(std::max(0.0f, cosine)), kCosines);
   const auto plane = [&](int k) {
-    const Vec4* row = table.values.data() + GlassTable::at(k, a.index, 0);
+    const Vec4* row = glass_plane(k, eta < 1.0f).data() + size_t(a.index) * kCosines;
     return bilinear(row, row + kCosines, a, c, mix_glass);
   };
   const Vec4 mixed = mix_glass(plane(i.index), plane(i.index + 1), i.fraction);

@@ -1,4 +1,5 @@
-// Directional albedos of single-scattering GGX interfaces, tabulated once per process on first use (about 0.1 s).
+// Directional albedos of single-scattering GGX interfaces, tabulated once per process: the moments on first use, glass by the indices
+// that are asked for (10 ms each).
 #pragma once
 
 namespace gradus {
