@@ -56,7 +56,7 @@ TEST(B2_Solver, L1ReportsItsResidual) {
     solve(images, &report);
     EXPECT_LE(report.residual, 1e-4f) << w << "x" << h;
     EXPECT_FALSE(report.hit_cap);
-    EXPECT_GE(report.outer_steps, 5);
+    EXPECT_GE(report.outer_steps, 3);
     EXPECT_LE(report.outer_steps, 8);
   }
 }
