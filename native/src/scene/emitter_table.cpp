@@ -22,6 +22,17 @@ double defended(double weight, double sum, int groups) {
 
 }  // namespace
 
+const EmitterChoice& EmitterTable::choose(const Receiver& receiver, EmitterChoice* room) const {
+  EmitterChoice* choice = receiver.memo != nullptr ? receiver.memo : room;
+  if (!choice->known || !(choice->receiver == receiver)) {
+    tree.cut(receiver, &choice->cut);
+    choice->group = choose_group(receiver, choice->cut);
+    choice->receiver = receiver;
+    choice->known = true;
+  }
+  return *choice;
+}
+
 GroupChoice EmitterTable::choose_group(const Receiver& receiver, const LightTree::Cut& cut) const {
   if (suns.empty() && world.black()) return {tree.empty() ? 0.0 : 1.0, 0.0, 0.0};
   if (suns.empty() && tree.empty()) return {0.0, 0.0, 1.0};

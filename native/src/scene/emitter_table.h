@@ -25,6 +25,14 @@ struct GroupChoice {
   double tree = 0.0, suns = 0.0, world = 0.0;
 };
 
+// The choice among all emitters as one receiver sees it.
+struct EmitterChoice {
+  bool known = false;
+  Receiver receiver;
+  LightTree::Cut cut;
+  GroupChoice group;
+};
+
 struct EmitterTable {
   std::vector<Lamp> lamps;
   std::vector<EmissiveTriangle> triangles;  // instance after instance, ascending
@@ -40,12 +48,17 @@ struct EmitterTable {
 
   // There is nothing to choose.
   bool is_single_light() const { return tree.size() == 1 && suns.empty() && world.black(); }
-  // cut: through the tree, for this receiver.
-  GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
+  // The choice for a receiver, from its memo if that has it; room: where else to work it out. A vertex is asked by its own light sample,
+  // for the weight of what its ray finds, and by the offsets of its pixel's neighbours.
+  const EmitterChoice& choose(const Receiver& receiver, EmitterChoice* room) const;
   // Of one sun among the suns.
   double sun_probability(size_t sun, const Receiver& receiver) const;
   // Index in `triangles`, UINT32_MAX if it is not sampled as a light.
   uint32_t find_triangle(uint32_t instance, uint32_t triangle) const;
+
+ private:
+  // cut: through the tree, for this receiver.
+  GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
 };
 
 // The snapshot is complete but for its emitters. lamps_with_extent is left to the caller. world: what the commit before left, which this

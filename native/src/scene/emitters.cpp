@@ -94,11 +94,12 @@ void sample_world(const Snapshot& snapshot, const Receiver& receiver, const Vec2
 void sample_any(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, EmitterPoint* point, Finding* finding) {
   const EmitterTable& table = *snapshot.emitters;
   if (table.is_single_light()) return sample_light_of_tree(snapshot, 0, receiver, u, point, finding);
-  const LightTree::Cut cut = table.tree.cut(receiver);
-  const GroupChoice group = table.choose_group(receiver, cut);
+  EmitterChoice room;
+  const EmitterChoice& known = table.choose(receiver, &room);
+  const GroupChoice& group = known.group;
   const double rest = choice - group.tree;
   if (group.tree > 0.0 && (rest < 0.0 || group.suns + group.world <= 0.0)) {
-    const uint32_t light = table.tree.sample(receiver, cut, std::min(choice / group.tree, 1.0 - 1e-12), &finding->probability);
+    const uint32_t light = table.tree.sample(receiver, known.cut, std::min(choice / group.tree, 1.0 - 1e-12), &finding->probability);
     sample_light_of_tree(snapshot, light, receiver, u, point, finding);
     finding->probability *= group.tree;
   } else if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) {
@@ -113,8 +114,10 @@ void sample_any(const Snapshot& snapshot, const Receiver& receiver, double choic
 // Probability that the emitter of the point is chosen.
 double choice_probability(const EmitterTable& table, const EmitterPoint& point, const Receiver& receiver) {
   if (table.is_single_light()) return 1.0;
-  const LightTree::Cut cut = table.tree.cut(receiver);
-  const GroupChoice group = table.choose_group(receiver, cut);
+  EmitterChoice room;
+  const EmitterChoice& known = table.choose(receiver, &room);
+  const LightTree::Cut& cut = known.cut;
+  const GroupChoice& group = known.group;
   if (point.kind == EmitterKind::World) return group.world;
   const auto lamps_in_tree = uint32_t(table.tree_lamps.size());
   if (point.kind == EmitterKind::Triangle) return group.tree * table.tree.probability(lamps_in_tree + point.index, receiver, cut);

@@ -11,6 +11,7 @@
 namespace gradus {
 
 class Snapshot;
+struct EmitterChoice;  // scene/emitter_table.h
 struct SurfacePoint;
 struct RayState;
 
@@ -51,6 +52,11 @@ struct Receiver {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0.0f);
   bool transmits = false;  // also lit from behind
+  // Where the choice among emitters is kept for the next that asks from here; nullptr: nowhere.
+  EmitterChoice* memo = nullptr;
+  bool operator==(const Receiver& other) const {
+    return position == other.position && normal == other.normal && transmits == other.transmits;
+  }
 };
 
 // Samples a point on some emitter. choice: which one; u: where. kind None if there is nothing to sample from here. view: what

@@ -107,18 +107,18 @@ bool LightTree::weigh(const Receiver& receiver, Cut* cut) const {
   return true;
 }
 
-LightTree::Cut LightTree::cut(const Receiver& receiver) const {
-  Cut cut;
-  if (nodes_.empty()) return cut;
+void LightTree::cut(const Receiver& receiver, Cut* cut) const {
+  cut->count_ = 0;
+  cut->sum_ = 0.0;
+  if (nodes_.empty()) return;
   const Cut::Part root{0, 0, 0, 1.0f};
-  cut.parts_[0] = root;
-  cut.count_ = 1;
-  refine(receiver, &cut);
-  if (weigh(receiver, &cut)) return cut;
+  cut->parts_[0] = root;
+  cut->count_ = 1;
+  refine(receiver, cut);
+  if (weigh(receiver, cut)) return;
   // All of the tree then; that the sum is 0 tells.
-  cut.parts_[0] = root;
-  cut.count_ = 1;
-  return cut;
+  cut->parts_[0] = root;
+  cut->count_ = 1;
 }
 
 uint32_t LightTree::sample(const Receiver& receiver, const Cut& cut, double u, double* probability) const {

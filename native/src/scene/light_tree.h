@@ -56,7 +56,12 @@ class LightTree {
     int count_ = 0;
     double sum_ = 0.0;  // of the weights; 0: one part stands for a tree that cannot reach the receiver
   };
-  Cut cut(const Receiver& receiver) const;
+  void cut(const Receiver& receiver, Cut* cut) const;
+  Cut cut(const Receiver& receiver) const {
+    Cut found;
+    cut(receiver, &found);
+    return found;
+  }
 
   // Index of the chosen light, by u in [0, 1), and the probability of that choice.
   uint32_t sample(const Receiver& receiver, const Cut& cut, double u, double* probability) const;

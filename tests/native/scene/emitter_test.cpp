@@ -140,7 +140,8 @@ TEST(A4_LightDensity, TriangleMetByRay) {
 }
 
 double probability_sum(const EmitterTable& table, const Receiver& receiver) {
-  const GroupChoice group = table.choose_group(receiver, table.tree.cut(receiver));
+  EmitterChoice room;
+  const GroupChoice group = table.choose(receiver, &room).group;
   double sum = group.world;
   for (size_t i = 0; i < table.suns.size(); ++i) sum += group.suns * table.sun_probability(i, receiver);
   for (uint32_t i = 0; i < table.tree.size(); ++i) sum += group.tree * table.tree.probability(i, receiver);
@@ -152,6 +153,35 @@ TEST(A4_LightChoice, ProbabilitiesSumToOne) {
   std::mt19937 random(15);
   for (int i = 0; i < 200; ++i)
     EXPECT_NEAR(probability_sum(*snapshot->emitters, random_receiver(random)), 1.0, 4.0 * std::numeric_limits<float>::epsilon());
+}
+
+// One memo in turn for receivers that differ in place, side or transmission: it must never answer for another.
+TEST(A4_LightChoice, MemoChangesNoBit) {
+  const auto snapshot = mixed_scene(60);
+  std::mt19937 random(16);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  EmitterChoice memo;
+  for (int i = 0; i < 100; ++i) {
+    Receiver receiver = random_receiver(random);
+    for (const float side : {1.0f, -1.0f}) {
+      for (const bool transmits : {false, true}) {
+        receiver.normal *= side;
+        receiver.transmits = transmits;
+        Receiver with_memo = receiver;
+        with_memo.memo = &memo;
+        const float choice = uniform(random);
+        const Vec2 u(uniform(random), uniform(random));
+        EmitterPoint point, same_point;
+        EmitterView view, same_view;
+        sample_emitter(*snapshot, receiver, choice, u, &point, &view);
+        sample_emitter(*snapshot, with_memo, choice, u, &same_point, &same_view);
+        ASSERT_EQ(point.kind, same_point.kind);
+        ASSERT_EQ(point.index, same_point.index);
+        ASSERT_EQ(view.pdf, same_view.pdf);
+        ASSERT_EQ(emitter_pdf(*snapshot, point, receiver), emitter_pdf(*snapshot, point, with_memo));
+      }
+    }
+  }
 }
 
 TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
