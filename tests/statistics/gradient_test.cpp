@@ -1,9 +1,11 @@
 // The integrators against each other and against differences of images: B3 and B7 for the sampled planes, bit equality of the primal.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "gradus/gradus_nodes.h"
+#include "plan/plan.h"
 #include "shading/program_builder.h"
 #include "support/path_scene.h"
 
@@ -137,6 +139,35 @@ TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
       counters.shifts_attempted, counters.shifts_reconnected, counters.shifts_half_vector, counters.shifts_replayed, counters.fail_missed,
       counters.fail_occluded, counters.fail_class, counters.fail_total_reflection, counters.fail_side, counters.fail_density,
       counters.fail_jacobian);
+}
+
+// What the planner says of a scene is what its offsets do: where no lobe is sharp, none tries to copy an event of class R or T.
+TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
+  IntegratorContext c = context(1);
+  c.settings.samples = 16;
+  const Plan plan = make_plan(c.settings, *c.snapshot);
+  const bool skipped =
+      std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const auto& entry) { return entry.first == "half-vector shifts"; });
+  Frame frame = test::make_test_frame(c.settings, true);
+  test::sample_frame(*make_gradient_integrator(c), 0, 16, &frame);
+  EXPECT_GT(frame.counters.shifts_attempted, 0u);
+  if (skipped) {
+    EXPECT_EQ(frame.counters.shifts_half_vector + frame.counters.shifts_replayed, 0u);
+  }
+  switch (GetParam()) {
+    case Scenario::DiffuseArea:
+    case Scenario::PointAndSun:
+    case Scenario::World:
+      EXPECT_TRUE(skipped);
+      break;
+    case Scenario::Mirror:
+    case Scenario::Glass:
+      EXPECT_FALSE(skipped);
+      EXPECT_GT(frame.counters.shifts_half_vector, 0u);
+      break;
+    default:
+      break;
+  }
 }
 
 // Contract 1.5: neighbours with different counts, some with none, over two batches.

@@ -94,12 +94,12 @@ void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
     if (o.stage != OffsetStage::Traced) {
       continue;
     }
+    ++counters_.shifts_half_vector;  // tried: none in a scene for which the planner skips them
     const ShiftedEvent event = copy_event(*source.vertex, *source.event, *o.here);
     if (event.failure != ShiftFailure::None) {
       fail(&o, event.failure);
       continue;
     }
-    ++counters_.shifts_half_vector;
     leave(&o, event, state);
     o.event.sample.dirac = source.event->sample.dirac;
     trace(&o, nullptr);
@@ -108,12 +108,12 @@ void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
 
 // Class D before class R or T: no connection is possible, so the offset leaves in the base's direction.
 void OffsetPaths::copy_direction(OffsetPath* o) {
+  ++counters_.shifts_replayed;  // tried, too
   const ShiftedEvent event = event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f);
   if (event.failure != ShiftFailure::None) {
     fail(o, event.failure);
     return;
   }
-  ++counters_.shifts_replayed;
   ++counters_.rays_shift;
   leave(o, event, base_state_);
   o->event.sample.dirac = false;
