@@ -13,6 +13,9 @@ namespace {
 constexpr float kFloor = 1e-2f;
 // exp(−1/2σ²) for a Gaussian window of σ = 0.7 pixels.
 constexpr float kBeside = 0.36f;
+// Most that a neighbour lends to the mean, times what is usual around it. 3 to 8 give the same error; without, it is a tenth more
+// (docs/method.md).
+constexpr float kMostLent = 4.0f;
 // Weight of pixels against differences where nobody knows their noise: as of the L2 solver.
 constexpr float kUnknownAlpha = 0.4f;
 
@@ -21,60 +24,66 @@ constexpr float kUnknownAlpha = 0.4f;
 constexpr float kTolerance = 1e-3f;
 constexpr int kMostSteps = 30;
 
-// Sums of a value over a row and its neighbours left and right.
-void blur_row(const float* in, int width, float* out) {
-  for (int x = 0; x < width; ++x) out[x] = in[x] + kBeside * ((x > 0 ? in[x - 1] : 0.0f) + (x + 1 < width ? in[x + 1] : 0.0f));
-}
-
-// Deviations of a kind of rows, blurred in place of where they are known; negative where no row of the window is.
+// Means over windows of the deviations of a kind of rows that are known; negative where none is. Neighbours lend theirs, but an outlier, as
+// which a firefly stands in its pixel and all differences beside it, lends no more than is usual around it.
 class BlurredDeviation {
  public:
   BlurredDeviation(const std::vector<float>& deviation, int width, int height)
-      : width_(width), height_(height), sum_(width, height, 1), known_(width, height, 1) {
+      : own_(width, height, 1), lent_(width, height, 1), known_(width, height, 1) {
     for_rows(height, [&](int y) {
       const float* from = deviation.data() + size_t(y) * width;
-      std::vector<float> value(static_cast<size_t>(width)), one(value);
       for (int x = 0; x < width; ++x) {
-        one[size_t(x)] = is_finite(from[x]) ? 1.0f : 0.0f;
-        value[size_t(x)] = is_finite(from[x]) ? from[x] : 0.0f;
+        known_.row(y)[x] = is_finite(from[x]) ? 1.0f : 0.0f;
+        own_.row(y)[x] = is_finite(from[x]) ? from[x] : 0.0f;
       }
-      blur_row(value.data(), width, sum_.row(y));
-      blur_row(one.data(), width, known_.row(y));
+    });
+    for_rows(height, [&](int y) {
+      for (int x = 0; x < width; ++x) lent_.row(y)[x] = std::min(own_.row(y)[x], kMostLent * level_around(x, y));
     });
   }
 
   void read_row(int y, float* out) const {
-    for (int x = 0; x < width_; ++x) {
-      const float known = vertical(known_, x, y);
-      out[x] = known > 0.0f ? vertical(sum_, x, y) / known : -1.0f;
+    for (int x = 0; x < own_.width(); ++x) {
+      const float known = known_.row(y)[x] + beside(known_, x, y);
+      out[x] = known > 0.0f ? (own_.row(y)[x] + beside(lent_, x, y)) / known : -1.0f;
     }
   }
 
  private:
-  static float vertical(const Field& f, int x, int y) { return f.row(y)[x] + kBeside * (f.row(y - 1)[x] + f.row(y + 1)[x]); }
+  // Of the four lines through a row's value, the largest that both neighbours on it have: large within areas and along edges of noise,
+  // small around an outlier, even where differences have two of them side by side.
+  float level_around(int x, int y) const {
+    const float *below = own_.row(y - 1) + x, *here = own_.row(y) + x, *above = own_.row(y + 1) + x;
+    return std::max(
+        {std::min(here[-1], here[1]), std::min(below[0], above[0]), std::min(below[-1], above[1]), std::min(below[1], above[-1])});
+  }
+  static float beside(const Field& f, int x, int y) {
+    const float *below = f.row(y - 1) + x, *here = f.row(y) + x, *above = f.row(y + 1) + x;
+    return kBeside * (here[-1] + here[1] + below[0] + above[0] + kBeside * (below[-1] + below[1] + above[-1] + above[1]));
+  }
 
-  int width_, height_;
-  Field sum_, known_;
+  Field own_, lent_, known_;
 };
 
 }  // namespace
 
 void weigh_by_noise(const GradientImages& images, float scale, Field* data, Stencil* matrix) {
   const int w = images.width, h = images.height, stride = images.channels, shared = std::min(images.channels, 3);
-  const BlurredDeviation primal(images.primal_deviation, w, h), dx(images.dx_deviation, w, h), dy(images.dy_deviation, w, h);
-  const auto fill = [&](const BlurredDeviation& deviation, const std::vector<float>& values, float unknown, int y, float* weights) {
-    deviation.read_row(y, weights);
-    const float* value = values.data() + size_t(y) * w * stride;
-    for (int x = 0; x < w; ++x, value += stride) {
-      const float s = weights[x] < 0.0f ? unknown : weights[x] / scale;
-      weights[x] = is_complete(value, shared) ? 1.0f / (s * s + kFloor * kFloor) : 0.0f;
-    }
+  const auto fill = [&](const std::vector<float>& deviations, const std::vector<float>& values, float unknown, Field* weights) {
+    const BlurredDeviation deviation(deviations, w, h);
+    for_rows(h, [&](int y) {
+      float* row = weights->row(y);
+      deviation.read_row(y, row);
+      const float* value = values.data() + size_t(y) * w * stride;
+      for (int x = 0; x < w; ++x, value += stride) {
+        const float s = row[x] < 0.0f ? unknown : row[x] / scale;
+        row[x] = is_complete(value, shared) ? 1.0f / (s * s + kFloor * kFloor) : 0.0f;
+      }
+    });
   };
-  for_rows(h, [&](int y) {
-    fill(primal, images.primal, 1.0f, y, data->row(y));
-    fill(dx, images.dx, kUnknownAlpha, y, matrix->right.row(y));
-    fill(dy, images.dy, kUnknownAlpha, y, matrix->up.row(y));
-  });
+  fill(images.primal_deviation, images.primal, 1.0f, data);
+  fill(images.dx_deviation, images.dx, kUnknownAlpha, &matrix->right);
+  fill(images.dy_deviation, images.dy, kUnknownAlpha, &matrix->up);
 }
 
 Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel, SolveReport* report) {

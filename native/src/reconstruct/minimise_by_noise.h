@@ -10,8 +10,9 @@ namespace gradus {
 Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel, SolveReport* report);
 
 // Weights scale²/(s² + floor²). s of a row: the mean over the 3×3 rows around it of the deviations that the two halves show, the row's own
-// with 1/3 of all weight. A wider window measures better, but leaves outliers in, which the own deviation finds out: of 0.5 to 4 pixels
-// this gives the least error (docs/method.md). A row that is missing has weight 0; one whose noise is unknown, that of `unknown`.
+// with 1/3 of all weight; what neighbours lend is limited, so that outliers stay alone. A wider window measures better, but leaves outliers
+// in, which the own deviation finds out: of 0.5 to 4 pixels this gives the least error (docs/method.md). A row that is missing has weight
+// 0; one whose noise is unknown, that of `unknown`.
 void weigh_by_noise(const GradientImages& images, float scale, Field* data, Stencil* matrix);
 
 }  // namespace gradus
