@@ -83,7 +83,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
       return;
     }
     ray->state.length = segment->length = passed + hit.t;
-    vertex->point = context.scene.surface_point(hit);
+    context.scene.place(hit, &vertex->point);
     const auto shade = shading == Shading::Now ? shade_surface : shade_seen;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
     if (stops(sampler, number, *vertex, segment)) {

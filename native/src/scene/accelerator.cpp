@@ -99,7 +99,7 @@ std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Devic
                                                      const BuildProgress& progress, MeshSceneCache* cache) {
   constexpr float kMeshShare = 0.4f;  // of the progress
   auto built = std::make_shared<Accelerator>();
-  std::vector<InstanceData>& instances = *input.instances;
+  const std::vector<InstanceData>& instances = *input.instances;
   const std::vector<uint32_t>& masks = *input.masks;
   built->device = device;
   built->scene = rtcNewScene(device->embree());
@@ -107,17 +107,15 @@ std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Devic
   for (const InstanceData& instance : instances) ++users[instance.mesh.get()];
   MeshSceneCache kept;
   for (size_t i = 0; i < instances.size(); ++i) {
-    InstanceData& instance = instances[i];
+    const InstanceData& instance = instances[i];
     const float done = kMeshShare * float(i) / float(instances.size());
     if ((i & 255) == 0 && !progress(done)) throw cancelled();
     if (lies_in_top_level(instance, users)) {
       built->flat_positions.push_back(transform_positions(*instance.mesh, input.to_internal(i)));
       built->meshes.push_back(instance.mesh);
-      instance.flat_positions = built->flat_positions.back()->data();
-      attach_triangles(device->embree(), built->scene, unsigned(i), masks[i], *instance.mesh, instance.flat_positions);
+      attach_triangles(device->embree(), built->scene, unsigned(i), masks[i], *instance.mesh, built->flat_positions.back()->data());
       continue;
     }
-    instance.flat_positions = nullptr;
     auto& mesh_scene = kept[instance.mesh.get()];
     if (!mesh_scene) {
       const auto old = cache->find(instance.mesh.get());
@@ -127,7 +125,11 @@ std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Devic
     attach_instance(device->embree(), built->scene, unsigned(i), masks[i], mesh_scene->scene, instance.to_world);
   }
   commit_scene(device->embree(), built->scene, progress, kMeshShare, 1.0f);
-  for (const InstanceData& instance : instances) built->flat_of_instance.push_back(instance.flat_positions);
+  size_t flat = 0;
+  for (const InstanceData& instance : instances) {
+    std::vector<FlatTriangle>& triangles = built->flat_triangles.emplace_back();
+    if (lies_in_top_level(instance, users)) triangles = make_flat_triangles(*instance.mesh, built->flat_positions[flat++]->data());
+  }
   *cache = std::move(kept);
   return built;
 }

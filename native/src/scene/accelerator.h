@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "scene/flat_triangle.h"
 #include "scene/mesh.h"
 #include "scene/snapshot.h"
 
@@ -41,19 +42,19 @@ struct Accelerator {
   std::shared_ptr<Device> device;
   RTCSceneTy* scene = nullptr;
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;
-  std::vector<std::shared_ptr<const MeshData>> meshes;  // whose index buffers the top level reads
-  std::vector<std::unique_ptr<std::vector<Vec3>>> flat_positions;
-  std::vector<const Vec3*> flat_of_instance;  // InstanceData::flat_positions of each
+  std::vector<std::shared_ptr<const MeshData>> meshes;             // whose index buffers the top level reads
+  std::vector<std::unique_ptr<std::vector<Vec3>>> flat_positions;  // likewise, of its vertices
+  std::vector<std::vector<FlatTriangle>> flat_triangles;           // of each instance; empty: not in the top level
   ~Accelerator();
 };
 
 struct AcceleratorInput {
-  std::vector<InstanceData>* instances;           // flat_positions is filled
+  const std::vector<InstanceData>* instances;
   const std::vector<uint32_t>* masks;             // Embree mask of each instance
   std::function<glm::dmat4(size_t)> to_internal;  // exact matrix of each instance; InstanceData::to_world is rounded
 };
 
-// Throws Error CANCELLED or OUT_OF_MEMORY.
+// Throws Error CANCELLED or OUT_OF_MEMORY. The instances' flat_triangles are left to the caller.
 std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Device>& device, const AcceleratorInput& input,
                                                      const BuildProgress& progress, MeshSceneCache* cache);
 

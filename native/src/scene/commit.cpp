@@ -68,15 +68,16 @@ void build_geometry(const std::shared_ptr<Device>& device, const std::vector<siz
     snapshot->features.has_transparent_shadows |= transparent && (masks[k] & kMaskTransparentShadow);
   }
   const uint64_t key = geometry_key(*snapshot, masks);
-  if (state->accelerator && state->geometry_key == key) {
-    snapshot->accelerator = state->accelerator;
-    for (size_t k = 0; k < chosen.size(); ++k) snapshot->instances[k].flat_positions = state->accelerator->flat_of_instance[k];
-    return;
+  if (!state->accelerator || state->geometry_key != key) {
+    const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
+    state->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, &state->mesh_scenes);
+    state->geometry_key = key;
   }
-  const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
-  snapshot->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, &state->mesh_scenes);
-  state->accelerator = snapshot->accelerator;
-  state->geometry_key = key;
+  snapshot->accelerator = state->accelerator;
+  for (size_t k = 0; k < chosen.size(); ++k) {
+    const std::vector<FlatTriangle>& flat = state->accelerator->flat_triangles[k];
+    snapshot->instances[k].flat_triangles = flat.empty() ? nullptr : flat.data();
+  }
 }
 
 void move_matrix(float* matrix, const Vec3& origin) {

@@ -18,12 +18,13 @@ struct MaterialData;  // shading/material.h: compiled node program and flags
 class ImageStore;     // scene/image_store.h
 struct Accelerator;   // scene/accelerator.h: Embree scenes
 struct TangentField;  // scene/tangent_field.h
+struct FlatTriangle;  // scene/flat_triangle.h
 
 // Matrices lead to and from the snapshot's internal space (Snapshot::origin). A mirrored instance keeps outside outside: normals are
 // transformed by the inverse transpose, and geometric normals point to where the corners run counter-clockwise in the mesh.
 struct InstanceData {
   std::shared_ptr<const MeshData> mesh;
-  const Vec3* flat_positions = nullptr;  // vertices in internal space where the mesh lies in the top level; owned by the accelerator
+  const FlatTriangle* flat_triangles = nullptr;  // where the mesh lies in the top level; owned by the accelerator
   Mat4 to_world{1.0f};
   Mat4 to_local{1.0f};
   Mat3 normal_to_world{1.0f};
@@ -61,7 +62,8 @@ class Snapshot {
   void occluded4(const Ray rays[4], bool blocked[4]) const;
   // Transmittance of the segment through transparent surfaces, at most max_transparent of them; 0 if blocked.
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
-  // Geometry at a hit.
+  // Geometry at a hit. place() writes it where it is wanted: copies of what has just been written stall.
+  void place(const Hit& hit, SurfacePoint* point) const;
   SurfacePoint surface_point(const Hit& hit) const;
   // World position of the hit one frame earlier or later: surface motion.
   Vec3 position_at(const Hit& hit, bool next) const;

@@ -1,0 +1,21 @@
+// What a hit needs of a triangle that lies in the top level, in one cache line: in large scenes each line costs the latency of memory.
+#pragma once
+
+#include <vector>
+
+#include "scene/mesh.h"
+#include "scene/plane.h"
+
+namespace gradus {
+
+struct alignas(64) FlatTriangle {
+  std::array<Vec3, 3> corners;  // in internal space
+  Plane plane;                  // of the corners: a mirrored instance's normal is its opposite
+  uint32_t slot = 0;            // of the material
+};
+static_assert(sizeof(FlatTriangle) == 64);
+
+// positions: of the mesh's vertices, in internal space.
+std::vector<FlatTriangle> make_flat_triangles(const MeshData& mesh, const Vec3* positions);
+
+}  // namespace gradus
