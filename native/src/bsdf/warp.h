@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/types.h"
 
 namespace gradus {
@@ -11,8 +12,8 @@ namespace gradus {
 // Density cos/π. Polar disk map, lifted (Malley).
 inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
   const float radius = std::sqrt(u.x);
-  const float phi = 2.0f * kPi * u.y;
-  return Vec3(radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u.x)));
+  const SineCosine phi = sine_cosine(2.0f * kPi * u.y);
+  return Vec3(radius * phi.cosine, radius * phi.sine, std::sqrt(std::max(0.0f, 1.0f - u.x)));
 }
 
 }  // namespace gradus

@@ -18,6 +18,7 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
   }
   context_.scene.intersect4(rays, GRADUS_VISIBLE_CAMERA, hits);
   for (size_t i = 0; i < kTogether; ++i) {
+    context_.scene.prefetch(hits[i]);
     packet->vertices[i].hit = hits[i];
     packet->vertices[i].ray = PathRay{};
     packet->vertices[i].ray.ray = rays[i];

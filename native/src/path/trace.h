@@ -93,7 +93,7 @@ class PathTracer {
     for (bool goes_on = true; goes_on;) {
       Vertex* vertex = from == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
       ++counters_.rays_bounce;
-      extend(sampler, nullptr, vertex);
+      extend(sampler, &next_hit_, vertex);
       goes_on = step(sampler, RaySource{from, &s_.event}, vertex);
       from = vertex;
     }
@@ -124,13 +124,29 @@ class PathTracer {
     }
     shade_vertex(context_, state_.ray.state, vertex);
     observer_.survived(survival, *vertex);
-    add_light(u, *vertex);
-    return leave(u, *vertex);
+    const PathState here = state_;
+    const bool leaves = look_ahead(u, *vertex);
+    add_light(here, u, *vertex);
+    return tell_scattering(leaves, here.depth, u, *vertex);
   }
 
   bool leave(const VertexSample& u, const Vertex& vertex) {
     const int depth = state_.depth;
+    return tell_scattering(look_ahead(u, vertex), depth, u, vertex);
+  }
+
+  // Scatters, and traces the next ray already: while the vertex is lit, what the ray has met is on its way from memory.
+  bool look_ahead(const VertexSample& u, const Vertex& vertex) {
     if (!scatter(context_, u, vertex, &state_, &s_.event)) {
+      return false;
+    }
+    context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
+    context_.scene.prefetch(next_hit_);
+    return true;
+  }
+
+  bool tell_scattering(bool leaves, int depth, const VertexSample& u, const Vertex& vertex) {
+    if (!leaves) {
       observer_.absorbed(vertex, u);
       return false;
     }
@@ -206,19 +222,20 @@ class PathTracer {
     return true;
   }
 
-  void add_light(const VertexSample& u, const Vertex& vertex) {
+  // here: the state with which the path arrived.
+  void add_light(const PathState& here, const VertexSample& u, const Vertex& vertex) {
     LitClass lit[kScatterClasses];
-    if (!sample_light(context_, u, vertex, state_.depth, &s_.light) || !light_classes(context_, vertex, s_.light, state_.ray.state, lit)) {
+    if (!sample_light(context_, u, vertex, here.depth, &s_.light) || !light_classes(context_, vertex, s_.light, here.ray.state, lit)) {
       return;
     }
     ++counters_.rays_shadow;
-    const Rgb through = light_transmittance(context_, vertex.point, s_.light.point, s_.light.view, state_.ray.state.transparent_depth);
+    const Rgb through = light_transmittance(context_, vertex.point, s_.light.point, s_.light.view, here.ray.state.transparent_depth);
     for (int k = 0; k < kScatterClasses && !is_black(through); ++k) {
-      const Contribution c = light_contribution(context_, state_, s_.light, lit[k], through);
+      const Contribution c = light_contribution(context_, here, s_.light, lit[k], through);
       if (!is_black(c.clamped)) {
         add(c.clamped);
         const auto scatter_class = static_cast<ScatterClass>(k);
-        if (recorder_ != nullptr) recorder_->light(state_, vertex, scatter_class, s_.light, c.clamped);
+        if (recorder_ != nullptr) recorder_->light(here, vertex, scatter_class, s_.light, c.clamped);
         observer_.light(vertex, s_.light, scatter_class, c);
       }
     }
@@ -230,6 +247,7 @@ class PathTracer {
   Counters& counters_;
   Observer& observer_;
   PathState state_;
+  Hit next_hit_;                      // of the ray that leaves the vertex
   const Segment* segment_ = nullptr;  // the path's last
   PathResult result_;
 };

@@ -50,13 +50,17 @@ bool hit_facing_disk(const Lamp& lamp, const Ray& ray, EmitterPoint* point, floa
   return glm::dot(point->barycentric, point->barycentric) <= 1.0f;
 }
 
+// One test at the end: on which side a ray passes the lamp cannot be foretold, that it misses nearly always can.
 bool hit_flat(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  Vec3 offset;
-  if (!hit_plane(ray, lamp.position, lamp.shine, distance, &offset)) return false;
+  const float cosine = glm::dot(ray.direction, lamp.shine);
+  *distance = glm::dot(lamp.position - ray.origin, lamp.shine) / cosine;
+  const Vec3 offset = ray.origin + ray.direction * *distance - lamp.position;
   const float u = glm::dot(offset, lamp.axis_x) / lamp.half_width, v = glm::dot(offset, lamp.axis_y) / lamp.half_height;
+  const bool inside = lamp.shape == Lamp::Shape::Ellipse ? u * u + v * v <= 1.0f : std::max(std::fabs(u), std::fabs(v)) <= 1.0f;
+  if (!(int(cosine < 0.0f) & int(*distance > ray.t_min) & int(*distance < ray.t_max) & int(inside))) return false;
   point->normal = lamp.shine;
   point->position = lamp.position + offset;
-  return lamp.shape == Lamp::Shape::Ellipse ? u * u + v * v <= 1.0f : std::fabs(u) <= 1.0f && std::fabs(v) <= 1.0f;
+  return true;
 }
 
 bool hit_cone(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {

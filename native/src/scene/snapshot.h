@@ -65,6 +65,8 @@ class Snapshot {
   // Geometry at a hit. place() writes it where it is wanted: copies of what has just been written stall.
   void place(const Hit& hit, SurfacePoint* point) const;
   SurfacePoint surface_point(const Hit& hit) const;
+  // Asks memory for what place() will need, some hundred nanoseconds before.
+  void prefetch(const Hit& hit) const;
   // World position of the hit one frame earlier or later: surface motion.
   Vec3 position_at(const Hit& hit, bool next) const;
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "base/angles.h"
+
 namespace gradus {
 
 namespace {
@@ -23,7 +25,7 @@ std::complex<double> times(const std::complex<double>& a, const std::complex<dou
 float solid_angle_of(float x0, float x1, float y0, float y1, float z) {
   const std::complex<double> plus = times(corner(x1, y1, z), corner(x0, y0, z)), minus = times(corner(x0, y1, z), corner(x1, y0, z));
   const std::complex<double> all = times(plus, std::conj(minus));
-  const double angle = std::atan2(all.imag(), all.real());
+  const double angle = angle_of(all.real(), all.imag());
   constexpr double whole_turn = 6.28318530717958647692;
   return static_cast<float>(angle < -SphericalRectangle::kSmallestSolidAngle ? angle + whole_turn : angle);
 }
@@ -57,11 +59,11 @@ Vec3 SphericalRectangle::sample(const Vec2& u) const {
   const float cos_a = -n2 * n3, cos_b = -n3 * n0;
   const float sin_a = sine_of(cos_a), sin_b = sine_of(cos_b);
   const float cos_ab = cos_a * cos_b - sin_a * sin_b, sin_ab = sin_a * cos_b + cos_a * sin_b;
-  const float part = u.x * solid_angle_, cos_part = std::cos(part), sin_part = std::sin(part);
-  const float cos_u = cos_part * cos_ab + sin_part * sin_ab, sin_u = sin_part * cos_ab - cos_part * sin_ab;
+  const SineCosine part = sine_cosine(u.x * solid_angle_);
+  const float cos_u = part.cosine * cos_ab + part.sine * sin_ab, sin_u = part.sine * cos_ab - part.cosine * sin_ab;
   const float fu = (cos_u * n0 - n2) / sin_u;
-  const float cu = std::clamp(std::copysign(1.0f, fu) / std::sqrt(fu * fu + n0 * n0), -1.0f, 1.0f);
-  const float xu = std::clamp(-(cu * z0_) / std::sqrt(std::max(1e-12f, 1.0f - cu * cu)), x0_, x1_);
+  // The paper's cu is ±1/sqrt(fu² + n0²), and xu = -cu·z0/sqrt(1 - cu²).
+  const float xu = std::clamp(std::copysign(z0_, fu) / std::sqrt(std::max(1e-12f, fu * fu + n0 * n0 - 1.0f)), x0_, x1_);
   const float d2 = xu * xu + z0_ * z0_;
   const float h0 = y0_ / std::sqrt(d2 + y0_ * y0_), h1 = y1_ / std::sqrt(d2 + y1_ * y1_);
   const float hv = h0 + u.y * (h1 - h0);

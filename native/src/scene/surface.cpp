@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "scene/flat_triangle.h"
 #include "scene/mesh.h"
@@ -56,12 +57,13 @@ void place_instanced(const InstanceData& instance, const Hit& hit, SurfacePoint*
   point->material = material_of_slot(instance, instance.mesh->material_slot(hit.triangle));
 }
 
-// The float next to v in the direction of `up`: std::nextafter for finite v, without the call.
+// The float next to v in the direction of `up`: std::nextafter for finite v. By bits: signs cannot be foretold.
 float step_away(float v, float up) {
-  if (up == 0.0f) return v;
-  if (v == 0.0f) return std::copysign(std::numeric_limits<float>::denorm_min(), up);
-  const auto bits = std::bit_cast<uint32_t>(v);
-  return std::bit_cast<float>((v > 0.0f) == (up > 0.0f) ? bits + 1 : bits - 1);
+  const auto bits = std::bit_cast<int32_t>(v), up_bits = std::bit_cast<int32_t>(up);
+  const int32_t away = bits + (((bits ^ up_bits) >> 31) | 1);
+  const float from_zero = std::copysign(std::numeric_limits<float>::denorm_min(), up);
+  const float next = v == 0.0f ? from_zero : std::bit_cast<float>(away);
+  return up == 0.0f ? v : next;
 }
 
 }  // namespace
@@ -80,6 +82,10 @@ void Snapshot::place(const Hit& hit, SurfacePoint* point) const {
   else
     place_instanced(instance, hit, point);
   point->shading_normal = shading_normal(instance, hit, point->geometric_normal);
+}
+
+void Snapshot::prefetch(const Hit& hit) const {
+  if (hit.valid() && instances[hit.instance].flat_triangles) __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.triangle]);
 }
 
 SurfacePoint Snapshot::surface_point(const Hit& hit) const {
@@ -108,7 +114,7 @@ Vec3 Snapshot::position_at(const Hit& hit, bool next) const {
 // pbrt-v4 section 6.8.6: along the geometric normal by the bound, then one float further so that rounding the sum cannot undo it.
 Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction) {
   const Vec3 n = point.geometric_normal;
-  const Vec3 offset = n * (glm::dot(n, direction) < 0.0f ? -point.error : point.error);
+  const Vec3 offset = n * std::copysign(point.error, glm::dot(n, direction));
   const Vec3 p = point.position + offset;
   return Vec3(step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z));
 }

@@ -1,4 +1,5 @@
 // From a GradusMaterial to programs, and what can be said of them in advance.
+#include "bsdf/lobe.h"
 #include "scene/image_store.h"
 #include "shading/emit.h"
 #include "shading/interpreter.h"
@@ -164,6 +165,20 @@ void describe_transparency(MaterialData* m) {
   m->constant_transparency = r.transparency;
 }
 
+// A normal that is given would be read, too.
+bool has_own_normal(const Program& p, const Instruction& diffuse) {
+  return Vec3(operand_or(p, p.operands[diffuse.first_operand + 2], Vec4(1.0f))) == Vec3(0.0f);
+}
+
+void describe_surface(MaterialData* m) {
+  const Program& p = m->surface;
+  if (p.code.size() != 1 || !is_constant(p, GRADUS_OP_DIFFUSE) || !has_own_normal(p, p.code[0])) return;
+  ShadeResult r;
+  run_program(p, ShadeContext(), &r);
+  m->is_lambert = r.closures.count() == 1 && is_lambert(r.closures.lobe(0));
+  if (m->is_lambert) m->lambert = r.closures.lobe(0);
+}
+
 }  // namespace
 
 std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const ImageStore& images) {
@@ -184,6 +199,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   Analysis(m->surface, m.get()).run();
   describe_emission(m.get(), images);
   describe_transparency(m.get());
+  describe_surface(m.get());
   m->values_look_at_ray = values_look_at_ray(m->surface);
   m->depends_on_kind = looks_at_kind(m->emission) || looks_at_kind(m->transparency);
   return m;

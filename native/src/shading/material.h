@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "bsdf/closures.h"
 #include "gradus/gradus.h"
 #include "shading/program.h"
 #include "shading/sky/sky.h"
@@ -38,6 +39,8 @@ struct MaterialData {
   bool transparency_is_constant = false;
   Rgb constant_transparency = Rgb(0.0f);
   float emission_estimate = 0.0f;  // luminance for the choice of lights: exact where constant, else textures at their mean
+  bool is_lambert = false;         // the surface is one Lambert lobe of constant colour with the surface's normal; then:
+  Lobe lambert;                    // all but its normal
   int32_t pass_index = 0;
   std::vector<SunDisc> suns;              // of its Sky Textures, if it is the world
   float smallest_hidden_sun = 0.0f;       // half angle of one whose place is unknown; 0: there is none

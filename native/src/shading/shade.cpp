@@ -20,10 +20,22 @@ void clear(ShadeResult* result) {
 }
 
 // Once all closures are added.
-void complete(const MaterialData& material, const ShadeContext& context, const Vec3& wo, float roughness_threshold, ShadeResult* result) {
-  result->closures.finish(wo, context.geometric_normal, roughness_threshold, context.normal);
+void complete(const MaterialData& material, const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo, float roughness_threshold,
+              ShadeResult* result) {
+  result->closures.finish(wo, geometric_normal, roughness_threshold, normal);
   result->ignores_wo = !material.values_look_at_ray && result->closures.ignores_wo();
   result->complete = true;
+}
+
+// What the program of such a material comes to.
+void shade_lambert(const MaterialData& material, const SurfacePoint& point, const Vec3& wo, float roughness_threshold,
+                   ShadeResult* result) {
+  Lobe* lobe = result->closures.add();
+  *lobe = material.lambert;
+  lobe->normal = point.shading_normal;
+  const bool backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
+  complete(material, backfacing ? -point.geometric_normal : point.geometric_normal,
+           backfacing ? -point.shading_normal : point.shading_normal, wo, roughness_threshold, result);
 }
 
 // Where a program's closures are not wanted; large, so that it is made once.
@@ -48,10 +60,11 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
   const MaterialData& material = material_of(snapshot, point.material);
   clear(result);
   result->fallback = material.uses_fallback;
+  if (material.is_lambert && result->tape == nullptr) return shade_lambert(material, point, wo, roughness_threshold, result);
   const ShadeContext context = surface_context(snapshot, point, wo, ray);
   run_program(material.surface, context, result);
   if (result->tape) result->tape->finish();
-  complete(material, context, wo, roughness_threshold, result);
+  complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
 void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
@@ -65,7 +78,7 @@ void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const Clos
     return;
   }
   result->fallback = material.uses_fallback;
-  complete(material, context, wo, roughness_threshold, result);
+  complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
 void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,

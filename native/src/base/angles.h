@@ -1,0 +1,43 @@
+// Angles without calls of the mathematical library, which keeps double's precision and the edges of its range: polynomials good to float's
+// precision, inlined, so that other work goes on beside them.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace gradus {
+
+struct SineCosine {
+  float sine, cosine;
+};
+
+// |x| up to some turns. Reduced to an eighth of a turn; polynomials of Cephes' sinf() and cosf() (Moshier 1989).
+inline SineCosine sine_cosine(float x) {
+  const float quarters = std::rint(x * 0.636619772f);
+  const float r = std::fma(quarters, 4.37113883e-8f, std::fma(-quarters, 1.57079637f, x));
+  const float z = r * r;
+  const float s = r + r * z * (-1.6666654611e-1f + z * (8.3321608736e-3f - z * 1.9515295891e-4f));
+  const float c = 1.0f - 0.5f * z + z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
+  // By bits: which quarter it is cannot be foretold.
+  const auto n = static_cast<uint32_t>(static_cast<int32_t>(quarters));
+  const uint32_t keep = (n & 1u) - 1u, sines = std::bit_cast<uint32_t>(s), cosines = std::bit_cast<uint32_t>(c);
+  return {std::bit_cast<float>(((sines & keep) | (cosines & ~keep)) ^ ((n & 2u) << 30)),
+          std::bit_cast<float>(((cosines & keep) | (sines & ~keep)) ^ (((n + 1u) & 2u) << 30))};
+}
+
+// atan2(y, x) to 2e-8 of its value; not for (0, 0). Abramowitz and Stegun 4.4.49.
+inline double angle_of(double x, double y) {
+  const double ax = std::abs(x), ay = std::abs(y);
+  const double t = std::min(ax, ay) / std::max(ax, ay);
+  const double z = t * t, z2 = z * z, z4 = z2 * z2;
+  const double low = (1.0 - 0.3333314528 * z) + z2 * (0.1999355085 - 0.1420889944 * z);
+  const double high = (0.1065626393 - 0.0752896400 * z) + z2 * (0.0429096138 - 0.0161657367 * z);
+  constexpr double pi = 3.14159265358979323846;
+  double angle = t * (low + z4 * (high + z4 * 0.0028662257));
+  angle = ay > ax ? 0.5 * pi - angle : angle;
+  return std::copysign(x < 0.0 ? pi - angle : angle, y);
+}
+
+}  // namespace gradus
