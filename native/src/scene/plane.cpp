@@ -20,7 +20,9 @@ float plane_error(const Vec3 e[3], float squared_area) {
   const float low = std::min(a, std::min(b, c)), high = std::max(a, std::max(b, c));
   const float middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
   const float squared_conditioning = low * (middle / squared_area);
-  return gamma_bound(8) * std::sqrt(high) * std::sqrt(std::clamp(squared_conditioning, 1.0f, 1e8f));
+  constexpr float worst = 1e8f;  // also where squares are no floats any more
+  return gamma_bound(8) * std::sqrt(high) *
+         std::sqrt(is_finite(squared_conditioning) ? std::clamp(squared_conditioning, 1.0f, worst) : worst);
 }
 
 }  // namespace

@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/fpu.h"
 #include "scene/accelerator.h"
 #include "scene/emitter_table.h"
 #include "scene/mesh.h"
+#include "scene/plane.h"
 #include "scene_fixture.h"
 
 namespace gradus::test {
@@ -71,6 +73,14 @@ TEST(D3_Garbage, ThousandMeshesOfRandomBits) {
   }
   EXPECT_GE(accepted, 500);
   EXPECT_GE(refused, 300);
+}
+
+// Render threads flush denormals.
+TEST(D7_Degenerate, TrianglesWhoseSquaredEdgesAreFlushedHaveAnError) {
+  const FlushDenormals flush;
+  const Plane plane = plane_of({Vec3(6e-22f, 6e-26f, 0.0f), Vec3(0.0f, 2e-29f, 0.0f), Vec3(0.0f, 0.0f, 9e-15f)});
+  EXPECT_TRUE(is_finite(plane.error));
+  EXPECT_GT(plane.normal.y, 0.99f);
 }
 
 TEST(D7_Degenerate, OnlyWholeTrianglesAreHit) {
