@@ -43,6 +43,7 @@ CameraVertex* CameraVertices::at(int32_t x, int32_t y) {
   CameraVertex& v = packet.vertices[i];
   if (!packet.met[i]) {
     packet.met[i] = true;
+    v.looked = false;
     v.shared = !passes(v.hit);
     if (v.shared) {
       trace_segment(context_, Sampler(), 0, &v.hit, &v.ray, &v.vertex, &v.segment, Shading::Later);  // nothing random is met

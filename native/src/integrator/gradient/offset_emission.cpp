@@ -10,6 +10,8 @@
 // Where base and offset both traced a ray of their own (from the camera, or after a copied event), what the two rays show is one function
 // of the ray, and the pair needs no condition: it is formed by seen() also where one of the two shows nothing. So the edges of visible
 // lights, and of their mirror images, are sampled from both sides.
+#include <utility>
+
 #include "integrator/gradient/offset_paths.h"
 
 namespace gradus {
@@ -58,11 +60,22 @@ Radiance OffsetPaths::see(OffsetPath* o) const {
   return seen;
 }
 
+// What a camera ray shows is the same for all whose offset it is.
+Radiance OffsetPaths::see_once(OffsetPath* o) const {
+  if (o->camera == nullptr) {
+    return see(o);
+  }
+  if (!std::exchange(o->camera->looked, true)) {
+    o->camera->seen = see(o);
+  }
+  return o->camera->seen;
+}
+
 void OffsetPaths::seen() {
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
-      const Radiance seen = see(&o);
+      const Radiance seen = see_once(&o);
       if (seen != Radiance(0.0f) || seen_ != Radiance(0.0f)) {
         gradient_[k] += pairs_[k].paired(seen_, seen, o.ratio);
       }
@@ -112,7 +125,8 @@ void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, 
 
 void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
   seen_ += Radiance(c.clamped, 0.0f);
-  const EmitterView base = source.vertex != nullptr ? view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex)) : EmitterView{};
+  const bool looks = any(OffsetStage::Pending) || any(OffsetStage::Linked);
+  const EmitterView base = source.vertex != nullptr && looks ? view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex)) : EmitterView{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
@@ -132,7 +146,10 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
 
 void OffsetPaths::world(const RaySource& source, const Contribution& c) {
   seen_ += Radiance(c.clamped, 0.0f);
-  const Vec3 direction = base_state_.ray.ray.direction;
+  EmitterView base;
+  base.direction = base_state_.ray.ray.direction;
+  base.visibility = context_.scene.world.visibility;
+  const EmitterPoint sampled = any(OffsetStage::Pending) ? emitter_of_world(context_.scene, base.direction) : EmitterPoint{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
@@ -142,18 +159,13 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
       continue;
     }
     if (o.stage == OffsetStage::Linked) {
-      EmitterView view;
-      view.visibility = context_.scene.world.visibility;
-      found_linked(k, c, Rgb(1.0f), joint(view, o));
+      found_linked(k, c, Rgb(1.0f), joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       // The same direction, so the same radiance.
-      EmitterView base;
-      base.direction = direction;
-      base.visibility = context_.scene.world.visibility;
       EmitterView view = base;
       view.radiance = c.light;
-      EmitterPoint point = emitter_of_world(context_.scene, direction);
-      view.pdf = light_pdf(context_, RaySource{o.here, source.event}, point);
+      view.pdf = light_pdf(context_, RaySource{o.here, source.event}, sampled);
+      EmitterPoint point = sampled;
       point.kind = EmitterKind::World;  // also where light sampling leaves it out
       copy_emitter(k, c, point, base, view, base_segment_->probability);
     }
@@ -163,6 +175,7 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
 void OffsetPaths::emission(const RaySource& source, const Contribution& c, const Vertex& vertex) {
   seen_ += Radiance(c.clamped, 0.0f);
   link_all(vertex);
+  const EmitterPoint point = any(OffsetStage::Pending) ? emitter_of_surface(context_.scene, vertex.point) : EmitterPoint{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
@@ -179,7 +192,7 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
         alone(k, c);
         continue;
       }
-      const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, emitter_of_surface(context_.scene, vertex.point));
+      const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, point);
       const Rgb value = o.link.throughput * emission * bsdf_weight(pdf_light, o.link.pdf);
       pair(k, c, value, o.link.ratio * (joint_ && !o.mixed ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
     }

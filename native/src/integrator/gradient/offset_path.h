@@ -54,6 +54,7 @@ struct OffsetPath {
   float kind_ratio = 1.0f;           // of the last event (ShiftedEvent); in `ratio` once the emission behind that event has been seen
   PathState state;                   // throughput, and the ray of the last segment that it traced
   const Segment* segment = nullptr;  // that segment: its own, or what it shares with the path of its pixel
+  CameraVertex* camera = nullptr;    // then where that is kept
   ScatterEvent event;                // density and kind of the event that began it
   bool from_camera = true;           // there was no such event
   bool fresh = false;                // it traced its own ray for the base's current segment
@@ -73,6 +74,7 @@ struct OffsetPath {
     previous = here;
     here = here == &storage[0] ? &storage[1] : &storage[0];
     segment = &own_segment;
+    camera = nullptr;
   }
 
   // Where its last segment came from.

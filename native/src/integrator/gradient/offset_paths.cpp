@@ -1,4 +1,7 @@
 #include "integrator/gradient/offset_paths.h"
+
+#include <algorithm>
+
 #include "shift/class_match.h"
 
 namespace gradus {
@@ -53,6 +56,10 @@ void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const Pixe
 void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
   offset->stage = OffsetStage::Dead;
   count_failure(&counters_, cause);
+}
+
+bool OffsetPaths::any(OffsetStage stage) const {
+  return std::any_of(offsets_.begin(), offsets_.end(), [stage](const OffsetPath& o) { return o.stage == stage; });
 }
 
 bool OffsetPaths::separate(int k, const Contribution& c) {

@@ -41,6 +41,8 @@ class OffsetPaths {
   // The offset shares nothing with this contribution; false: it may.
   bool separate(int k, const Contribution& c);
   void fail(OffsetPath* offset, ShiftFailure cause);
+  // Some offset is at this stage.
+  bool any(OffsetStage stage) const;
 
   // Parting (offset_part.cpp).
   void part(int k, ShiftFailure cause, bool goes_on, bool leaves);
@@ -70,6 +72,7 @@ class OffsetPaths {
 
   // Emitters (offset_emission.cpp, offset_light.cpp).
   Radiance see(OffsetPath* offset) const;
+  Radiance see_once(OffsetPath* offset) const;
   void light_all(const LightSample& sample, ScatterClass scatter_class);
   void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);

@@ -23,6 +23,7 @@ CameraVertex* OffsetPaths::known_vertex(int k) const {
 void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
   o->here = &v->vertex;
   o->segment = &v->segment;
+  o->camera = v;
   o->state.ray = v->ray;
   o->fresh = true;
 }
