@@ -1,7 +1,5 @@
 // B1, B2 for the L1 solver.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include "reconstruct/minimise_l1.h"
 #include "reconstruct/test_images.h"
@@ -11,8 +9,6 @@ namespace gradus {
 namespace {
 
 using namespace test;
-
-constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 3}, {33, 17}, {128, 96}};
 
 std::vector<float> solve(const GradientImages& images, SolveReport* report, float alpha = 0.2f) {
   return reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, report);
@@ -35,15 +31,6 @@ double energy(const GradientImages& images, const std::vector<float>& x, double 
     }
   }
   return sum;
-}
-
-TEST(B1_FixedPoint, L1KeepsAnImageWithItsOwnGradients) {
-  for (const auto& [w, h] : kSizes) {
-    const std::vector<float> image = smooth_image(w, h, 3);
-    SolveReport report;
-    EXPECT_LT(max_difference(solve(with_own_gradients(w, h, 3, image), &report), image), 2e-5) << w << "x" << h;
-    EXPECT_FALSE(report.hit_cap);
-  }
 }
 
 TEST(B2_Solver, L1ReportsItsResidual) {
@@ -135,73 +122,6 @@ TEST(B2_Solver, OutlierBoundGrowsWithTheSquareRootOfTheCount) {
   EXPECT_EQ(outlier_bound_squared(&none), kInfinity);
   EXPECT_EQ(outlier_bound_squared(&single), kInfinity);
   EXPECT_EQ(outlier_bound_squared(&zeros), 0.0f);
-}
-
-// The result scales with the image (algorithms 14.2: the floor is relative to the image, not absolute).
-TEST(B2_Solver, L1ScalesWithTheImage) {
-  GradientImages images = with_own_gradients(64, 48, 3, smooth_image(64, 48, 3));
-  add_noise(&images.primal, 0.3f, 1);
-  SolveReport report;
-  std::vector<float> x = solve(images, &report);
-  for (auto* plane : {&images.primal, &images.dx, &images.dy}) {
-    for (float& v : *plane) v *= 1024.0f;
-  }
-  const std::vector<float> y = solve(images, &report);
-  for (float& v : x) v *= 1024.0f;
-  EXPECT_LT(max_difference(x, y), 1e-2 * 1024.0);
-}
-
-TEST(B2_Solver, L1LeavesOutWhatIsNotFinite) {
-  GradientImages images = with_own_gradients(33, 17, 3, std::vector<float>(33 * 17 * 3, 1.0f));
-  images.primal[41] = std::numeric_limits<float>::quiet_NaN();
-  images.dx[90] = std::numeric_limits<float>::infinity();
-  images.dy[130] = -std::numeric_limits<float>::infinity();
-  SolveReport report;
-  EXPECT_LT(max_difference(solve(images, &report), std::vector<float>(33 * 17 * 3, 1.0f)), 1e-3);
-}
-
-TEST(B2_Solver, L1OfABlackImageIsBlack) {
-  SolveReport report;
-  const std::vector<float> black(16 * 16 * 3, 0.0f);
-  EXPECT_EQ(solve(with_own_gradients(16, 16, 3, black), &report), black);
-}
-
-// Weights are frozen: a fourth channel goes through those of the first three, and parts add up (contract 3.4).
-TEST(B2_Solver, L1WeightsAreALinearOperator) {
-  GradientImages images = with_own_gradients(48, 32, 4, smooth_image(48, 32, 4));
-  add_noise(&images.primal, 0.2f, 1);
-  SolveReport report;
-  const auto solver = make_twiced(images, GRADUS_RECONSTRUCTION_L1, 0.2f, never, &report);
-  const size_t pixels = 48 * 32;
-  std::vector<float> a(pixels * 4), b(pixels * 4), sum(pixels * 4);
-  GradientImages both = images;
-  for (auto* plane : {&both.primal, &both.dx, &both.dy}) {
-    for (size_t i = 0; i < pixels; ++i) (*plane)[4 * i] += (*plane)[4 * i + 1];
-  }
-  const auto channel = [](const GradientImages& from, int c) {
-    return PoissonPlanes{from.primal.data() + c, from.dx.data() + c, from.dy.data() + c, 4};
-  };
-  solver->apply(channel(images, 0), a.data());
-  solver->apply(channel(images, 1), b.data());
-  solver->apply(channel(both, 0), sum.data());
-  for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(a[4 * i] + b[4 * i], sum[4 * i], 1e-3) << i;
-  // And the solution that comes with the weights is theirs.
-  const std::vector<float> whole = solve(images, &report);
-  for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(whole[4 * i], a[4 * i], 1e-2) << i;
-}
-
-TEST(L1_Threads, L1HasTheSameBitsForAnyNumberOfThreads) {
-  GradientImages images = with_own_gradients(133, 71, 3, smooth_image(133, 71, 3));
-  add_noise(&images.primal, 0.3f, 1);
-  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
-  std::vector<float> first;
-  for (const int threads : {1, 2, 3, 7}) {
-    SolveReport report;
-    std::vector<float> x;
-    tbb::task_arena(threads).execute([&] { x = solve(images, &report); });
-    if (first.empty()) first = x;
-    EXPECT_EQ(x, first) << threads << " threads";
-  }
 }
 
 TEST(K2_Cancel, L1EndsAtOnce) {

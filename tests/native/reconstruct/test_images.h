@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -54,6 +55,38 @@ inline void add_noise(std::vector<float>* image, float sigma, unsigned seed) {
   for (float& v : *image) v += normal(random);
 }
 
+// The mean of two halves of an image, each with noise of its own, and the deviations that they show. sigma: of a half, by pixel.
+template <class Sigma>
+void average_noisy_halves(std::vector<float>* mean, std::vector<float>* deviation, int channels, const Sigma& sigma, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(0.0f, 1.0f);
+  deviation->assign(mean->size() / size_t(channels), 0.0f);
+  for (size_t i = 0; i < deviation->size(); ++i) {
+    float squares = 0.0f;
+    for (int c = 0; c < channels; ++c) {
+      const float a = sigma(i) * normal(random), b = sigma(i) * normal(random);
+      (*mean)[i * channels + c] += 0.5f * (a + b);
+      if (c < 3) squares += (a - b) * (a - b);
+    }
+    (*deviation)[i] = 0.5f * std::sqrt(squares / 3.0f);
+  }
+}
+
+template <class PixelSigma, class DifferenceSigma>
+GradientImages noisy_images(int w, int h, int channels, const std::vector<float>& truth, const PixelSigma& pixels,
+                            const DifferenceSigma& differences) {
+  GradientImages images = with_own_gradients(w, h, channels, truth);
+  average_noisy_halves(&images.primal, &images.primal_deviation, channels, pixels, 1);
+  average_noisy_halves(&images.dx, &images.dx_deviation, channels, differences, 2);
+  average_noisy_halves(&images.dy, &images.dy_deviation, channels, differences, 3);
+  return images;
+}
+
+inline GradientImages noisy_images(int w, int h, int channels = 3) {
+  return noisy_images(
+      w, h, channels, smooth_image(w, h, channels), [](size_t) { return 0.4f; }, [](size_t) { return 0.05f; });
+}
+
 inline double mean(const std::vector<float>& image) {
   double sum = 0.0;
   for (const float v : image) sum += v;
@@ -71,6 +104,8 @@ inline double rms_difference(const std::vector<float>& a, const std::vector<floa
   for (size_t i = 0; i < a.size(); ++i) sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
   return std::sqrt(sum / double(a.size()));
 }
+
+inline constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 3}, {33, 17}, {128, 96}};
 
 inline bool never() { return false; }
 

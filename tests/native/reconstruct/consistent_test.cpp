@@ -1,0 +1,98 @@
+// B1, B2 and equal bits for what the solvers with weights of every row have in common: L1, and the one that goes by measured noise.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "reconstruct/test_images.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+class Consistent : public ::testing::TestWithParam<GradusReconstruction> {
+ protected:
+  static std::vector<float> solve(const GradientImages& images) {
+    SolveReport report;
+    const std::vector<float> x = reconstruct(images, GetParam(), 0.2f, never, &report);
+    EXPECT_FALSE(report.hit_cap);
+    return x;
+  }
+  // Without any noise.
+  static GradientImages exact(int w, int h, const std::vector<float>& image) {
+    return noisy_images(
+        w, h, 3, image, [](size_t) { return 0.0f; }, [](size_t) { return 0.0f; });
+  }
+};
+
+TEST_P(Consistent, B1_KeepsAnImageWithItsOwnGradients) {
+  for (const auto& [w, h] : kSizes) {
+    const std::vector<float> image = smooth_image(w, h, 3);
+    EXPECT_LT(max_difference(solve(exact(w, h, image)), image), 2e-5) << w << "x" << h;
+  }
+}
+
+// The floors of weights are relative to the image, not absolute (algorithms 14.2).
+TEST_P(Consistent, B2_ScalesWithTheImage) {
+  GradientImages images = noisy_images(64, 48);
+  std::vector<float> x = solve(images);
+  for (auto* plane : {&images.primal, &images.dx, &images.dy, &images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) {
+    for (float& v : *plane) v *= 1024.0f;
+  }
+  const std::vector<float> y = solve(images);
+  for (float& v : x) v *= 1024.0f;
+  EXPECT_LT(max_difference(x, y), 1e-2 * 1024.0);
+}
+
+TEST_P(Consistent, B2_LeavesOutWhatIsNotFinite) {
+  const std::vector<float> ones(33 * 17 * 3, 1.0f);
+  GradientImages images = exact(33, 17, ones);
+  for (auto* deviation : {&images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) deviation->assign(33 * 17, 0.1f);
+  images.primal[41] = std::numeric_limits<float>::quiet_NaN();
+  images.dx[90] = std::numeric_limits<float>::infinity();
+  images.dy[130] = -std::numeric_limits<float>::infinity();
+  EXPECT_LT(max_difference(solve(images), ones), 1e-3);
+}
+
+TEST_P(Consistent, B2_ABlackImageIsBlack) {
+  const std::vector<float> black(16 * 16 * 3, 0.0f);
+  EXPECT_EQ(solve(exact(16, 16, black)), black);
+}
+
+// Weights are frozen: a fourth channel goes through those of the first three, and parts add up (contract 3.4).
+TEST_P(Consistent, B2_WeightsAreALinearOperator) {
+  const GradientImages images = noisy_images(48, 32, 4);
+  SolveReport report;
+  const auto solver = make_twiced(images, GetParam(), 0.2f, never, &report);
+  const size_t pixels = 48 * 32;
+  std::vector<float> a(pixels * 4), b(pixels * 4), sum(pixels * 4);
+  GradientImages both = images;
+  for (auto* plane : {&both.primal, &both.dx, &both.dy}) {
+    for (size_t i = 0; i < pixels; ++i) (*plane)[4 * i] += (*plane)[4 * i + 1];
+  }
+  solver->apply(planes_of(images, 0), a.data());
+  solver->apply(planes_of(images, 1), b.data());
+  solver->apply(planes_of(both, 0), sum.data());
+  for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(a[4 * i] + b[4 * i], sum[4 * i], 1e-3) << i;
+  // And the solution that comes with the weights is theirs.
+  const std::vector<float> whole = solve(images);
+  for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(whole[4 * i], a[4 * i], 1e-2) << i;
+}
+
+TEST_P(Consistent, L1_SameBitsForAnyNumberOfThreads) {
+  const GradientImages images = noisy_images(133, 71);
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  std::vector<float> first;
+  for (const int threads : {1, 2, 3, 7}) {
+    std::vector<float> x;
+    tbb::task_arena(threads).execute([&] { x = solve(images); });
+    if (first.empty()) first = x;
+    EXPECT_EQ(x, first) << threads << " threads";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, Consistent, ::testing::Values(GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_WEIGHTED),
+                         [](const auto& info) { return std::string(info.param == GRADUS_RECONSTRUCTION_L1 ? "L1" : "Weighted"); });
+
+}  // namespace
+}  // namespace gradus
