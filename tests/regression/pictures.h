@@ -1,4 +1,4 @@
-// The pictures that are stored: 30 small scenes and settings.
+// The pictures that are stored: small scenes and settings.
 #pragma once
 
 #include <functional>
