@@ -31,6 +31,11 @@ fs::path frame_path(const RenderArguments& args, int32_t frame) {
   return output / fs::path(args.scene).stem() / "ViewLayer" / name;
 }
 
+void append_line(const std::string& path, const std::string& line) {
+  std::ofstream file(path, std::ios::app);
+  if (!(file << line << std::endl)) throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "cannot write " + path);
+}
+
 client::Frame render_frame(const client::Device& device, const client::Scene& scene, const GradusSettings& settings, const fs::path& target,
                            const RenderArguments& args) {
   const bool resumed = args.resume && fs::exists(target);
@@ -46,7 +51,7 @@ client::Frame render_frame(const client::Device& device, const client::Scene& sc
     gradus_error(nullptr);
   }
   render.wait();
-  if (!args.stats.empty()) std::ofstream(args.stats, std::ios::app) << render.stats() << "\n";
+  if (!args.stats.empty()) append_line(args.stats, render.stats());
   return render.frame();
 }
 

@@ -1,0 +1,132 @@
+// The command-line tool, as the user guide shows it: what it writes, prints, and ends with.
+#include <sys/wait.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "api/test_scene.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class Tool : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("gradus_tool_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    save_scene("good.gradus", false);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  // A lit quad; or nothing, where the instance's mesh is gone.
+  void save_scene(const std::string& name, bool broken) const {
+    const GradusDevice device = make_device();
+    GradusScene scene = 0;
+    ASSERT_OK(gradus_scene_create(device, &scene));
+    ASSERT_OK(gradus_scene_record(scene, 1));
+    fill_scene(scene);
+    if (broken) {
+      ASSERT_OK(gradus_scene_remove(scene, GRADUS_KIND_MESH, 1));
+    }
+    const GradusSettings settings = small_render(24, 16, 4);
+    ASSERT_OK(gradus_scene_save(scene, &settings, (folder / name).c_str()));
+    EXPECT_OK(gradus_scene_release(scene));
+    EXPECT_OK(gradus_device_release(device));
+  }
+  Outcome run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder.string() + "' && " GRADUS_BINARY_DIR "/native/gradus " + arguments + " >out 2>err";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("out"), text("err")};
+  }
+  std::string text(const std::string& name) const {
+    std::ifstream file(folder / name, std::ios::binary);
+    std::ostringstream content;
+    content << file.rdbuf();
+    return content.str();
+  }
+  // Of two images; negative if they could not be compared.
+  double relative_error(const std::string& a, const std::string& b) const {
+    const Outcome compared = run("compare " + a + " " + b);
+    double error = -1.0;
+    EXPECT_EQ(compared.code, 0) << compared.err;
+    EXPECT_EQ(std::sscanf(compared.out.c_str(), "relmse %lf", &error), 1) << compared.out;
+    return error;
+  }
+  fs::path folder;
+};
+
+const char* const kStored = "store/good/ViewLayer/f+0000000.base.exr";
+
+TEST_F(Tool, RendersReconstructsAndCompares) {
+  const Outcome rendered = run("render good.gradus -o store --samples 16 --integrator gradient --image combined.exr --stats stats.jsonl");
+  ASSERT_EQ(rendered.code, 0) << rendered.err;
+  EXPECT_NE(rendered.out.find(kStored), std::string::npos);
+  EXPECT_NE(text("stats.jsonl").find("\"integrator\":\"gradient\""), std::string::npos);
+  for (const char* how : {"weighted", "l2", "l1", "none"}) {
+    const Outcome made = run(std::string("reconstruct ") + kStored + " -o " + how + ".exr --passes noisy_image --reconstruction " + how);
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_LT(relative_error(std::string(how) + ".exr", "combined.exr"), 0.1);
+  }
+  EXPECT_EQ(relative_error("weighted.exr", "combined.exr"), 0.0) << "what the render delivered";
+  EXPECT_GT(relative_error("none.exr", "l2.exr"), 0.0);
+  EXPECT_EQ(run("compare none.exr l2.exr --fail-above 1e-12").code, 1);
+}
+
+TEST_F(Tool, ResumeHasTheBitsOfOneRender) {
+  ASSERT_EQ(run("render good.gradus -o store --samples 4").code, 0);
+  ASSERT_EQ(run("render good.gradus -o store --samples 16 --resume").code, 0);
+  ASSERT_EQ(run("render good.gradus -o whole.exr --samples 16").code, 0);
+  for (const char* how : {"none", "auto"}) {
+    const std::string options = std::string(" --reconstruction ") + how;
+    ASSERT_EQ(run(std::string("reconstruct ") + kStored + " -o a.exr" + options).code, 0);
+    ASSERT_EQ(run("reconstruct whole.exr -o b.exr" + options).code, 0);
+    EXPECT_EQ(text("a.exr"), text("b.exr")) << how;
+  }
+}
+
+TEST_F(Tool, TellsWhatFilesHold) {
+  const Outcome scene = run("info good.gradus");
+  EXPECT_EQ(scene.code, 0);
+  EXPECT_NE(scene.out.find("triangles                  2"), std::string::npos) << scene.out;
+  ASSERT_EQ(run("render good.gradus -o store").code, 0);
+  EXPECT_NE(run(std::string("info --json ") + kStored).out.find("\"kind\":\"frame\""), std::string::npos);
+}
+
+// They were lost on the way from the file: a picture without its objects, and not a word.
+TEST_F(Tool, NamesWhatASceneHasLost) {
+  save_scene("broken.gradus", true);
+  const Outcome rendered = run("render broken.gradus -o store");
+  EXPECT_EQ(rendered.code, 0);
+  EXPECT_NE(rendered.err.find("warning: "), std::string::npos);
+  EXPECT_NE(rendered.err.find("mesh that does not exist"), std::string::npos) << rendered.err;
+}
+
+TEST_F(Tool, EndsWithACodeAndACause) {
+  EXPECT_EQ(run("").code, 2);
+  EXPECT_EQ(run("render missing.gradus -o store").code, 2);
+  EXPECT_EQ(run("render good.gradus -o store --no-such-option 1").code, 2);
+  const std::pair<const char*, const char*> failures[] = {
+      {"render good.gradus -o store --samples 0", "samples"},
+      {"render good.gradus -o store --integrator path --reconstruction l2", "needs gradients"},
+      {"render good.gradus -o store --stats no/such/folder/stats.jsonl", "no/such/folder/stats.jsonl"},
+      {"render good.gradus -o good.gradus/store", "good.gradus/store"},
+      {"reconstruct good.gradus -o x.exr", "good.gradus"},
+      {"info err", "neither FILE.gradus nor FILE.exr"}};
+  for (const auto& [arguments, cause] : failures) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 1) << arguments;
+    EXPECT_NE(outcome.err.find(cause), std::string::npos) << arguments << ": " << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace gradus
