@@ -23,6 +23,9 @@ bool on_progress(void* data, double fraction) {
   return (*m->progress)(m->first + (m->last - m->first) * float(fraction));
 }
 
+// Without memory for what grows with the scene, nodes and leaves, Embree gives back what it has and says so. Where the few bytes of a
+// build's entry in its thread pool are refused, it keeps the pool's lock (3.13.5, ThreadPool::add), and the next build waits for ever: that
+// only tests refuse (tests/memory/embree_guard.cpp).
 void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progress, float first, float last) {
   Monitor monitor{&progress, first, last};
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
