@@ -1,5 +1,6 @@
 // L1, L3 with the real integrators, through the C API: the bits do not depend on threads, batches or borders.
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <tbb/global_control.h>
 
 #include "api/test_scene.h"
@@ -67,6 +68,25 @@ TEST_P(L1_Determinism, SameBitsForAnyNumberOfThreads) {
     EXPECT_OK(gradus_frame_release(other));
   }
   EXPECT_OK(gradus_frame_release(first));
+}
+
+// Threads that share one processor meet in another order than those with processors of their own.
+TEST_P(L1_Determinism, SameBitsOnOneProcessor) {
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  GradusSettings s = settings(8);
+  s.threads = 3;
+  const GradusFrame first = render(s);
+  cpu_set_t all, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
+  CPU_ZERO(&one);
+  int cpu = 0;
+  while (!CPU_ISSET(cpu, &all)) ++cpu;
+  CPU_SET(cpu, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);  // threads begin with that of their maker
+  const GradusFrame other = render(s);
+  EXPECT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
+  expect_equal(first, other);
+  for (const GradusFrame frame : {first, other}) EXPECT_OK(gradus_frame_release(frame));
 }
 
 TEST_P(L1_Determinism, L3_ResumeHasTheBitsOfOneRender) {
