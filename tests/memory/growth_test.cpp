@@ -17,7 +17,7 @@ void expect_no_growth(int count, uint64_t pools, const Body& body) {
   const int files = descriptors(), workers = threads();
   const int64_t pieces = live();
   for (int i = 0; i < count; ++i) body();
-  EXPECT_EQ(live(), pieces);
+  EXPECT_LE(live(), pieces);  // Embree's threads give back what started them when they come to run
   EXPECT_EQ(descriptors(), files);
   EXPECT_EQ(threads(), workers);
   const uint64_t now = resident_bytes();
