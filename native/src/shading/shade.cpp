@@ -60,7 +60,8 @@ void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Ve
   const MaterialData& material = material_of(snapshot, point.material);
   clear(result);
   result->fallback = material.uses_fallback;
-  if (material.is_lambert && result->tape == nullptr) return shade_lambert(material, point, wo, roughness_threshold, result);
+  // Nothing is recorded: from this side it looks the same from everywhere, and from the other it is worked out as quickly again.
+  if (material.is_lambert) return shade_lambert(material, point, wo, roughness_threshold, result);
   const ShadeContext context = surface_context(snapshot, point, wo, ray);
   run_program(material.surface, context, result);
   if (result->tape) result->tape->finish();
