@@ -6,6 +6,7 @@
 
 #include "gradus/gradus_nodes.h"
 #include "plan/plan.h"
+#include "sampling/lattice.h"
 #include "shading/program_builder.h"
 #include "support/path_scene.h"
 
@@ -184,6 +185,29 @@ TEST_P(Scenarios, B7_UnequalCounts) {
         counts[i] = batch == 0 ? 8 + 8 * (i % 3) : (i / 3 % 2 == 0 ? 0 : 32);
       }
       WorkUnit unit{frame.region, 64 * batch, 0, &counts};
+      integrator->sample(unit, &frame, &frame.counters, stop);
+    }
+    differences.add(read_images(frame, 0, false));
+  }
+  differences.check();
+}
+
+// Adaptive sampling: cells that differ in their counts and in the numbers of their samples, even and odd.
+TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
+  BothDirections differences;
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    const IntegratorContext c = context(900 + seed);
+    Frame frame = test::make_test_frame(c.settings, true);
+    const auto integrator = make_gradient_integrator(c);
+    const std::atomic<bool> stop{false};
+    std::vector<uint32_t> first(static_cast<size_t>(frame.region.area())), count(first);
+    for (const uint32_t batch : {0u, 1u}) {
+      for (size_t i = 0; i < first.size(); ++i) {
+        const bool right = int(i) % frame.region.width() >= kLattice, low = int(i) / frame.region.width() < kLattice;
+        first[i] += count[i];
+        count[i] = batch == 0 ? (right ? 9 : 4) : (low ? 24 : 7);
+      }
+      WorkUnit unit{frame.region, 0, 0, &count, &first};
       integrator->sample(unit, &frame, &frame.counters, stop);
     }
     differences.add(read_images(frame, 0, false));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/render.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
@@ -49,6 +50,53 @@ INSTANTIATE_TEST_SUITE_P(All, A8_Variance,
                          testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::RoughMetal,
                                          Scenario::Glass, Scenario::LampsSeen),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
+
+// Samples that are given where the noise is: the estimate is still that of the spread, and the mean that of equal counts. Both could be
+// off, as counts depend on the samples that they weigh: what was bright by chance is followed by more samples and counts for less.
+TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
+  constexpr uint32_t size = 40, samples = 32;  // 9 cells; a lamp in the picture, its shadow and walls differ in noise
+  test::PathScene scene;
+  test::build(Scenario::DiffuseArea, &scene);
+  GradusSettings settings = sobol_settings(size);
+  settings.samples = samples;
+  settings.threads = 2;
+  const std::shared_ptr<const Snapshot> snapshot = scene.context(settings).snapshot;
+  const int seeds = test::full_run() ? 64 : 16;
+  test::Moments shared, equal;
+  double estimated = 0.0;
+  uint32_t least = UINT32_MAX, most = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    settings.seed = uint32_t(seed);
+    for (const float threshold : {1e-6f, 0.0f}) {
+      settings.noise_threshold = threshold;
+      // The primal of both integrators is the same.
+      settings.integrator = threshold > 0.0f ? GRADUS_INTEGRATOR_GRADIENT : GRADUS_INTEGRATOR_PATH;
+      Render render(nullptr, snapshot, settings);
+      ASSERT_TRUE(render.wait(-1.0));
+      const std::shared_ptr<const Frame> frame = render.frame();
+      (threshold > 0.0f ? shared : equal).add(read_images(*frame, 0, false).primal);
+      if (!(threshold > 0.0f)) continue;
+      for (const float v : read_variance(*frame)) estimated += v / seeds;
+      for (size_t i = 0; i < frame->count[0].size(); ++i) {
+        const uint32_t n = frame->count[0][i] + frame->count[1][i];
+        least = std::min(least, n);
+        most = std::max(most, n);
+      }
+    }
+  }
+  EXPECT_LT(least, samples * 3 / 4);
+  EXPECT_GT(most, samples * 3 / 2);
+  double empirical = 0.0, difference = 0.0, sum = 0.0;
+  for (size_t i = 0; i < shared.size(); ++i) {
+    empirical += shared.variance_of_mean(i) * seeds;
+    difference += shared.mean(i) - equal.mean(i);
+    sum += equal.mean(i);
+  }
+  std::printf("  counts %u to %u, estimate/spread %.3f, mean %+.3f %%\n", least, most, estimated / empirical, 100.0 * difference / sum);
+  EXPECT_GT(estimated / empirical, 0.85);
+  EXPECT_LT(estimated / empirical, 1.15);
+  EXPECT_LT(std::fabs(difference), 0.005 * sum);
+}
 
 // Residuals of the lighting against the mean over seeds: without the jitter that neighbours share, which shows at edges.
 std::vector<std::vector<double>> residuals(uint32_t size, int seeds) {

@@ -22,10 +22,15 @@ struct PixelSample {
 // Samples that a unit takes of a pixel.
 inline uint32_t unit_count(const WorkUnit& unit, size_t pixel) { return unit.count_map != nullptr ? (*unit.count_map)[pixel] : unit.count; }
 
+// Number of the first of them.
+inline uint32_t unit_first(const WorkUnit& unit, size_t pixel) {
+  return unit.first_map != nullptr ? (*unit.first_map)[pixel] : unit.first_sample;
+}
+
 // Those of them that belong to a half.
 inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
   const uint32_t count = unit_count(unit, pixel);
-  const bool first_is_even = unit.first_sample % 2 == 0;
+  const bool first_is_even = unit_first(unit, pixel) % 2 == 0;
   return first_is_even == (half == 0) ? (count + 1) / 2 : count / 2;
 }
 
@@ -45,9 +50,9 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fra
                      const std::atomic<bool>& stop, Body&& body) {
   const bool shares_rays = !context.camera.has_lens();
   for (const Region& cell : make_cells(unit.tile)) {
-    const uint32_t most = most_samples(unit, frame, cell);
+    const uint32_t most = most_samples(unit, frame, cell), first = unit_first(unit, frame.index(cell.x0, cell.y0));
     for (uint32_t i = 0; i < most; ++i) {
-      const uint32_t number = unit.first_sample + i;
+      const uint32_t number = first + i;
       const Vec2 jitter = cell_jitter(context, cell, number);
       vertices->begin(jitter);
       for (int32_t y = cell.y0; y < cell.y1; ++y) {

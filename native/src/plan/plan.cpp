@@ -132,11 +132,12 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
   choose_region(settings, &plan);
   plan.channels = settings.film_transparent ? 4 : 3;
   plan.first_check = first_check(settings);
-  plan.adaptive = settings.noise_threshold > 0.0f && settings.samples > plan.first_check;
+  plan.adaptive = settings.noise_threshold > 0.0f && settings.samples > kFirstCheck;
   if (plan.adaptive) {
-    plan.chosen.emplace_back("tiles stop early", "noise_threshold is set");
+    plan.chosen.emplace_back("samples where the noise is",
+                             "noise_threshold is set: tiles below it stop, others share samples by their noise");
   } else {
-    plan.skipped.emplace_back("stopping tiles early",
+    plan.skipped.emplace_back("samples where the noise is",
                               settings.noise_threshold > 0.0f ? "too few samples to judge by" : "noise_threshold is 0");
   }
   const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;

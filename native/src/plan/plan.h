@@ -21,7 +21,7 @@ struct Plan {
   bool pilot = false;     // a few samples tell where gradients pay
   bool solves = false;    // Combined comes from a solver
   bool unbiased = true;   // contract 2.2
-  bool adaptive = false;  // tiles may stop early
+  bool adaptive = false;  // tiles take samples by their noise, and may stop early
   int channels = 3;
   uint32_t first_check = 0;  // samples before a tile may stop
   Region delivered;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/fpu.h"
+#include "frame/cells.h"
 #include "render/batches.h"
 #include "render/combine.h"
 #include "render/options.h"
@@ -26,6 +27,8 @@ int arena_size(uint32_t threads) {
   const size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return int(std::clamp<size_t>(threads, 1, std::max<size_t>(most, 1)));
 }
+
+uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow; }
 
 }  // namespace
 
@@ -124,8 +127,8 @@ void RenderLoop::prepare() {
   if (input_.resumed) show(plan_.delivered);
 }
 
-bool RenderLoop::next_batch(uint32_t begin, uint32_t* end, const NoiseStop& noise) const {
-  if (stop_.load(std::memory_order_relaxed) || begin >= input_.settings.samples || noise.all_done()) return false;
+bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
+  if (stop_.load(std::memory_order_relaxed) || begin >= input_.settings.samples) return false;
   *end = std::min(batch_end(begin, input_.settings.samples), begin + affordable_samples(begin));
   return *end > begin;
 }
@@ -141,53 +144,67 @@ uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
   return static_cast<uint32_t>(std::clamp((limit - elapsed) / elapsed * taken + 0.5, 0.0, double(kLongestBatch)));
 }
 
+void RenderLoop::judge() {
+  const uint64_t cpu = process_cpu_nanoseconds();
+  const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
+  const uint32_t reconstruction = frame_->settings.reconstruction;
+  std::vector<CellNoise> noise;
+  arena_.execute(
+      [&] { noise = estimate_noise(*frame_, adaptive_->cells(), reconstruction, input_.settings.reconstruction_alpha, cancel); });
+  if (!cancel()) adaptive_->judge(noise);
+  stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+}
+
+// In adaptive renders `begin` and `end` count the samples of pixels on average over the cells that go on.
 void RenderLoop::sample() {
   sampling_began_ = clock_.seconds();
   const auto cancel = [this] { return stop_.load(std::memory_order_relaxed); };
-  NoiseStop noise(plan_.sampled, input_.settings.noise_threshold);
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed) : 0;
+  const uint32_t first = input_.settings.first_sample;
+  if (plan_.adaptive) adaptive_ = std::make_unique<AdaptiveSampling>(*frame_, input_.settings.noise_threshold, plan_.first_check);
   first_begin_ = begin;
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
-  for (uint32_t end = 0; next_batch(begin, &end, noise); begin = end) {
-    frame_->samples.add({input_.settings.first_sample + begin, input_.settings.first_sample + end});
-    const std::vector<uint32_t> map = noise.any_done() ? noise.count_map(end - begin) : std::vector<uint32_t>();
-    run_batch(begin, end, map.empty() ? nullptr : &map);
+  for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
+    if (adaptive_ && begin >= kLongestBatch && begin % kLongestBatch == 0) judge();
+    if (cancel() || is_done()) break;
+    if (adaptive_) adaptive_->start_batch(end - begin);
+    frame_->samples.add({first + begin, first + (adaptive_ ? adaptive_->most_taken() : end)});
+    run_batch(begin, end);
     if (cancel()) break;
     tracker_.set_samples(end);
     tracker_.new_image();
-    if (!plan_.adaptive || end < plan_.first_check || end % kLongestBatch != 0) continue;
-    const uint64_t cpu = process_cpu_nanoseconds();
-    arena_.execute([&] { noise.update(*frame_, plan_.solves && frame_->gradients, input_.settings.reconstruction_alpha, cancel); });
-    stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   }
-  stats_.stopped = cancel() ? "cancelled" : noise.all_done() ? "noise" : begin < input_.settings.samples ? "time" : "samples";
+  stats_.stopped = cancel() ? "cancelled" : is_done() ? "noise" : begin < input_.settings.samples ? "time" : "samples";
   tracker_.raise_to(ProgressTracker::kSamplingShare);
 }
 
-void RenderLoop::run_batch(uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map) {
+void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
   arena_.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<size_t>(0, tiles_.size(), 1),
         [&](const tbb::blocked_range<size_t>& range) {
-          for (size_t i = range.begin(); i < range.end(); ++i) sample_tile(i, begin, end, count_map);
+          for (size_t i = range.begin(); i < range.end(); ++i) sample_tile(i, begin, end);
         },
         tbb::simple_partitioner());
   });
 }
 
-void RenderLoop::sample_tile(size_t tile, uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map) {
+void RenderLoop::sample_tile(size_t tile, uint32_t begin, uint32_t end) {
   if (stop_.load(std::memory_order_relaxed)) return;
   const FlushDenormals flush;
   WorkUnit unit;
   unit.tile = tiles_[tile];
   unit.first_sample = input_.settings.first_sample + begin;
   unit.count = end - begin;
-  unit.count_map = count_map;
   if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
   Counters counters;
   const uint64_t cpu = thread_cpu_nanoseconds();
-  integrator_->sample(unit, frame_.get(), &counters, stop_);
+  if (adaptive_) {
+    counters = sample_cells(unit);
+  } else {
+    integrator_->sample(unit, frame_.get(), &counters, stop_);
+  }
   show(unit.tile);
   sample_cpu_ += thread_cpu_nanoseconds() - cpu;
   {
@@ -195,6 +212,21 @@ void RenderLoop::sample_tile(size_t tile, uint32_t begin, uint32_t end, const st
     frame_->counters.add(counters);
   }
   tile_done(uint64_t(unit.tile.area()) * unit.count);
+}
+
+// Cell by cell, so that the cost of each is known.
+Counters RenderLoop::sample_cells(WorkUnit unit) {
+  unit.first_map = &adaptive_->batch().first;
+  unit.count_map = &adaptive_->batch().count;
+  Counters sum;
+  for (const Region& cell : make_cells(unit.tile)) {
+    unit.tile = cell;
+    Counters counters;
+    integrator_->sample(unit, frame_.get(), &counters, stop_);
+    adaptive_->add_rays(cell, rays_of(counters));
+    sum.add(counters);
+  }
+  return sum;
 }
 
 // What the tile has now becomes what is seen of it. Readers take the picture from here: they wait for no sampler, whose batch may take

@@ -13,8 +13,8 @@
 #include "base/error.h"
 #include "frame/frame.h"
 #include "plan/plan.h"
+#include "render/adaptive_sampling.h"
 #include "render/clock.h"
-#include "render/noise_stop.h"
 #include "render/pilot.h"
 #include "render/render.h"
 #include "render/stats.h"
@@ -57,12 +57,16 @@ class RenderLoop {
   void sample();
   void reconstruct_frame();
   // False: nothing more to do.
-  bool next_batch(uint32_t begin, uint32_t* end, const NoiseStop& noise) const;
+  bool next_batch(uint32_t begin, uint32_t* end) const;
   uint32_t affordable_samples(uint32_t begin) const;
-  void run_batch(uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
-  void sample_tile(size_t tile, uint32_t begin, uint32_t end, const std::vector<uint32_t>* count_map);
+  // Finds out which cells are done and where the next samples go.
+  void judge();
+  void run_batch(uint32_t begin, uint32_t end);
+  void sample_tile(size_t tile, uint32_t begin, uint32_t end);
+  Counters sample_cells(WorkUnit unit);
   void show(const Region& tile);
   void tile_done(uint64_t pixel_samples);
+  bool is_done() const { return adaptive_ && adaptive_->all_done(); }  // by noise
   bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
   bool is_sampling() const { return phase_ < GRADUS_PHASE_RECONSTRUCTING; }
   void set_phase(GradusPhase phase);
@@ -81,6 +85,7 @@ class RenderLoop {
   std::shared_ptr<Frame> frame_;
   std::unique_ptr<Integrator> integrator_;
   GradientMap gradients_;
+  std::unique_ptr<AdaptiveSampling> adaptive_;  // where the plan is
 
   std::atomic<uint64_t> work_done_{0};  // pixel samples
   std::atomic<uint64_t> sample_cpu_{0};

@@ -37,6 +37,7 @@ struct FakeIntegrator final : Integrator {
   GradusSettings settings;
   bool gradients;
   float noise = 1.0f;
+  int32_t quiet_until = 0;  // left of this column there is a tenth of the noise
 
   uint32_t count_at(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) const {
     return unit.count_map ? (*unit.count_map)[frame.index(x, y)] : unit.count;
@@ -52,16 +53,21 @@ struct FakeIntegrator final : Integrator {
   void sample_pixel(const WorkUnit& unit, int32_t x, int32_t y, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const {
     const size_t i = frame->index(x, y);
     const uint32_t count = count_at(unit, *frame, x, y);
-    for (uint32_t s = unit.first_sample; s < unit.first_sample + count; ++s) {
+    const uint32_t first = unit.first_map ? (*unit.first_map)[i] : unit.first_sample;
+    for (uint32_t s = first; s < first + count; ++s) {
       if (stop.load()) return;
       const int half = int(s % 2);
-      const float value = fake_truth(x, y) + noise * (random_value(x, y, s) - 0.5f);
+      const float value = value_of(x, y, s);
       frame->components[0].primal[half][i] += Radiance(value, 0.5f * value, 2.0f * value, frame->channels == 4 ? 0.75f : 0.0f);
       ++frame->count[half][i];
       ++counters->rays_primary;
       for (PassPlane& plane : frame->passes) add_pass(&plane, i, value, s);
       if (gradients) add_gradients(unit, x, y, half, frame);
     }
+  }
+
+  float value_of(int32_t x, int32_t y, uint32_t sample) const {
+    return fake_truth(x, y) + (x < quiet_until ? 0.1f : 1.0f) * noise * (random_value(x, y, sample) - 0.5f);
   }
 
   static void add_pass(PassPlane* plane, size_t i, float value, uint32_t sample) {

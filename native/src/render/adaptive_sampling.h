@@ -1,0 +1,55 @@
+// Where the next samples go: cells of 16×16 that are good enough stop (contract 5.3), and the others share a batch by their noise.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/frame.h"
+#include "reconstruct/solver.h"
+#include "render/cell_noise.h"
+
+namespace gradus {
+
+// Of each pixel of the region: number of its next sample, and how many it takes (WorkUnit::first_map, count_map).
+struct SampleMap {
+  std::vector<uint32_t> first, count;
+};
+
+class AdaptiveSampling {
+ public:
+  // All pixels of a cell have the same number of samples in `frame`. A cell may stop from `first_check` samples on; once stopped it stays
+  // so.
+  AdaptiveSampling(const Frame& frame, float threshold, uint32_t first_check);
+
+  void judge(const std::vector<CellNoise>& noise);
+  // What the samples of a cell in a batch have cost. Thread-safe for different cells.
+  void add_rays(const Region& cell, uint64_t rays) { rays_[index(cell.x0, cell.y0)] += rays; }
+  const std::vector<Region>& cells() const { return cells_; }
+  bool all_done() const;
+
+  // Begins a batch with `mean` samples per pixel of the cells that go on. Equal for all until judge() has told them apart.
+  void start_batch(uint32_t mean);
+  const SampleMap& batch() const { return batch_; }
+  // Samples of the pixels that have most.
+  uint32_t most_taken() const;
+
+ private:
+  size_t index(int32_t x, int32_t y) const;
+  double smooth_spread(size_t cell) const;
+  double rays_per_sample(size_t cell) const;
+
+  Region region_;
+  uint32_t first_sample_;
+  float threshold_;
+  uint32_t first_check_;
+  std::vector<Region> cells_;
+  int columns_;
+  std::vector<uint32_t> begun_with_, taken_;
+  std::vector<uint64_t> rays_;
+  std::vector<double> spread_;  // relative deviation of one sample
+  std::vector<bool> done_;
+  bool judged_ = false;
+  SampleMap batch_;
+};
+
+}  // namespace gradus
