@@ -7,6 +7,7 @@
 #include "reconstruct/l2_with_gaps.h"
 #include "reconstruct/minimise_by_noise.h"
 #include "reconstruct/minimise_l1.h"
+#include "reconstruct/settled.h"
 #include "reconstruct/solver.h"
 #include "reconstruct/twiced_solver.h"
 
@@ -91,8 +92,8 @@ std::vector<float> reconstruct(const Frame& frame, int component, uint32_t recon
     return solve_l2_with_gaps(read_images(frame, component, false), alpha, cancel, report);
   }
   GradientImages images = read_images(frame, component, false);
-  if (reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED) read_deviations(frame, component, &images);
-  return reconstruct(images, reconstruction, alpha, cancel, report);
+  read_deviations(frame, component, &images);
+  return reconstruct_unsettled(images, reconstruction, alpha, cancel, report);
 }
 
 }  // namespace gradus

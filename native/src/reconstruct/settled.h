@@ -1,0 +1,26 @@
+// Pixels that need no reconstruction: background, and whatever else has no noise.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/frame.h"
+#include "reconstruct/solver.h"
+
+namespace gradus {
+
+// 1 where neither a pixel nor its differences, nor those of the eight pixels around it, show any deviation between the two halves: they
+// are known. `images` have deviations; what is missing or unknown is not settled, nor is what is black: light may be too rare to have been
+// found there. Without any surface (alpha 0) black is black.
+std::vector<uint8_t> find_settled(const GradientImages& images);
+
+// The smallest rectangle with all pixels that are not settled, and one pixel around them as far as there is one; empty where all are. No
+// difference that is in doubt crosses its border.
+Region unsettled_region(const std::vector<uint8_t>& settled, int width, int height);
+
+// By WEIGHTED or L1, whose weights hold such pixels only nearly, and whose twicing would give them a share of their neighbours' noise: they
+// keep their values, and what lies around all others is not solved for at all. `images` have deviations.
+std::vector<float> reconstruct_unsettled(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                                         SolveReport* report);
+
+}  // namespace gradus
