@@ -55,7 +55,7 @@ FILTERS = (
 
 SETTINGS: tuple[Setting, ...] = (
     Setting(
-        "samples", INT, 64, "Samples", "Most samples per pixel; the offset paths of a gradient belong to their sample", 1, 16777216, 4096
+        "samples", INT, 64, "Samples", "Samples per pixel, with their offset paths; with a noise threshold, on average", 1, 16777216, 4096
     ),
     Setting("min_samples", INT, 0, "Min Samples", "Least samples per pixel before a tile may stop; 0 = automatic", 0, 16777216, 4096),
     Setting(
@@ -63,7 +63,7 @@ SETTINGS: tuple[Setting, ...] = (
         FLOAT,
         0.01,
         "Noise Threshold",
-        "Stop where the estimated relative error is below it; 0 = off, unbiased. The same number leaves less noise than in Cycles",
+        "Stop where the estimated relative error is below it, share samples by noise elsewhere; 0 = off, unbiased. Stricter than in Cycles",
         0,
         MAX_FLOAT,
         1,

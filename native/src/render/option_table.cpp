@@ -24,10 +24,10 @@ constexpr const char* kFilters = "box gaussian blackman_harris";
 constexpr Option kOptions[] = {
     OPTION(width, kInt, 1920, 1, 65536, "", kSampling, "Width of the full frame in pixels"),
     OPTION(height, kInt, 1080, 1, 65536, "", kSampling, "Height of the full frame in pixels"),
-    OPTION(samples, kInt, 64, 1, 16777216, "", kOther, "Most samples per pixel; all offset paths of a base path belong to one sample"),
+    OPTION(samples, kInt, 64, 1, 16777216, "", kOther, "Samples per pixel, with a noise threshold their average; all offset paths of a base path belong to one sample"),
     OPTION(min_samples, kInt, 0, 0, 16777216, "", kOther, "Least samples per pixel before a tile may stop; 0 = automatic"),
     OPTION(noise_threshold, kFloat, 0.01, 0, kMaxFloat, "", kOther,
-           "A tile stops where the estimated relative error of the result is below it; 0 = off. The same number leaves less noise than in Cycles"),
+           "A tile stops where the estimated relative error of the result is below it, others share samples by their noise; 0 = off. The same number leaves less noise than in Cycles"),
     OPTION(time_limit, kFloat, 0, 0, kMaxFloat, "", kOther,
            "Seconds of sampling, 0 = no limit; the image so far is reconstructed and delivered"),
     OPTION(seed, kInt, 0, 0, kMaxInt, "", kSampling, "Seed of all random values"),
