@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "bsdf/frame.h"
 #include "bsdf/ggx.h"
@@ -70,7 +71,7 @@ Lobe* Closures::add() {
     make_room();
   }
   Lobe* lobe = &lobes_[static_cast<size_t>(count_++)];
-  *lobe = Lobe();
+  std::construct_at(lobe);
   return lobe;
 }
 

@@ -33,6 +33,9 @@ inline Vec3 orthonormal_tangent(const Vec3& normal, const Vec3& tangent) {
   return across / std::sqrt(length2);
 }
 
+// For what is a unit vector but for rounding: one step of Newton's from length 1.
+inline Vec3 renormalise(const Vec3& v) { return v * (1.5f - 0.5f * glm::dot(v, v)); }
+
 inline Frame3 make_frame(const Vec3& normal, const Vec3& tangent) { return {tangent, glm::cross(normal, tangent), normal}; }
 
 }  // namespace gradus

@@ -153,7 +153,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   if (!functions_of(source).sample(source, frame.to_local(wo), stay_below_one(rest / entry.probability), u, entry.sides, &local)) {
     return false;
   }
-  out->wi = glm::normalize(frame.to_world(local));
+  out->wi = renormalise(frame.to_world(local));
   out->diffuse = is_diffuse(source);
   BsdfEval all, kind;
   for_smooth(c, wo, out->wi, [&](const Lobe& lobe, bool, const BsdfEval& part) {

@@ -42,20 +42,31 @@ uint32_t bounce_visibility(LightPass pass, bool transmitted) {
   return pass == LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
 }
 
+namespace {
+
+void advance(bool diffuse, bool transmitted, bool dirac, RayState* state) {
+  state->flags = (transmitted ? kRayTransmission : kRayReflection) | (diffuse ? kRayDiffuse : kRayGlossy) | (dirac ? kRaySingular : 0u);
+  state->length = 0.0f;
+  ++state->depth;
+  ++(transmitted ? state->transmission_depth : diffuse ? state->diffuse_depth : state->glossy_depth);
+}
+
+}  // namespace
+
 RayState next_ray_state(const RayState& before, bool diffuse, bool transmitted, bool dirac) {
   RayState state = before;
-  state.flags = (transmitted ? kRayTransmission : kRayReflection) | (diffuse ? kRayDiffuse : kRayGlossy) | (dirac ? kRaySingular : 0u);
-  state.length = 0.0f;
-  ++state.depth;
-  ++(transmitted ? state.transmission_depth : diffuse ? state.diffuse_depth : state.glossy_depth);
+  advance(diffuse, transmitted, dirac, &state);
   return state;
 }
 
 void follow(const PathContext&, const SurfacePoint& from, const Vec3& direction, LightPass pass, bool transmitted, bool dirac,
             PathRay* ray) {
-  ray->ray = spawn_ray(from, direction);
+  ray->ray.origin = offset_origin(from, direction);
+  ray->ray.t_min = 0.0f;
+  ray->ray.direction = direction;
+  ray->ray.t_max = kInfinity;
   ray->visibility = bounce_visibility(pass, transmitted);
-  ray->state = next_ray_state(ray->state, pass == LightPass::Diffuse, transmitted, dirac);
+  advance(pass == LightPass::Diffuse, transmitted, dirac, &ray->state);
 }
 
 float survive(const VertexSample& u, PathState* state) {

@@ -31,9 +31,7 @@ void see_lamps(const PathContext& context, const Ray& whole, float begin, float 
   if (!context.scene.features.has_lamps_with_extent) {
     return;
   }
-  Ray part = whole;
-  part.t_min = std::max(whole.t_min, begin);
-  part.t_max = end;
+  const Ray part{whole.origin, std::max(whole.t_min, begin), whole.direction, end};
   intersect_lamps(context.scene, part, &segment->met);
   for (const LampHit& hit : segment->met) {
     segment->lamps.push_back({hit.point, hit.distance, segment->weight, segment->probability});

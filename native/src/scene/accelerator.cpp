@@ -130,7 +130,7 @@ std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Devic
   commit_scene(device->embree(), built->scene, progress, kMeshShare, 1.0f);
   size_t flat = 0;
   for (const InstanceData& instance : instances) {
-    std::vector<FlatTriangle>& triangles = built->flat_triangles.emplace_back();
+    FlatTriangles& triangles = built->flat_triangles.emplace_back();
     if (lies_in_top_level(instance, users)) triangles = make_flat_triangles(*instance.mesh, built->flat_positions[flat++]->data());
   }
   *cache = std::move(kept);

@@ -44,7 +44,7 @@ struct Accelerator {
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;
   std::vector<std::shared_ptr<const MeshData>> meshes;             // whose index buffers the top level reads
   std::vector<std::unique_ptr<std::vector<Vec3>>> flat_positions;  // likewise, of its vertices
-  std::vector<std::vector<FlatTriangle>> flat_triangles;           // of each instance; empty: not in the top level
+  std::vector<FlatTriangles> flat_triangles;                       // of each instance; empty: not in the top level
   ~Accelerator();
 };
 

@@ -75,7 +75,7 @@ void build_geometry(const std::shared_ptr<Device>& device, const std::vector<siz
   }
   snapshot->accelerator = state->accelerator;
   for (size_t k = 0; k < chosen.size(); ++k) {
-    const std::vector<FlatTriangle>& flat = state->accelerator->flat_triangles[k];
+    const FlatTriangles& flat = state->accelerator->flat_triangles[k];
     snapshot->instances[k].flat_triangles = flat.empty() ? nullptr : flat.data();
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "scene/emitter_table.h"
 #include "scene/snapshot.h"
@@ -186,7 +187,7 @@ void view_world(const Snapshot& snapshot, const EmitterPoint& point, const Recei
 // sampled from there, if that is known.
 void view_geometry(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver, const float* solid_angle,
                    EmitterView* view) {
-  *view = EmitterView();
+  std::construct_at(view);
   if (point.kind == EmitterKind::Lamp) view_lamp(snapshot.emitters->lamps[point.index], point, receiver.position, solid_angle, view);
   if (point.kind == EmitterKind::Triangle) view_triangle(snapshot, point, receiver, solid_angle, view);
   if (point.kind == EmitterKind::World) view_world(snapshot, point, receiver, view);
@@ -226,7 +227,7 @@ Rgb emitter_radiance(const Snapshot& snapshot, const EmitterPoint& point, const 
 
 void sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterPoint* point,
                     EmitterView* view) {
-  *point = EmitterPoint();
+  std::construct_at(point);  // assignment would make it on the stack, and copy it
   Finding finding;
   sample_any(snapshot, receiver, choice, u, point, &finding);
   view_geometry(snapshot, *point, receiver, &finding.solid_angle, view);

@@ -4,8 +4,8 @@
 
 namespace gradus {
 
-std::vector<FlatTriangle> make_flat_triangles(const MeshData& mesh, const Vec3* positions) {
-  std::vector<FlatTriangle> out(mesh.triangle_count);
+FlatTriangles make_flat_triangles(const MeshData& mesh, const Vec3* positions) {
+  FlatTriangles out(mesh.triangle_count);
   tbb::parallel_for(tbb::blocked_range<uint32_t>(0, mesh.triangle_count, 1 << 12), [&](const tbb::blocked_range<uint32_t>& range) {
     for (uint32_t i = range.begin(); i < range.end(); ++i) {
       if (mesh.is_dropped(i)) continue;

@@ -1,8 +1,7 @@
 // What a hit needs of a triangle that lies in the top level, in one cache line: in large scenes each line costs the latency of memory.
 #pragma once
 
-#include <vector>
-
+#include "base/huge_pages.h"
 #include "scene/mesh.h"
 #include "scene/plane.h"
 
@@ -15,7 +14,9 @@ struct alignas(64) FlatTriangle {
 };
 static_assert(sizeof(FlatTriangle) == 64);
 
+using FlatTriangles = HugePageVector<FlatTriangle>;
+
 // positions: of the mesh's vertices, in internal space.
-std::vector<FlatTriangle> make_flat_triangles(const MeshData& mesh, const Vec3* positions);
+FlatTriangles make_flat_triangles(const MeshData& mesh, const Vec3* positions);
 
 }  // namespace gradus

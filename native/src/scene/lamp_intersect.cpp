@@ -50,13 +50,19 @@ bool hit_facing_disk(const Lamp& lamp, const Ray& ray, EmitterPoint* point, floa
   return glm::dot(point->barycentric, point->barycentric) <= 1.0f;
 }
 
+bool within_ellipse(const Lamp& lamp, float x, float y) {
+  const float u = x / lamp.half_width, v = y / lamp.half_height;
+  return u * u + v * v <= 1.0f;
+}
+
 // One test at the end: on which side a ray passes the lamp cannot be foretold, that it misses nearly always can.
 bool hit_flat(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
   const float cosine = glm::dot(ray.direction, lamp.shine);
   *distance = glm::dot(lamp.position - ray.origin, lamp.shine) / cosine;
   const Vec3 offset = ray.origin + ray.direction * *distance - lamp.position;
-  const float u = glm::dot(offset, lamp.axis_x) / lamp.half_width, v = glm::dot(offset, lamp.axis_y) / lamp.half_height;
-  const bool inside = lamp.shape == Lamp::Shape::Ellipse ? u * u + v * v <= 1.0f : std::max(std::fabs(u), std::fabs(v)) <= 1.0f;
+  const float x = glm::dot(offset, lamp.axis_x), y = glm::dot(offset, lamp.axis_y);
+  const bool inside = lamp.shape == Lamp::Shape::Ellipse ? within_ellipse(lamp, x, y)
+                                                         : int(std::fabs(x) <= lamp.half_width) & int(std::fabs(y) <= lamp.half_height);
   if (!(int(cosine < 0.0f) & int(*distance > ray.t_min) & int(*distance < ray.t_max) & int(inside))) return false;
   point->normal = lamp.shine;
   point->position = lamp.position + offset;

@@ -88,7 +88,7 @@ void LampScene::intersect(const std::vector<Lamp>& lamps, const Ray& ray, std::v
   if (!is_finite(ray.origin) || !is_finite(ray.direction) || !(ray.t_min < ray.t_max)) return;
   for (const uint32_t i : listed_) try_lamp(lamps, i, ray, hits);
   if (scene_) trace_placed(lamps, ray, hits);
-  std::sort(hits->begin(), hits->end(), before);
+  if (hits->size() > 1) std::sort(hits->begin(), hits->end(), before);
 }
 
 void LampScene::trace_placed(const std::vector<Lamp>& lamps, const Ray& ray, std::vector<LampHit>* hits) const {

@@ -1,0 +1,39 @@
+// Large arrays that are read at random: with pages of 4 KiB nearly each access would look for its page in memory, too.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace gradus {
+
+// Asks for huge pages where an array fills them; without them all works as well.
+template <class T>
+struct HugePageAllocator {
+  using value_type = T;
+  static constexpr size_t kPage = size_t(1) << 21;
+
+  HugePageAllocator() = default;
+  template <class U>
+  HugePageAllocator(const HugePageAllocator<U>&) {}
+
+  T* allocate(size_t count) {
+    const size_t bytes = count * sizeof(T);
+    const size_t alignment = bytes < kPage ? std::max(alignof(std::max_align_t), alignof(T)) : kPage;
+    void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    if (memory == nullptr) throw std::bad_alloc();
+    if (alignment == kPage) madvise(memory, bytes, MADV_HUGEPAGE);
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, size_t) { std::free(memory); }
+  friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) { return true; }
+};
+
+template <class T>
+using HugePageVector = std::vector<T, HugePageAllocator<T>>;
+
+}  // namespace gradus
