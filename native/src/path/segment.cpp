@@ -25,6 +25,15 @@ float pass_probability(const ShadeResult& shade) {
   return through / (through + std::max(1.0f - through, least));
 }
 
+void clear(Segment* segment) {
+  segment->end = SegmentEnd::Escaped;
+  segment->weight = Rgb(1.0f);
+  segment->probability = 1.0f;
+  segment->crossed = 0;
+  segment->length = 0.0f;
+  segment->lamps.clear();
+}
+
 // Lamps on a part of the segment. The ray is that of the whole segment: a lamp that faces its receiver faces the segment's start, not the
 // surface that the ray has just passed, as light sampling has it.
 void see_lamps(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
@@ -57,14 +66,28 @@ void shade_vertex(const PathContext& context, const RayState& ray, Vertex* verte
   }
 }
 
+bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* segment) {
+  clear(segment);
+  segment->end = SegmentEnd::Exhausted;
+  see_lamps(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
+  if (!segment->lamps.empty()) {
+    Hit hit;
+    segment->end = context.scene.intersect(ray.ray, ray.visibility, &hit) ? SegmentEnd::Exhausted : SegmentEnd::Escaped;
+    std::erase_if(segment->lamps, [&](const LampSighting& lamp) { return hit.valid() && !(lamp.distance < hit.t); });
+    return true;
+  }
+  if (!context.scene.features.world_shines) {
+    return false;
+  }
+  if (!context.scene.meets(ray.ray, ray.visibility)) {
+    segment->end = SegmentEnd::Escaped;
+  }
+  return true;
+}
+
 void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
                    Segment* segment, Shading shading) {
-  segment->end = SegmentEnd::Escaped;
-  segment->weight = Rgb(1.0f);
-  segment->probability = 1.0f;
-  segment->crossed = 0;
-  segment->length = 0.0f;
-  segment->lamps.clear();
+  clear(segment);
   Ray part = ray->ray;
   float passed = 0.0f;
   vertex->wo = -part.direction;

@@ -48,6 +48,9 @@ enum class Shading : uint8_t { Now, Later };
 // surface, and counts transparent surfaces in ray->state.
 void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
                    Segment* segment, Shading shading = Shading::Now);
+// The last ray of a path where SceneFeatures::only_lights_shine: the same sightings and the same world as trace_segment() finds, mostly
+// without asking for surfaces. Ends Escaped or Exhausted. True: a ray was traced.
+bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* segment);
 // Closures, where they are still missing. ray: that arrived.
 void shade_vertex(const PathContext& context, const RayState& ray, Vertex* vertex);
 

@@ -25,6 +25,7 @@ struct PathResult {
 
 // Looks on and does nothing: plain path tracing.
 struct NoObserver {
+  static constexpr bool kWantsVertices = false;  // of rays that end a path
   void begin(const Sampler&, const Vec2&, const Vec2&) {}
   void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
   void lamp(const RaySource&, const Contribution&, const LampSighting&) {}
@@ -91,12 +92,22 @@ class PathTracer {
   void follow_rays(const Sampler& sampler, const Vertex* from) {
     segment_ = &s_.segment;
     for (bool goes_on = true; goes_on;) {
+      if (sees_lights_alone()) {
+        counters_.rays_bounce += trace_to_lights(context_, state_.ray, &s_.segment) ? 1 : 0;
+        see(sampler, RaySource{from, &s_.event}, s_.vertices[0]);
+        return;
+      }
       Vertex* vertex = from == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
       ++counters_.rays_bounce;
       extend(sampler, &next_hit_, vertex);
       goes_on = step(sampler, RaySource{from, &s_.event}, vertex);
       from = vertex;
     }
+  }
+
+  // The path's last ray, of which nobody wants to know more than the light that it finds.
+  bool sees_lights_alone() const {
+    return !Observer::kWantsVertices && recorder_ == nullptr && state_.emission_only && context_.scene.features.only_lights_shine;
   }
 
   // The recorder looks at the closures of the next vertex.
@@ -140,8 +151,10 @@ class PathTracer {
     if (!scatter(context_, u, vertex, &state_, &s_.event)) {
       return false;
     }
-    context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
-    context_.scene.prefetch(next_hit_);
+    if (!sees_lights_alone()) {
+      context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
+      context_.scene.prefetch(next_hit_);
+    }
     return true;
   }
 

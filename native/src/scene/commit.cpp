@@ -147,6 +147,20 @@ void find_sharpest(Snapshot* snapshot) {
   for (const InstanceData& instance : snapshot->instances) std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
 }
 
+void find_what_shines(Snapshot* snapshot) {
+  const auto dark = [&](uint32_t m) {
+    const MaterialData& material = *snapshot->materials[m];
+    return !material.emits && !material.may_be_transparent && !material.uses_fallback;
+  };
+  snapshot->features.only_lights_shine = std::all_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const InstanceData& i) {
+    return i.materials.empty() ? dark(0) : std::all_of(i.materials.begin(), i.materials.end(), dark);
+  });
+  const uint32_t world = snapshot->world_material;
+  const MaterialData* material = world < snapshot->materials.size() ? snapshot->materials[world].get() : nullptr;
+  snapshot->features.world_shines =
+      material != nullptr && material->emits && !(material->emission_is_constant && is_black(material->constant_emission));
+}
+
 }  // namespace
 
 void CommitMonitor::check() const {
@@ -189,6 +203,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     place_world(*state_, materials, snapshot.get());
     build_lights(device_, place_lamps(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
+    find_what_shines(snapshot.get());
   };
   // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.
   device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });

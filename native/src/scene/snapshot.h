@@ -47,6 +47,8 @@ struct SceneFeatures {
   bool has_lamps_with_extent = false;
   float min_alpha = 1.0f;  // roughness: surely no lobe is sharper
   bool has_emitters = false;
+  bool only_lights_shine = false;  // no surface has anything to show to a ray that ends a path: it sees lamps and the world alone
+  bool world_shines = true;
 };
 
 // All positions that go in and come out are in internal space: world = internal + origin. The camera and the lamps are moved alike, so
@@ -59,6 +61,8 @@ class Snapshot {
   void intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const;
   // Some surface that is visible to shadow rays lies on the segment, transparency ignored.
   bool occluded(const Ray& ray) const;
+  // Some surface that such rays meet lies on it.
+  bool meets(const Ray& ray, uint32_t visibility) const;
   void occluded4(const Ray rays[4], bool blocked[4]) const;
   // Transmittance of the segment through transparent surfaces, at most max_transparent of them; 0 if blocked.
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;

@@ -89,6 +89,8 @@ bool Snapshot::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
 
 bool Snapshot::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }
 
+bool Snapshot::meets(const Ray& ray, uint32_t visibility) const { return blocked_by(*accelerator, ray, visibility & kMaskVisibility); }
+
 void Snapshot::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const {
   alignas(16) int valid[4];
   RTCRayHit4 query;

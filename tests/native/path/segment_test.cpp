@@ -73,6 +73,41 @@ TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
   EXPECT_GT(seen, 5);
 }
 
+// The last ray of a path asks for no surface where none shines, and must find the same: lamps before and behind walls, and the world.
+TEST(Segment, LastRaysFindTheSameLightsWithoutSurfaces) {
+  PathScene scene;
+  test::Surface grey;
+  grey.diffuse = Rgb(0.5f);
+  const uint64_t wall = scene.material(grey);
+  scene.quad(Vec3(2, -1, -1), Vec3(0, 2, 0), Vec3(0, 0, 2), wall);
+  scene.light(lamp_at(Vec3(1.5f, 0, 0), 0.2f));
+  scene.light(lamp_at(Vec3(4, 0.5f, 0), 1.5f));
+  scene.world(Rgb(0.5f));
+  scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
+  const IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const PathContext context(*c.snapshot, c.camera, c.settings);
+  ASSERT_TRUE(context.scene.features.only_lights_shine);
+  int lamps = 0, escaped = 0;
+  for (uint32_t i = 0; i < 10000; ++i) {
+    SampleKey key;
+    key.index = i;
+    const Vec2 u = Sampler(key).get2(0);
+    PathRay ray;
+    ray.ray = Ray{Vec3(0.0f), 0.0f, glm::normalize(Vec3(1.0f, 2.0f * u.x - 1.0f, 2.0f * u.y - 1.0f)), kInfinity};
+    Segment lights, all;
+    Vertex vertex;
+    trace_to_lights(context, ray, &lights);
+    trace_segment(context, Sampler(key), 0, nullptr, &ray, &vertex, &all);
+    ASSERT_EQ(lights.lamps.size(), all.lamps.size());
+    for (size_t k = 0; k < all.lamps.size(); ++k) EXPECT_EQ(lights.lamps[k].distance, all.lamps[k].distance);
+    EXPECT_EQ(lights.end == SegmentEnd::Escaped, all.end == SegmentEnd::Escaped);
+    lamps += int(all.lamps.size());
+    escaped += all.end == SegmentEnd::Escaped;
+  }
+  EXPECT_GT(lamps, 100);
+  EXPECT_GT(escaped, 500);
+}
+
 // The surfaces that a path had passed before did not count.
 TEST(Segment, TransmittanceGoesOnCountingTransparentSurfaces) {
   PathScene scene;
