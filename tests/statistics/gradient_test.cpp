@@ -447,6 +447,82 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Edges,
                                          Halves{"OfAHoldoutShader", {}, true, test::matte(Rgb(0.8f)), Halves::Shader}),
                          [](const testing::TestParamInfo<Halves>& info) { return std::string(info.param.name); });
 
+// Two pixels of a floor under a light, and what stands on it or hangs above.
+struct Above {
+  const char* name;
+  void (*add)(PathScene*);
+  Surface floor;
+  float most;  // variance of the sampled difference over that of the image
+};
+
+uint64_t wall(PathScene* scene) { return scene->material(test::matte(Rgb(0.8f))); }
+void add_mirror_ball(PathScene* scene) { scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glossy(0.0f)), 12, true); }
+void add_polished_ball(PathScene* scene) { scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glossy(0.25f)), 12, true); }
+void add_glass_ball(PathScene* scene) { scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glass(0.0f)), 12, true); }
+void add_mirror(PathScene* scene) {
+  scene->quad(Vec3(0.4f, 0.2f, -0.2f), Vec3(0, 0, 0.4f), Vec3(0, 0.4f, 0), scene->material(test::glossy(0.0f)));
+}
+void add_mirror_on_the_floor(PathScene* scene) {
+  scene->quad(Vec3(0.02f, 0, -0.2f), Vec3(0, 0, 0.4f), Vec3(0, 0.4f, 0), scene->material(test::glossy(0.0f)));
+}
+void add_pane(PathScene* scene) {
+  const uint64_t glass = scene->material(test::glass(0.0f));
+  scene->quad(Vec3(-0.5f, 0.6f, -0.5f), Vec3(0, 0, 1), Vec3(1, 0, 0), glass);
+  scene->quad(Vec3(-0.5f, 0.5f, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1), glass);
+}
+void add_corner(PathScene* scene) { scene->quad(Vec3(0.02f, 0, -1), Vec3(0, 0, 2), Vec3(0, 1, 0), wall(scene)); }
+
+class Reflections : public testing::TestWithParam<Above> {
+ protected:
+  GradientImages image(uint32_t seed) const {
+    PathScene scene;
+    Surface light;
+    light.emission = Rgb(30.0f);
+    scene.quad(Vec3(-1, 0, 1), Vec3(2, 0, 0), Vec3(0, 0, -2), scene.material(GetParam().floor));
+    scene.quad(Vec3(-0.8f, 1.2f, -0.1f), Vec3(0.2f, 0, 0), Vec3(0, 0, 0.2f), scene.material(light));
+    GetParam().add(&scene);
+    scene.camera(Vec3(-0.3f, 0.7f, 2.0f), Vec3(0, 0, 0), 0.02f);
+    GradusSettings settings = test::test_settings(2, 1);
+    settings.seed = seed;
+    settings.max_bounces = 4;
+    const IntegratorContext c = scene.context(settings);
+    Frame frame = test::make_test_frame(c.settings, true);
+    test::sample_frame(*make_gradient_integrator(c), 0, 256, &frame);
+    return read_images(frame, 0, false);
+  }
+};
+
+// A path that missed the ball where its base met it, or met another part of it, shared nothing of what the ball shows.
+TEST_P(Reflections, B7_WhatTheyCastOnTheFloorIsSharedByNeighbours) {
+  constexpr int renders = 400;
+  double sum[3] = {}, squares[3] = {};
+  for (uint32_t seed = 0; seed < renders; ++seed) {
+    const GradientImages images = image(seed);
+    const double sampled = images.dx[0], of_image = double(images.primal[images.channels]) - double(images.primal[0]);
+    const double values[3] = {sampled, of_image, sampled - of_image};
+    for (int i = 0; i < 3; ++i) {
+      sum[i] += values[i];
+      squares[i] += values[i] * values[i];
+    }
+  }
+  const auto variance = [&](int i) { return squares[i] / renders - (sum[i] / renders) * (sum[i] / renders); };
+  std::printf("  variance %.4f of the image's, difference of means %.2f sigma\n", variance(0) / variance(1),
+              sum[2] / renders / std::sqrt(variance(2) / renders));
+  EXPECT_LT(variance(0), GetParam().most * variance(1));
+  EXPECT_LT(std::fabs(sum[2] / renders), 4.0 * std::sqrt(variance(2) / renders));
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Reflections,
+                         testing::Values(Above{"MirrorBall", add_mirror_ball, test::matte(Rgb(0.8f)), 0.45f},
+                                         Above{"PolishedBall", add_polished_ball, test::matte(Rgb(0.8f)), 0.18f},
+                                         Above{"GlassBall", add_glass_ball, test::matte(Rgb(0.8f)), 0.21f},
+                                         Above{"Mirror", add_mirror, test::matte(Rgb(0.8f)), 0.25f},
+                                         Above{"MirrorOnTheFloor", add_mirror_on_the_floor, test::matte(Rgb(0.8f)), 0.3f},
+                                         Above{"Pane", add_pane, test::matte(Rgb(0.8f)), 0.12f},
+                                         Above{"Corner", add_corner, test::matte(Rgb(0.8f)), 0.6f},
+                                         Above{"RoughJustAboveTheThreshold", add_mirror_ball, test::glossy(0.33f), 0.3f}),
+                         [](const testing::TestParamInfo<Above>& info) { return std::string(info.param.name); });
+
 std::vector<Scenario> all_scenarios() {
   std::vector<Scenario> all;
   for (int i = 0; i < static_cast<int>(Scenario::Count); ++i) all.push_back(static_cast<Scenario>(i));

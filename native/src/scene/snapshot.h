@@ -76,6 +76,8 @@ class Snapshot {
 
   // Corners of a triangle of an instance, in internal space.
   std::array<Vec3, 3> corners(uint32_t instance, uint32_t triangle) const;
+  // Largest change of the smooth normal along an edge of the triangle, per length: one over a sphere's radius; 0 where faces are flat.
+  float curvature(const Hit& hit) const;
   // Material (index in `materials`) of a triangle of an instance.
   uint32_t material_of(uint32_t instance, uint32_t triangle) const;
 

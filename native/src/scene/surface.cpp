@@ -102,6 +102,21 @@ std::array<Vec3, 3> Snapshot::corners(uint32_t index, uint32_t triangle) const {
   return p;
 }
 
+float Snapshot::curvature(const Hit& hit) const {
+  const InstanceData& instance = instances[hit.instance];
+  std::array<Vec3, 3> n;
+  if (!triangle_normals(*instance.mesh, hit.triangle, &n)) return 0.0f;
+  const std::array<Vec3, 3> p = corners(hit.instance, hit.triangle);
+  for (Vec3& v : n) v = glm::normalize(instance.normal_to_world * v);
+  float largest = 0.0f;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t next = (i + 1) % 3;
+    const float length = glm::length(p[next] - p[i]);
+    if (length > 0.0f) largest = std::max(largest, glm::length(n[next] - n[i]) / length);
+  }
+  return largest;
+}
+
 Vec3 Snapshot::position_at(const Hit& hit, bool next) const {
   const InstanceData& instance = instances[hit.instance];
   const Mat4& to_world = next ? instance.to_world_next : instance.to_world_previous;

@@ -1,5 +1,6 @@
 #include "shift/reconnection.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gradus {
@@ -7,6 +8,14 @@ namespace gradus {
 float emitter_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset) {
   const float ratio = distance_base / distance_offset;
   return cosine_offset / cosine_base * ratio * ratio;
+}
+
+bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curvature, bool transmission) {
+  constexpr float kCurved = 0.5f;  // curvature · edge: where the directions behind z differ alike in both cases
+  constexpr float kSmall = 0.2f;   // of a mirror's edge: what is lost at its rim outweighs what its flatness keeps
+  const float edge = std::min(glm::length(z - x), glm::length(z - y));
+  const float footprint = glm::length(x - y);
+  return curvature * edge > kCurved ? footprint < edge : !transmission && footprint < kSmall * edge;
 }
 
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal) {

@@ -17,6 +17,13 @@ struct Reconnection {
 // target. Inverse: base and offset exchanged.
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal);
 
+// Class D before a sharp event at z: whether the paths from x and y share z, where the event is copied and their rays part, or keep their
+// direction and meet the sharp surface at two places. Behind it their directions differ by about |x − y|/|z − x| in the first case, by
+// 2 |x − y| times the curvature in the second. So curved surfaces are shared; flat ones, which leave parallel rays parallel, where that
+// costs little (sharing never misses a mirror beyond its rim), but not flat panes, behind which most often lies the distance. Never over
+// edges shorter than |x − y|, the footprint of a pixel's ray where the paths stand. Symmetric in x and y.
+bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curvature, bool transmission);
+
 // Jacobian of copying an emitter point, in solid angle at the receivers; 1 at infinity, where the direction is copied, and for Dirac
 // emitters, whose choice is discrete.
 float emitter_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "gradus/gradus.h"
+#include "support/path_scene.h"
 
 namespace gradus {
 namespace {
@@ -51,6 +52,24 @@ TEST(SmoothNormals, WeightedByAngle) {
   const auto mesh = make_mesh(desc);
   const Vec3 expected = glm::normalize(2.0f * Vec3(0, 0, 1) + Vec3(1, 0, 0));
   EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
+}
+
+// A ball's curvature is one over its radius, whatever its scale; a quad has none.
+TEST(SmoothNormals, Curvature) {
+  test::PathScene scene;
+  const uint64_t material = scene.material(test::matte(Rgb(0.5f)));
+  scene.place = Mat4(2.0f);
+  scene.place[3][3] = 1.0f;
+  scene.ball(Vec3(0), 0.25f, material, 16, true);
+  scene.quad(Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0), material);
+  const IntegratorContext context = scene.context(test::test_settings(4, 4));
+  const Snapshot& snapshot = *context.snapshot;
+  for (uint32_t i = 0; i < 2; ++i) {
+    Hit hit;
+    hit.instance = i;
+    hit.triangle = snapshot.instances[i].mesh->triangle_count / 2;
+    EXPECT_NEAR(snapshot.curvature(hit), snapshot.instances[i].mesh->triangle_count == 2 ? 0.0f : 2.0f, 0.1f);
+  }
 }
 
 }  // namespace

@@ -195,6 +195,63 @@ TEST(B4_Shift, Reconnection) {
   EXPECT_GE(inverse_ok, 0.999 * kShifts);
 }
 
+// A base that meets a sharp surface at z, behind a rough vertex: the offset reaches z, too, copies the event there, and finds its way back.
+TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
+  Random random(11);
+  int back_home = 0;
+  for (int i = 0; i < kShifts; ++i) {
+    const bool transmitted = i % 2 == 1;
+    const Vec3 normal(0, 0, 1), z(0.0f);
+    const auto above = [&] {
+      Vec3 p = 3.0f * random.direction();
+      p.z = std::fabs(p.z) + 0.3f;
+      return p;
+    };
+    const Vec3 x = above(), y = x + 0.1f * random.direction();
+    const HalfVectorFrame from_x{glm::normalize(x), normal, 1.5f}, from_y{glm::normalize(y), normal, 1.5f};
+    const Vec3 across(from_x.wo.x, from_x.wo.y, 0.0f);
+    const Vec3 ideal =
+        transmitted ? -across / 1.5f - normal * std::sqrt(1.0f - glm::dot(across, across) / 2.25f) : -across + normal * from_x.wo.z;
+    const Vec3 wi = glm::normalize(ideal + 0.1f * random.direction());
+    const ShiftedDirection there = copy_half_vector(from_x, wi, from_y, transmitted);
+    if (there.failure != ShiftFailure::None) {
+      ++back_home;
+      continue;
+    }
+    const ShiftedDirection back = copy_half_vector(from_y, there.wi, from_x, transmitted);
+    const float jacobian = reconnect(x, y, z, normal).jacobian * there.jacobian * reconnect(y, x, z, normal).jacobian * back.jacobian;
+    const bool home = back.failure == ShiftFailure::None && glm::length(back.wi - wi) < 1e-3f && std::fabs(jacobian - 1.0f) < 1e-2f;
+    back_home += home ? 1 : 0;
+  }
+  EXPECT_GE(back_home, 0.99 * kShifts);
+}
+
+TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
+  Random random(13);
+  int shared = 0;
+  constexpr int kCases = 10000;
+  for (int i = 0; i < kCases; ++i) {
+    const Vec3 x = random.direction(), y = x + std::exp2(-float(i % 8)) * random.direction(), z = 2.0f * random.direction();
+    const float curvature = std::exp2(float(i % 11) - 5.0f);
+    const bool transmission = i % 3 == 0;
+    const bool shares = shares_sharp_vertex(x, y, z, curvature, transmission);
+    EXPECT_EQ(shares, shares_sharp_vertex(y, x, z, curvature, transmission));
+    shared += shares ? 1 : 0;
+  }
+  EXPECT_GT(shared, kCases / 10);
+  EXPECT_LT(shared, kCases - kCases / 10);
+}
+
+TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
+  const Vec3 x(0, 0, 0), y(0.1f, 0, 0);
+  const Vec3 far(0, 0, 1), close(0, 0, 0.05f);
+  EXPECT_TRUE(shares_sharp_vertex(x, y, far, 0.0f, false));
+  EXPECT_TRUE(shares_sharp_vertex(x, y, far, 5.0f, true));
+  EXPECT_FALSE(shares_sharp_vertex(x, y, far, 0.0f, true));
+  EXPECT_FALSE(shares_sharp_vertex(x, y, close, 0.0f, false));
+  EXPECT_FALSE(shares_sharp_vertex(x, y, close, 5.0f, true));
+}
+
 TEST(B4_Shift, SmallestRotationIsUndoneByItsInverse) {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {

@@ -111,6 +111,50 @@ void OffsetPaths::link_all(const Vertex& vertex) {
   }
 }
 
+// Whether the offset has a connection to the shared vertex, from the side that the base sees.
+bool OffsetPaths::arrives(OffsetPath* o, const Vertex& vertex) {
+  if (!o->link.open) {
+    o->stage = OffsetStage::Dead;  // its cause was counted
+  } else if (!(glm::dot(vertex.facing_normal(), o->linked->wo) > 0.0f)) {
+    fail(o, ShiftFailure::Side);
+  }
+  return o->stage == OffsetStage::Pending;
+}
+
+bool OffsetPaths::shares(const Vec3& y, const Vertex& z, ScatterClass next) const {
+  return shares_sharp_vertex(base_from_->point.position, y, z.point.position, context_.scene.curvature(z.point.hit),
+                             next == ScatterClass::Transmission);
+}
+
+// Class D before class R or T: each path goes on by a ray of its own, from the base's vertex or from one of its own.
+void OffsetPaths::reach_sharp(const Vertex& vertex, ScatterClass next) {
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Pending && !shares(o.here->point.position, vertex, next)) {
+      copy_direction(&o, next);
+    }
+  }
+  link_all(vertex);
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Pending && arrives(&o, vertex)) {
+      share_vertex(&o, vertex);
+    }
+  }
+}
+
+// The base's vertex as seen from the offset becomes a vertex of its own, at which the event will be copied.
+void OffsetPaths::share_vertex(OffsetPath* o, const Vertex& vertex) {
+  ++counters_.shifts_reconnected;
+  see_linked(o, vertex);
+  o->advance_to_linked();
+  o->state.throughput = o->link.throughput;
+  o->state.ray.state.transparent_depth = o->link.transparent_depth;
+  o->ratio = o->link.ratio;
+  o->kind_ratio = o->link.kind_ratio;
+  o->mixed = false;
+  o->stage = OffsetStage::Traced;
+  include_kind(o);
+}
+
 void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const ScatterEvent& event) {
   part_by_class(vertex, u);
   bool pending = false;
@@ -121,24 +165,15 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
     }
     pending |= o.stage == OffsetStage::Pending;
   }
-  if (pending && reconnects(event.scatter_class)) {
+  if (pending && !reconnects(event.scatter_class)) {
+    reach_sharp(vertex, event.scatter_class);
+    return;
+  }
+  if (pending) {
     link_all(vertex);
   }
   for (OffsetPath& o : offsets_) {
-    if (o.stage != OffsetStage::Pending) {
-      continue;
-    }
-    if (!reconnects(event.scatter_class)) {
-      copy_direction(&o);
-      continue;
-    }
-    if (!o.link.open) {
-      o.stage = OffsetStage::Dead;  // its cause was counted
-      continue;
-    }
-    // Both must see the same side of the shared surface.
-    if (!(glm::dot(vertex.facing_normal(), o.linked->wo) > 0.0f)) {
-      fail(&o, ShiftFailure::Side);
+    if (o.stage != OffsetStage::Pending || !arrives(&o, vertex)) {
       continue;
     }
     const ShiftedEvent shared = linked_event(&o, vertex, event);

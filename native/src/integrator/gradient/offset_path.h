@@ -1,8 +1,8 @@
 // The four shifted paths that follow a base path (thesis 5.4).
 //
-// Which shift a path takes is decided by its classes alone, which a shift copies; so base and offset always decide alike:
+// Which shift a path takes is decided by its classes, which a shift copies, and by predicates that are symmetric in base and offset:
 //   - a vertex of class D whose successor is of class D, or emits, or is a light sample: reconnection at the successor, the rest is shared;
-//   - class D before class R or T: the direction is copied and the offset traces a ray of its own;
+//   - class D before class R or T: the offset meets its base there, or copies the direction (shares_sharp_vertex());
 //   - class R or T: the event is copied (half-vector, or the Dirac lobe), the offset traces a ray of its own.
 // A light sample at a vertex of its own: the emitter point is copied.
 // Where the classes of two vertices differ, or one of two rays meets no surface, base and offset part (offset_part.cpp).
@@ -72,9 +72,20 @@ struct OffsetPath {
   // To the next vertex of its own. The current one may belong to the path of its pixel.
   void advance() {
     previous = here;
-    here = here == &storage[0] ? &storage[1] : &storage[0];
+    here = unused(previous, linked);
     segment = &own_segment;
     camera = nullptr;
+  }
+  // To the base's vertex, as seen from here.
+  void advance_to_linked() {
+    previous = here;
+    here = linked;
+    linked = unused(previous, here);
+  }
+  Vertex* unused(const Vertex* a, const Vertex* b) {
+    Vertex* v = storage;
+    while (v == a || v == b) ++v;
+    return v;
   }
 
   // Where its last segment came from.

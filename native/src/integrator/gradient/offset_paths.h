@@ -56,7 +56,7 @@ class OffsetPaths {
   CameraVertex* known_vertex(int k) const;
   void share(OffsetPath* offset, CameraVertex* vertex);
   void copy_events(const RaySource& source, const PathState& state);
-  void copy_direction(OffsetPath* offset);
+  void copy_direction(OffsetPath* offset, ScatterClass next);
   // From here on the path depends on the kind of its last bounce.
   void include_kind(OffsetPath* offset);
   void leave(OffsetPath* offset, const ShiftedEvent& event, const PathState& state);
@@ -65,10 +65,14 @@ class OffsetPaths {
   // Reconnection (offset_link.cpp).
   void link_all(const Vertex& vertex);
   ShiftFailure try_link(OffsetPath* offset, const Vertex& vertex, ShiftedEvent* event) const;
+  bool arrives(OffsetPath* offset, const Vertex& vertex);
   void open_link(OffsetPath* offset, const ShiftedEvent& event, const Rgb& through);
   RayState linked_ray(const OffsetPath& offset, const Vertex& vertex) const;
   Rgb linked_emission(const OffsetPath& offset, const Vertex& vertex) const;
   void see_linked(OffsetPath* offset, const Vertex& vertex) const;
+  void reach_sharp(const Vertex& vertex, ScatterClass next);
+  void share_vertex(OffsetPath* offset, const Vertex& vertex);
+  bool shares(const Vec3& y, const Vertex& z, ScatterClass next) const;
   ShiftedEvent linked_event(OffsetPath* offset, const Vertex& vertex, const ScatterEvent& event) const;
 
   // Emitters (offset_emission.cpp, offset_light.cpp).

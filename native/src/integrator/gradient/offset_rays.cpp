@@ -107,8 +107,8 @@ void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
   }
 }
 
-// Class D before class R or T: no connection is possible, so the offset leaves in the base's direction.
-void OffsetPaths::copy_direction(OffsetPath* o) {
+// Class D before class R or T, away from the base's vertex: in the base's direction.
+void OffsetPaths::copy_direction(OffsetPath* o, ScatterClass next) {
   ++counters_.shifts_replayed;  // tried, too
   const ShiftedEvent event = event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f);
   if (event.failure != ShiftFailure::None) {
@@ -122,6 +122,10 @@ void OffsetPaths::copy_direction(OffsetPath* o) {
   trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->own_segment);
   if (o->segment->end != SegmentEnd::Surface) {
     fail(o, ShiftFailure::Missed);
+    return;
+  }
+  if (shares(o->previous->point.position, *o->here, next)) {
+    fail(o, ShiftFailure::Class);  // the way back would share this vertex
     return;
   }
   o->state.throughput *= o->segment->weight;
