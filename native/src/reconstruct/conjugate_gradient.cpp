@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/types.h"
 #include "reconstruct/rows.h"
 
 namespace gradus {
@@ -10,6 +11,8 @@ namespace {
 
 // Rows at a time: direct() makes two rows around each piece once more.
 constexpr int kGrain = 64;
+// Errors fall, but not from step to step; beyond this factor single precision has been lost, and what follows is worse.
+constexpr float kDivergence = 3.0f;
 
 Sums dot(const Field& a, const Field& b) {
   return sum_rows(a.height(), a.channels(), [&](int y, int c) { return dot_row(a.row(y, c), b.row(y, c), a.width()); });
@@ -97,20 +100,28 @@ float worst(const Sums& rr, const Sums& bb) {
 
 }  // namespace
 
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, float tolerance, int most_steps,
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int most_steps,
                             const CancelTest& cancel) {
   const Stencil& a = preconditioner->matrix();
   auto& [r, z, p, next_p] = *fields;
   const Sums bb = dot(b, b);
   CgReport report;
   report.residual = worst(residual(a, b, *x, &r), bb);
+  report.reached = report.residual <= goal.residual;
   Sums rz_before(bb.size(), 0.0);
-  for (; report.steps < most_steps && report.residual > tolerance && !cancel(); ++report.steps) {
-    const Sums rz = preconditioner->cycle(r, &z);
+  float best_error = kInfinity;
+  for (; report.steps < most_steps && !report.reached && !cancel(); ++report.steps) {
+    const RowSums rows = preconditioner->cycle(r, &z);
+    const Sums rz = rows.total();
     const Sums pap = direct(a, z, quotient(rz, rz_before), p, &next_p);
     std::swap(p, next_p);
     rz_before = rz;
     report.residual = worst(advance(a, quotient(rz, pap), p, x, &r), bb);
+    // The cycle is nearly A⁻¹, so r·z is nearly the square of the error before this step.
+    report.row_error = static_cast<float>(std::sqrt(rows.largest() / a.width()));
+    report.reached = report.residual <= goal.residual || report.row_error <= goal.row_error;
+    best_error = std::min(best_error, report.row_error);
+    if (report.row_error > kDivergence * best_error) break;
   }
   return report;
 }

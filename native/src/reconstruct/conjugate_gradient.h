@@ -8,7 +8,16 @@ namespace gradus {
 
 struct CgReport {
   int steps = 0;
-  float residual = 0.0f;  // ‖b - Ax‖ / ‖b‖, the worst channel
+  float residual = 0.0f;   // ‖b - Ax‖ / ‖b‖, the worst channel
+  float row_error = 0.0f;  // see CgGoal; of the last iterate but one
+  bool reached = false;
+};
+
+// When x is good enough: one of the two. The residual counts what is bright, whatever happens elsewhere. The row error counts errors by the
+// weights: √((x − x*)ᵀA(x − x*)/n) for the n pixels of the worst row of an image, so if weights are 1/variance, in deviations of the noise.
+struct CgGoal {
+  float residual = 0.0f;
+  float row_error = 0.0f;
 };
 
 // Work space, kept from solve to solve.
@@ -17,8 +26,8 @@ struct CgFields {
   Field r, z, p, next_p;
 };
 
-// Improves x until the residual is below `tolerance` or `most_steps` are done. Floats with sums in double.
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, float tolerance, int most_steps,
+// Improves x until the goal is reached or `most_steps` are done. Floats with sums in double.
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int most_steps,
                             const CancelTest& cancel);
 
 }  // namespace gradus

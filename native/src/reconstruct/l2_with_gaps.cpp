@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-constexpr float kTolerance = 1e-6f;
+constexpr CgGoal kGoal{.residual = 1e-6f};
 constexpr int kMostSteps = 100;
 
 // Weights of rows that are there, all channels alike.
@@ -30,8 +30,8 @@ std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha,
   system.update();
   const PoissonPlanes interleaved = planes_of(images, 0);
   Field x = start_from_l2(interleaved, w, h, channels, alpha);
-  const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kTolerance, kMostSteps, cancel, &x);
-  add_solve(solve, kTolerance, report);
+  const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kGoal, kMostSteps, cancel, &x);
+  add_solve(solve, report);
   std::vector<float> result(images.primal.size());
   for (int c = 0; c < channels; ++c) store_channel(x, c, size_t(channels), result.data() + c);
   return result;

@@ -36,8 +36,8 @@ Minimum minimise_l1(const GradientImages& images, float alpha, const CancelTest&
     last = floor <= kLastFloor || outer_steps == kMostOuterSteps;
     reweight(planes, result.solution, alpha, scale, floor, &result.system.data_weights(), &result.system.matrix());
     result.system.update();
-    const CgReport inner = result.system.solve(planes, last ? kFinalTolerance : kOuterTolerance, last ? kMostFinalSteps : kMostInnerSteps,
-                                               cancel, &result.solution);
+    const CgReport inner = result.system.solve(planes, {.residual = last ? kFinalTolerance : kOuterTolerance},
+                                               last ? kMostFinalSteps : kMostInnerSteps, cancel, &result.solution);
     report->inner_steps += inner.steps;
     if (last) report->residual = std::max(report->residual, inner.residual);
   }

@@ -62,8 +62,8 @@ void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b,
       kGrain / 2);
 }
 
-// z = x + S(b - A x) with x = S b + P coarse; returns b·z.
-Sums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* z) {
+// z = x + S(b - A x) with x = S b + P coarse; returns b·z of each row.
+RowSums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* z) {
   const int w = a.width();
   RowSums sums(a.height(), b.channels());
   for_pieces(
@@ -95,11 +95,11 @@ Sums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const Fiel
         }
       },
       kGrain);
-  return sums.total();
+  return sums;
 }
 
 // Sweeps of Jacobi from 0.
-Sums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
+RowSums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
   Field x(a.width(), a.height(), b.channels());
   for (int sweep = 0; sweep < kCoarsestSweeps; ++sweep) {
     for (int y = 0; y < a.height(); ++y) {
@@ -111,7 +111,7 @@ Sums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
     }
     x = *z;
   }
-  return sum_rows(a.height(), b.channels(), [&](int y, int c) { return dot_row(z->row(y, c), b.row(y, c), a.width()); });
+  return sum_each_row(a.height(), b.channels(), [&](int y, int c) { return dot_row(z->row(y, c), b.row(y, c), a.width()); });
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ void Multigrid::update() {
   }
 }
 
-Sums Multigrid::cycle(size_t level, const Field& b, Field* z) {
+RowSums Multigrid::cycle(size_t level, const Field& b, Field* z) {
   Level& here = levels_[level];
   if (level + 1 == levels_.size()) return solve_coarsest(here.matrix, b, z);
   Level& next = levels_[level + 1];

@@ -16,9 +16,9 @@ class Multigrid {
   const Stencil& matrix() const { return levels_.front().matrix; }
   // Makes the coarse matrices from the finest.
   void update();
-  // Overwrites z and returns b·z; b must have the grid's size and the multigrid's channels. Not for two threads at once: work space is its
-  // own.
-  Sums cycle(const Field& b, Field* z) { return cycle(0, b, z); }
+  // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two threads at once: work
+  // space is its own.
+  RowSums cycle(const Field& b, Field* z) { return cycle(0, b, z); }
 
  private:
   struct Level {
@@ -26,7 +26,7 @@ class Multigrid {
     Interpolation interpolation;  // from the next one
     Field b, z;                   // of coarse levels
   };
-  Sums cycle(size_t level, const Field& b, Field* z);
+  RowSums cycle(size_t level, const Field& b, Field* z);
   std::vector<Level> levels_;
 };
 

@@ -24,7 +24,7 @@ GradientImages half_differences(const GradientImages& images) {
 }
 
 // The estimate needs no more digits than this.
-constexpr float kTolerance = 1e-2f;
+constexpr CgGoal kGoal{.residual = 1e-2f, .row_error = 0.1f};
 constexpr int kMostSteps = 10;
 
 // By the weights that the image gets. Channels beyond the third, which have no part in these, stay 0.
@@ -33,8 +33,7 @@ NoiseLeft left_by_weighted(const GradientImages& images, const GradientImages& d
   Minimum minimum = minimise_by_noise(images, cancel, &report);
   const int channels = minimum.solution.channels();
   Field noise(images.width, images.height, channels);
-  minimum.system.solve(load_planes(planes_of(differences, 0), images.width, images.height, channels), kTolerance, kMostSteps, cancel,
-                       &noise);
+  minimum.system.solve(load_planes(planes_of(differences, 0), images.width, images.height, channels), kGoal, kMostSteps, cancel, &noise);
   const Twicing twicing(images, minimum.solution, alpha);
   const size_t stride = size_t(images.channels);
   NoiseLeft left{std::vector<float>(images.primal.size()), std::vector<float>(images.primal.size())};

@@ -5,6 +5,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/fpu.h"
@@ -44,20 +46,32 @@ class RowSums {
     for (size_t i = 0; i < parts_.size(); ++i) sums[i % channels_] += parts_[i];
     return sums;
   }
+  // Of the magnitudes.
+  double largest() const {
+    double largest = 0.0;
+    for (const double part : parts_) largest = std::max(largest, std::fabs(part));
+    return largest;
+  }
 
  private:
   size_t channels_;
   std::vector<double> parts_;
 };
 
-// Sum over rows, per channel: function(y, channel) returns a double.
+// Sums of rows, per channel: function(y, channel) returns a double.
 template <class Function>
-Sums sum_rows(int height, int channels, Function&& function) {
+RowSums sum_each_row(int height, int channels, Function&& function) {
   RowSums sums(height, channels);
   for_rows(height, [&](int y) {
     for (int c = 0; c < channels; ++c) sums.at(y, c) = function(y, c);
   });
-  return sums.total();
+  return sums;
+}
+
+// Sum over rows, per channel.
+template <class Function>
+Sums sum_rows(int height, int channels, Function&& function) {
+  return sum_each_row(height, channels, function).total();
 }
 
 // Three rows of an image that is made row by row and never stored: row y takes the place of row y - 3. With zeros around; y from -3 on.

@@ -10,7 +10,7 @@ namespace gradus {
 namespace {
 
 // The frozen operator is linear as far as it is solved: parts that add up must add up to much better than the noise.
-constexpr float kOperatorTolerance = 1e-6f;
+constexpr CgGoal kOperatorGoal{.residual = 1e-6f};
 constexpr int kMostOperatorSteps = 200;
 
 // What stands for a value that is missing; its row's weight is 0, so any finite value would do.
@@ -54,9 +54,9 @@ void WeightedLeastSquares::update() {
   multigrid_.update();
 }
 
-CgReport WeightedLeastSquares::solve(const SolverPlanes& planes, float tolerance, int most_steps, const CancelTest& cancel, Field* x) {
+CgReport WeightedLeastSquares::solve(const SolverPlanes& planes, const CgGoal& goal, int most_steps, const CancelTest& cancel, Field* x) {
   right_side(data_weights_, multigrid_.matrix(), planes, &b_);
-  return conjugate_gradient(&multigrid_, b_, x, &fields_, tolerance, most_steps, cancel);
+  return conjugate_gradient(&multigrid_, b_, x, &fields_, goal, most_steps, cancel);
 }
 
 void WeightedLeastSquares::apply(const PoissonPlanes& planes, const Field& start, float* out) const {
@@ -67,14 +67,14 @@ void WeightedLeastSquares::apply(const PoissonPlanes& planes, const Field& start
   one.multigrid_.update();
   Field x = start;
   one.solve(
-      load_planes(planes, w, h, 1), kOperatorTolerance, kMostOperatorSteps, [] { return false; }, &x);
+      load_planes(planes, w, h, 1), kOperatorGoal, kMostOperatorSteps, [] { return false; }, &x);
   store_channel(x, 0, planes.stride, out);
 }
 
-void add_solve(const CgReport& solve, float tolerance, SolveReport* report) {
+void add_solve(const CgReport& solve, SolveReport* report) {
   report->inner_steps += solve.steps;
   report->residual = std::max(report->residual, solve.residual);
-  report->hit_cap = report->hit_cap || solve.residual > tolerance;
+  report->hit_cap = report->hit_cap || !solve.reached;
 }
 
 Field start_from_l2(const PoissonPlanes& planes, int width, int height, int channels, float alpha) {

@@ -22,7 +22,7 @@ class WeightedLeastSquares {
   void update();
 
   // Improves x.
-  CgReport solve(const SolverPlanes& planes, float tolerance, int most_steps, const CancelTest& cancel, Field* x);
+  CgReport solve(const SolverPlanes& planes, const CgGoal& goal, int most_steps, const CancelTest& cancel, Field* x);
   // One channel by the frozen weights, from `start` on: linear in `planes` as far as it is solved, which is to 1e-6.
   void apply(const PoissonPlanes& planes, const Field& start, float* out) const;
 
@@ -35,7 +35,7 @@ class WeightedLeastSquares {
 };
 
 // Adds a solve to what is reported of a reconstruction.
-void add_solve(const CgReport& solve, float tolerance, SolveReport* report);
+void add_solve(const CgReport& solve, SolveReport* report);
 
 // Weights, and the minimum for the channels that they were estimated from.
 struct Minimum {

@@ -103,7 +103,7 @@ TEST(B2_Multigrid, CycleIsSymmetricAndPositive) {
     multigrid.update();
     const Field a = random_field(w, h, 1, 2), b = random_field(w, h, 1, 3);
     Field za(w, h, 1), zb(w, h, 1);
-    const double aa = multigrid.cycle(a, &za)[0], bb = multigrid.cycle(b, &zb)[0];
+    const double aa = multigrid.cycle(a, &za).total()[0], bb = multigrid.cycle(b, &zb).total()[0];
     EXPECT_GT(aa, 0.0);
     EXPECT_NEAR(aa, dot(a, za), 1e-5 * aa);
     EXPECT_NEAR(dot(a, zb), dot(b, za), 1e-4 * (aa + bb)) << w << "x" << h;
@@ -120,7 +120,7 @@ TEST(B2_Multigrid, WeightsWithoutOrderTakeFewSteps) {
   const Field b = random_field(w, h, 1, 2);
   Field x(w, h, 1);
   CgFields fields(w, h, 1);
-  const CgReport report = conjugate_gradient(&multigrid, b, &x, &fields, 1e-4f, 200, never);
+  const CgReport report = conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, 200, never);
   EXPECT_LE(report.steps, 40);
 }
 

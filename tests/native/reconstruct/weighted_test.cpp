@@ -17,7 +17,7 @@ TEST(B2_Solver, WeightedReportsItsResidual) {
   for (const auto& [w, h] : kSizes) {
     SolveReport report;
     solve(noisy_images(w, h), &report);
-    EXPECT_LE(report.residual, 1e-3f) << w << "x" << h;
+    EXPECT_LE(report.residual, 1e-2f) << w << "x" << h;
     EXPECT_FALSE(report.hit_cap);
   }
 }
@@ -55,6 +55,44 @@ TEST(B2_Solver, WeightedIgnoresOutliersOfOneHalf) {
   const double weighted = rms_difference(solve(images, &report), truth);
   EXPECT_LT(weighted, 0.05);
   EXPECT_GT(rms_difference(reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, never, &report), truth), 20 * weighted);
+}
+
+// Beside a lamp of 30,000 the residual was small at once, and the solver stopped with dark holes left of its start.
+TEST(B2_Solver, WeightedIsNotStoppedByALampInView) {
+  const int w = 96, h = 64;
+  const auto lit = [&](size_t pixel) { return pixel % w >= 60 && pixel % w < 70 && pixel / w >= 20 && pixel / w < 30; };
+  const auto solve_beside = [&](float lamp) {
+    std::vector<float> truth = smooth_image(w, h, 3);
+    for (size_t i = 0; i < truth.size(); ++i) truth[i] += lit(i / 3) ? lamp : 0.0f;
+    GradientImages images = noisy_images(
+        w, h, 3, truth, [](size_t) { return 0.3f; }, [](size_t i) { return i % 37 == 0 ? 10.0f : 0.01f; });
+    SolveReport report;
+    std::vector<float> result = solve(images, &report);
+    EXPECT_FALSE(report.hit_cap);
+    for (size_t i = 0; i < result.size(); ++i) result[i] = lit(i / 3) ? 0.0f : result[i] - truth[i];
+    return result;
+  };
+  const std::vector<float> none(size_t(w) * h * 3, 0.0f);
+  const double without = rms_difference(solve_beside(0.0f), none);
+  EXPECT_LT(without, 0.1);
+  EXPECT_LT(rms_difference(solve_beside(3e4f), none), 1.2 * without);
+}
+
+// Noise over six decades, from one area to the next: the matrix was singular in single precision, and the picture of the size of 10⁷.
+TEST(B2_Solver, WeightedDoesNotDivergeOverDecadesOfNoise) {
+  const int w = 128, h = 96;
+  const std::vector<float> truth = smooth_image(w, h, 3);
+  const auto area = [&](size_t i, float scale) {
+    return 0.5f + 0.5f * std::sin(scale * float(i % w) + 1.3f * std::sin(scale * float(i / w)));
+  };
+  const GradientImages images = noisy_images(
+      w, h, 3, truth, [&](size_t i) { return std::pow(10.0f, -3.0f + 6.5f * area(i, 0.21f)); },
+      [&](size_t i) { return std::pow(10.0f, -6.0f + 6.0f * area(i, 0.13f)); });
+  SolveReport report;
+  const Minimum minimum = minimise_by_noise(images, never, &report);
+  EXPECT_FALSE(report.hit_cap);
+  const std::vector<float> result = make_image(w, h, 3, [&](int x, int y, int c) { return minimum.solution.row(y, c)[x]; });
+  EXPECT_LT(rms_difference(result, truth), 1.0);
 }
 
 // Bright values are the noisy ones where light is rare, so weights by noise lose them; twicing gives them back.
