@@ -33,7 +33,8 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
   CLI::App* command = app->add_subcommand("reconstruct", "Reconstruct a stored frame into an image");
   command->add_option("frame", args->frame, "Stored frame, as gradus render writes it")->required()->check(CLI::ExistingFile);
   command->add_option("-o,--output", args->output, "Image to write, FILE.exr")->required();
-  command->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased), weighted (by the measured noise) or l1 (robust)")
+  command
+      ->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased), weighted (by the measured noise) or l1 (robust)")
       ->capture_default_str();
   command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients; 0: automatic")->capture_default_str();
   command->add_option("--merge", args->merged, "Frames of the same scene with other samples, to add")->check(CLI::ExistingFile);

@@ -13,7 +13,7 @@ struct CameraVertex {
   Segment segment;
   bool looked = false;             // an offset has asked what the segment shows:
   Radiance seen = Radiance(0.0f);  // alpha as in PathResult, less 1
-  Vertex vertex;  // closures may still be missing
+  Vertex vertex;                   // closures may still be missing
 };
 
 }  // namespace gradus

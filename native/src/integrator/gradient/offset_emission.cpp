@@ -126,7 +126,8 @@ void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, 
 void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
   seen_ += Radiance(c.clamped, 0.0f);
   const bool looks = any(OffsetStage::Pending) || any(OffsetStage::Linked);
-  const EmitterView base = source.vertex != nullptr && looks ? view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex)) : EmitterView{};
+  const EmitterView base =
+      source.vertex != nullptr && looks ? view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex)) : EmitterView{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
