@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from .failure import Failure
+
 BOOL, INT, FLOAT, ENUM, TEXT, FOLDER = "BOOL", "INT", "FLOAT", "ENUM", "TEXT", "FOLDER"
 
 MAX_INT = 2147483647
@@ -30,8 +32,11 @@ class Setting:
     native: bool = True
 
     def value_of(self, identifier: str) -> int:
-        """Native value of an enum identifier; KeyError if there is none."""
-        return {choice[0]: choice[3] for choice in self.choices}[identifier]
+        """Native value of an enum identifier. Blender reads a stored number that it does not know as ""."""
+        known = {choice[0]: choice[3] for choice in self.choices}
+        if identifier not in known:
+            raise Failure(f"{self.label} ({self.name}) has a value that this version does not know: choose one of {', '.join(known)}")
+        return known[identifier]
 
 
 # Identifiers that exist in the library but are refused or unfinished there do not appear: a menu promises what it shows.

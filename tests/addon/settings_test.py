@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 import pytest
 from gradus import native, options, passes, renderer, settings
+from gradus.failure import Failure
 
 DOCUMENTED = {
     "samples": 64,
@@ -87,6 +88,15 @@ def test_values_reach_the_library_and_options_win(scene: bpy.types.Scene) -> Non
     assert (filled.samples, filled.reconstruction, filled.integrator) == (9, native.Reconstruction.L1, native.Integrator.GRADIENT)
     assert (filled.filter_width, filled.alpha_threshold) == (2.0, 0.25)
     assert scene.gradus.samples == 5
+
+
+def test_a_stored_value_of_another_version_names_its_setting(scene: bpy.types.Scene) -> None:
+    """It was a traceback that ended with KeyError: ''."""
+    scene["gradus"] = {"reconstruction": 99}
+    if scene.gradus.reconstruction:
+        pytest.skip("this Blender keeps the values of properties apart from what scripts store")
+    with pytest.raises(Failure, match="Reconstruction .reconstruction. has a value that this version does not know"):
+        renderer.native_settings(native.load(), scene, scene.view_layers[0], options.Overrides())
 
 
 def test_samples_of_the_view_layer_win_over_the_scene(scene: bpy.types.Scene) -> None:
