@@ -14,17 +14,19 @@ MARGIN_BYTES = 1 << 20
 """Metadata, and what else writes to the disk meanwhile."""
 
 
-def nearest_folder(path: str) -> Path:
-    """The folder of `path`, or its nearest parent that exists: Blender makes the missing ones."""
+def make_folder(path: str) -> Path:
+    """The folder of `path`. Blender makes a missing one only when it writes, and forgets to tell."""
     folder = Path(path).absolute().parent
-    while not folder.is_dir() and folder != folder.parent:
-        folder = folder.parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Failure(f"output folder {folder} cannot be created: {error.strerror}") from error
     return folder
 
 
 def require_space(path: str, needed: int) -> None:
     """Raises Failure if the file system of `path` has less than `needed` bytes free."""
-    folder = nearest_folder(path)
+    folder = make_folder(path)
     try:
         free = shutil.disk_usage(folder).free
     except OSError as error:

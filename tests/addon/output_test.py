@@ -19,6 +19,12 @@ def test_f7_space(tmp_path: Path) -> None:
         output.require_space(str(tmp_path / "a.exr"), 1 << 60)
 
 
+def test_f7_a_folder_that_cannot_be_created_is_called_so() -> None:
+    """The space of the nearest parent was counted: "not enough space in /proc"."""
+    with pytest.raises(Failure, match="output folder /proc/nope cannot be created"):
+        output.require_space("/proc/nope/c_0001.exr", 1)
+
+
 def test_f7_the_frame_before(tmp_path: Path) -> None:
     render = SimpleNamespace(frame_path=lambda frame: str(tmp_path / f"{frame}.png"), is_movie_format=False, use_multiview=False)
     files = output.FrameFiles()
