@@ -46,6 +46,21 @@ def test_motion_blur_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -
     assert warnings(scene) == []
 
 
+def test_a_holdout_in_an_opaque_film_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    """Cycles gives it alpha 0; here it was 1 without a word."""
+    plane.is_holdout = True
+    assert warnings(scene) == ["Object 'Plane' is held out, which leaves alpha at 1 without Film > Transparent"]
+    scene.render.film_transparent = True
+    assert warnings(scene) == []
+
+
+@pytest.mark.parametrize("kind", ["object", "material", "asset"])
+def test_cryptomatte_is_named(scene: bpy.types.Scene, plane: bpy.types.Object, kind: str) -> None:
+    layer = scene.view_layers[0]
+    setattr(layer, f"use_pass_cryptomatte_{kind}", True)
+    assert warnings(scene) == [f"View layer '{layer.name}': Cryptomatte passes are not rendered yet"]
+
+
 def test_light_linking_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     lamp = recording.add(bpy.data.lights.new("Lamp", "POINT"), "Lamp")
     if not hasattr(lamp, "light_linking"):

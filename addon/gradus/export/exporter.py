@@ -99,7 +99,11 @@ class _Sync:
     def run(self) -> None:
         now = self._camera()
         collected = collect(self._depsgraph, self._poll)
-        for text in (*left_out.of_scene(self._scene, self._depsgraph.view_layer_eval), *collected.left_out):
+        for text in (
+            *left_out.of_scene(self._scene, self._depsgraph.view_layer_eval),
+            *collected.left_out,
+            *left_out.of_holdouts(self._scene, collected.surfaces),
+        ):
             self.warnings.add(text)
         for entry in collected.surfaces:
             entry.material_keys = tuple(self._materials.key(material) for material in entry.materials)
