@@ -61,8 +61,8 @@ int run(const CompareArguments& args) {
 void add_compare(CLI::App* app, int* exit_code) {
   auto args = std::make_shared<CompareArguments>();
   CLI::App* command = app->add_subcommand("compare", "Measure how far an image is from a reference");
-  command->add_option("image", args->image, "Image or stored frame, EXR")->required()->check(CLI::ExistingFile);
-  command->add_option("reference", args->reference, "What it is compared with")->required()->check(CLI::ExistingFile);
+  command->add_option("image", args->image, "Image or stored frame, EXR")->required()->check(CLI::ExistingFile)->check(exr_only);
+  command->add_option("reference", args->reference, "What it is compared with, EXR")->required()->check(CLI::ExistingFile)->check(exr_only);
   command->add_option("--layer", args->layer, "Layer of multilayer files, as NAME in NAME.R; default: the plain image, else Combined");
   command->add_flag("--json", args->json, "Print one JSON object");
   command->add_option("--fail-above", args->fail_above, "Exit with 1 if relMSE is above this");

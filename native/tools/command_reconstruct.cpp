@@ -32,7 +32,7 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
   auto args = std::make_shared<ReconstructArguments>();
   CLI::App* command = app->add_subcommand("reconstruct", "Reconstruct a stored frame into an image");
   command->add_option("frame", args->frame, "Stored frame, as gradus render writes it")->required()->check(CLI::ExistingFile);
-  command->add_option("-o,--output", args->output, "Image to write, FILE.exr")->required();
+  command->add_option("-o,--output", args->output, "Image to write, FILE.exr")->required()->check(exr_only);
   command
       ->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased), weighted (by the measured noise) or l1 (robust)")
       ->capture_default_str();

@@ -88,7 +88,7 @@ void add_render(CLI::App* app, int* exit_code) {
   CLI::App* command = app->add_subcommand("render", "Render a saved scene into a frame store");
   command->add_option("scene", args->scene, "Scene file, FILE.gradus")->required()->check(CLI::ExistingFile);
   command->add_option("-o,--output", args->output, "Folder of the frame store, or FILE.exr for one frame")->required();
-  command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr");
+  command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr")->check(exr_only);
   command->add_option("--stats", args->stats, "Append one JSON object about the render to this file");
   command->add_flag("--resume", args->resume, "Go on from the samples of the frame that is already in the store");
   args->options.add_to(command);

@@ -1,6 +1,7 @@
 #include "common.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <sstream>
 
 namespace gradus::tool {
@@ -82,6 +83,11 @@ uint64_t parse_passes(const std::string& text) {
     mask |= uint64_t{1} << pass;
   }
   return mask;
+}
+
+std::string exr_only(const std::string& path) {
+  const std::string ending = canonical(std::filesystem::path(path).extension().string());
+  return ending == ".exr" ? "" : path + ": only EXR images are read and written, FILE.exr";
 }
 
 uint32_t parse_choice(const std::string& option, const std::string& value) {

@@ -38,6 +38,8 @@ class OptionFlags {
 // Bit mask from names separated by commas ("depth,diffuse_direct", any case, '_', '-' and ' ' alike; "all"); throws with the names there
 // are.
 uint64_t parse_passes(const std::string& text);
+// For CLI::Option::check: what is wrong with a file name that does not end in .exr, the only format that the tool reads and writes.
+std::string exr_only(const std::string& path);
 // Value of an option of kind enum; throws as the library does.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 

@@ -19,6 +19,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
+    if (app.get_subcommands().empty() && !app.remaining().empty()) {
+      std::fprintf(stderr, "gradus: there is no command or option %s\n", app.remaining().front().c_str());
+    }
     return app.exit(e) == 0 ? 0 : kExitUsage;
   } catch (const gradus::client::Error& e) {
     std::fprintf(stderr, "gradus: %s\n", e.what());

@@ -128,5 +128,27 @@ TEST_F(Tool, EndsWithACodeAndACause) {
   }
 }
 
+// EXR was written under the name of a PNG, with exit code 0.
+TEST_F(Tool, RefusesImagesThatAreNotExr) {
+  ASSERT_EQ(run("render good.gradus -o frame.exr").code, 0);
+  std::ofstream(folder / "x.png") << "PNG";
+  for (const char* arguments : {"reconstruct frame.exr -o l1.png", "render good.gradus -o store --image l1.png", "compare x.png frame.exr",
+                                "compare frame.exr x.png"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_NE(outcome.err.find("only EXR"), std::string::npos) << arguments << ": " << outcome.err;
+  }
+  EXPECT_FALSE(fs::exists(folder / "l1.png"));
+  EXPECT_FALSE(fs::exists(folder / "store"));
+  EXPECT_EQ(run("reconstruct frame.exr -o L1.EXR").code, 0);
+}
+
+// "A subcommand is required" was all that a wrong word brought.
+TEST_F(Tool, NamesACommandThatThereIsNot) {
+  const Outcome outcome = run("frobnicate");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("there is no command or option frobnicate"), std::string::npos) << outcome.err;
+}
+
 }  // namespace
 }  // namespace gradus
