@@ -138,6 +138,17 @@ def test_groups_name_planes_of_the_table() -> None:
     assert all(set(group) <= planes for group in passes.GROUPS.values())
 
 
+def test_the_manual_lists_every_pass_by_the_name_that_options_take() -> None:
+    """It had the names of the window only: `Gradient X`, and no way to guess `gradient_x`."""
+    manual = (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text()
+    kinds = ("diffuse", "glossy", "transmission")
+    for info in passes.TABLE:
+        first, _, rest = info.plane.name.lower().partition("_")
+        names = (f"`{first}_`", f"`{rest}`") if first in kinds else (f"`{info.plane.name.lower()}`",)
+        hidden = info.plane in (passes.Pass.COMBINED, passes.Pass.FALLBACK)  # always there; for tests
+        assert hidden or all(name in manual for name in names), info.plane
+
+
 def test_the_manual_lists_every_setting_with_its_default() -> None:
     rows = {}
     for line in (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text().splitlines():
