@@ -86,15 +86,6 @@ def test_panoramic_camera_is_refused(scene: bpy.types.Scene) -> None:
         recording.export(scene)
 
 
-def test_a_camera_of_scale_0_is_refused(scene: bpy.types.Scene) -> None:
-    """It gave a black picture without a word."""
-    from gradus.export import ExportError
-
-    recording.add_camera().scale = (1.0, 1.0, 0.0)
-    with pytest.raises(ExportError, match="scale is 0"):
-        recording.export(scene)
-
-
 def test_no_camera_is_refused(scene: bpy.types.Scene) -> None:
     from gradus.export import ExportError
 

@@ -130,8 +130,6 @@ def camera_state(camera: Any, scene: Any, width: int, height: int, engine: Any =
     values = tuple(matrix_values(matrix))
     if not all(map(math.isfinite, values)):
         raise ExportError(f"Camera '{camera.name}' has no place: its matrix is not finite")
-    if any(column.to_3d().length_squared == 0.0 for column in matrix.col[:3]):
-        raise ExportError(f"Camera '{camera.name}' looks nowhere: its scale is 0")
     if camera.type != "CAMERA":
         lens = _DEFAULT_LENS
         if camera.type == "LIGHT" and camera.data.type == "SPOT":
