@@ -8,11 +8,14 @@
 #include "plan/plan.h"
 #include "sampling/lattice.h"
 #include "shading/program_builder.h"
+#include "support/difference_statistics.h"
 #include "support/path_scene.h"
 
 namespace gradus {
 namespace {
 
+using test::BothDirections;
+using test::DifferenceStatistics;
 using test::PathScene;
 using test::Scenario;
 using test::Surface;
@@ -37,6 +40,18 @@ class Scenarios : public testing::TestWithParam<Scenario> {
     settings.film_transparent = GetParam() == Scenario::World ? 1 : 0;  // alpha is a channel with gradients of its own
     return scene_.context(settings);
   }
+  // Of frames that sample(integrator, frame) fills, one for each of 24 seeds.
+  template <class Sample>
+  void check_differences(uint32_t first_seed, Sample&& sample) {
+    BothDirections differences;
+    for (uint32_t seed = first_seed; seed < first_seed + 24; ++seed) {
+      const IntegratorContext c = context(seed);
+      Frame frame = test::make_test_frame(c.settings, true);
+      sample(*make_gradient_integrator(c), &frame);
+      differences.add(read_images(frame, 0, false));
+    }
+    differences.check();
+  }
   PathScene scene_;
 };
 
@@ -54,73 +69,6 @@ TEST_P(Scenarios, PrimalOfBothIntegratorsIsBitEqual) {
   EXPECT_GT(sum, 0.0);
   EXPECT_EQ(gradient.counters.nonfinite_radiance + gradient.counters.nonfinite_gradient, 0u);
 }
-
-// Seeds of independent renders; D = sampled difference − difference of the primal images has mean 0 if both are unbiased.
-class DifferenceStatistics {
- public:
-  void add(const GradientImages& images, bool x) {
-    const int step = images.channels * (x ? 1 : images.width);
-    const std::vector<float>& plane = x ? images.dx : images.dy;
-    sum_.resize(plane.size(), 0.0);
-    squares_.resize(plane.size(), 0.0);
-    double total = 0.0;
-    for (int row = 0; row + (x ? 0 : 1) < images.height; ++row) {
-      for (int column = 0; column + (x ? 1 : 0) < images.width; ++column) {
-        for (int c = 0; c < images.channels; ++c) {
-          const int i = (row * images.width + column) * images.channels + c;
-          const double d = double(plane[i]) - (double(images.primal[i + step]) - double(images.primal[i]));
-          sum_[i] += d;
-          squares_[i] += d * d;
-          total += d;
-        }
-      }
-    }
-    total_ += total;
-    total_squares_ += total * total;
-    ++count_;
-  }
-  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), and t of all of them together.
-  void check(const char* what, int least = 50) const {
-    double sum_t2 = 0.0;
-    int used = 0;
-    for (size_t i = 0; i < sum_.size(); ++i) {
-      const double mean = sum_[i] / count_;
-      const double variance = (squares_[i] - count_ * mean * mean) / (count_ - 1) / count_;
-      if (variance > 1e-12) {  // else certain, but for rounding
-        sum_t2 += mean * mean / variance;
-        ++used;
-      }
-    }
-    ASSERT_GT(used, least) << what;
-    const double expected = double(count_ - 1) / double(count_ - 3);
-    EXPECT_LT(sum_t2 / used, 1.6 * expected) << what;
-    // Differences share pixels and jitter, so the total's variance is that of whole renders.
-    const double total = total_ / count_;
-    const double total_variance = (total_squares_ - count_ * total * total) / (count_ - 1) / count_;
-    EXPECT_LT(std::fabs(total), 5.0 * std::sqrt(total_variance)) << what;
-    std::printf("  %s: mean t² %.3f (expected %.3f), total %.4g ± %.2g\n", what, sum_t2 / used, expected, total, std::sqrt(total_variance));
-  }
-
- private:
-  std::vector<double> sum_;
-  std::vector<double> squares_;
-  double total_ = 0.0;  // of one render's differences
-  double total_squares_ = 0.0;
-  int count_ = 0;
-};
-
-struct BothDirections {
-  DifferenceStatistics dx, dy;
-
-  void add(const GradientImages& images) {
-    dx.add(images, true);
-    dy.add(images, false);
-  }
-  void check() {
-    dx.check("dx");
-    dy.check("dy");
-  }
-};
 
 TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
   BothDirections differences;
@@ -173,66 +121,44 @@ TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
 
 // Contract 1.5: neighbours with different counts, some with none, over two batches.
 TEST_P(Scenarios, B7_UnequalCounts) {
-  BothDirections differences;
-  for (uint32_t seed = 0; seed < 24; ++seed) {
-    const IntegratorContext c = context(500 + seed);
-    Frame frame = test::make_test_frame(c.settings, true);
-    const auto integrator = make_gradient_integrator(c);
+  check_differences(500, [](const Integrator& integrator, Frame* frame) {
     const std::atomic<bool> stop{false};
-    for (uint32_t batch = 0; batch < 2; ++batch) {
-      std::vector<uint32_t> counts(static_cast<size_t>(frame.region.area()));
-      for (size_t i = 0; i < counts.size(); ++i) {
-        counts[i] = batch == 0 ? 8 + 8 * (i % 3) : (i / 3 % 2 == 0 ? 0 : 32);
-      }
-      WorkUnit unit{frame.region, 64 * batch, 0, &counts};
-      integrator->sample(unit, &frame, &frame.counters, stop);
+    std::vector<uint32_t> counts(static_cast<size_t>(frame->region.area()));
+    for (const uint32_t batch : {0u, 1u}) {
+      for (size_t i = 0; i < counts.size(); ++i) counts[i] = batch == 0 ? 8 + 8 * (i % 3) : (i / 3 % 2 == 0 ? 0 : 32);
+      integrator.sample(WorkUnit{frame->region, 64 * batch, 0, &counts}, frame, &frame->counters, stop);
     }
-    differences.add(read_images(frame, 0, false));
-  }
-  differences.check();
+  });
 }
 
 // Adaptive sampling: cells that differ in their counts and in the numbers of their samples, even and odd.
 TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
-  BothDirections differences;
-  for (uint32_t seed = 0; seed < 24; ++seed) {
-    const IntegratorContext c = context(900 + seed);
-    Frame frame = test::make_test_frame(c.settings, true);
-    const auto integrator = make_gradient_integrator(c);
+  check_differences(900, [](const Integrator& integrator, Frame* frame) {
     const std::atomic<bool> stop{false};
-    std::vector<uint32_t> first(static_cast<size_t>(frame.region.area())), count(first);
+    std::vector<uint32_t> first(static_cast<size_t>(frame->region.area())), count(first);
     for (const uint32_t batch : {0u, 1u}) {
       for (size_t i = 0; i < first.size(); ++i) {
-        const bool right = int(i) % frame.region.width() >= kLattice, low = int(i) / frame.region.width() < kLattice;
+        const bool right = int(i) % frame->region.width() >= kLattice, low = int(i) / frame->region.width() < kLattice;
         first[i] += count[i];
         count[i] = batch == 0 ? (right ? 9 : 4) : (low ? 24 : 7);
       }
-      WorkUnit unit{frame.region, 0, 0, &count, &first};
-      integrator->sample(unit, &frame, &frame.counters, stop);
+      integrator.sample(WorkUnit{frame->region, 0, 0, &count, &first}, frame, &frame->counters, stop);
     }
-    differences.add(read_images(frame, 0, false));
-  }
-  differences.check();
+  });
 }
 
 // A cancel between tiles leaves pairs whose ends took different numbers of samples; their gradients kept the norm of whole batches and
 // came out too small.
 TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
-  BothDirections differences;
-  for (uint32_t seed = 0; seed < 24; ++seed) {
-    const IntegratorContext c = context(700 + seed);
-    Frame frame = test::make_test_frame(c.settings, true);
-    const auto integrator = make_gradient_integrator(c);
+  check_differences(700, [](const Integrator& integrator, Frame* frame) {
     const std::atomic<bool> stop{false};
-    test::sample_frame(*integrator, 0, 16, &frame);
+    test::sample_frame(integrator, 0, 16, frame);
     for (int32_t y = 0; y < static_cast<int32_t>(kHeight); ++y) {
       for (int32_t x = y % 2; x < static_cast<int32_t>(kWidth); x += 2) {  // every other pixel, so that every pair is cut
-        integrator->sample(WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, &frame, &frame.counters, stop);
+        integrator.sample(WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, frame, &frame->counters, stop);
       }
     }
-    differences.add(read_images(frame, 0, false));
-  }
-  differences.check();
+  });
 }
 
 // L3: split into batches and tiles, in any order: the same bits.

@@ -18,4 +18,9 @@ std::vector<Region> make_cells(const Region& region, int side) {
   return cells;
 }
 
+CellGrid::CellGrid(const Region& region, int side)
+    : cells(make_cells(region, side)),
+      columns(lattice_cell(region.x1 - 1, side) - lattice_cell(region.x0, side) + 1),
+      rows(lattice_cell(region.y1 - 1, side) - lattice_cell(region.y0, side) + 1) {}
+
 }  // namespace gradus

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "frame/frame.h"
+#include "frame/cells.h"
 #include "reconstruct/solver.h"
 #include "render/cell_noise.h"
 
@@ -24,7 +24,7 @@ class AdaptiveSampling {
   void judge(const std::vector<CellNoise>& noise);
   // What the samples of a cell in a batch have cost. Thread-safe for different cells.
   void add_rays(const Region& cell, uint64_t rays) { rays_[index(cell.x0, cell.y0)] += rays; }
-  const std::vector<Region>& cells() const { return cells_; }
+  const std::vector<Region>& cells() const { return grid_.cells; }
   bool all_done() const;
 
   // Begins a batch with `mean` samples per pixel of the cells that go on. Equal for all until judge() has told them apart.
@@ -42,8 +42,7 @@ class AdaptiveSampling {
   uint32_t first_sample_;
   float threshold_;
   uint32_t first_check_;
-  std::vector<Region> cells_;
-  int columns_;
+  CellGrid grid_;
   std::vector<uint32_t> begun_with_, taken_;
   std::vector<uint64_t> rays_;
   std::vector<double> spread_;  // relative deviation of one sample

@@ -60,37 +60,17 @@ PilotSums sums_of(const Frame& frame, const Region& block, const Counters& rays)
   return sums;
 }
 
-// All squares that touch a region, by rows, whole but for the frame's border.
-struct Squares {
-  Squares(const Region& r, const Region& full)
-      : cells(make_cells(grown_to_squares(r, full), kSquare)),
-        width(lattice_cell(r.x1 - 1, kSquare) - lattice_cell(r.x0, kSquare) + 1),
-        height(int32_t(cells.size()) / width) {}
-  static Region grown_to_squares(const Region& r, const Region& full) {
-    const auto down = [](int32_t x) { return lattice_cell(x, kSquare) * kSquare; };
-    return intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kSquare, down(r.y1 - 1) + kSquare}, full);
-  }
-  std::vector<Region> cells;
-  int32_t width, height;
-};
-
-// What a square and those around it have shown, the near ones counting more.
-PilotSums around(const Squares& squares, const std::vector<PilotSums>& sums, size_t square) {
-  const auto x = int32_t(square) % squares.width, y = int32_t(square) / squares.width;
-  PilotSums result;
-  for (int32_t j = std::max(y - 1, 0); j <= std::min(y + 1, squares.height - 1); ++j) {
-    for (int32_t i = std::max(x - 1, 0); i <= std::min(x + 1, squares.width - 1); ++i) {
-      result.add(sums[size_t(j) * size_t(squares.width) + size_t(i)], (i == x ? 2.0 : 1.0) * (j == y ? 2.0 : 1.0));
-    }
-  }
-  return result;
+// Whole squares but for the frame's border: all that touch the region.
+Region grown_to_squares(const Region& r, const Region& full) {
+  const auto down = [](int32_t x) { return lattice_cell(x, kSquare) * kSquare; };
+  return intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kSquare, down(r.y1 - 1) + kSquare}, full);
 }
 
-void fill(const Region& part, const Region& region, std::vector<uint8_t>* map) {
-  for (int32_t y = part.y0; y < part.y1; ++y) {
-    const size_t first = size_t(y - region.y0) * size_t(region.width()) + size_t(part.x0 - region.x0);
-    std::fill_n(map->begin() + ptrdiff_t(first), part.width(), uint8_t{1});
-  }
+// What a square and those around it have shown.
+PilotSums around(const CellGrid& squares, const std::vector<PilotSums>& sums, size_t square) {
+  PilotSums result;
+  for_each_around(squares, square, [&](size_t i, double weight) { result.add(sums[i], weight); });
+  return result;
 }
 
 }  // namespace
@@ -108,7 +88,7 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
                       const std::atomic<bool>& stop) {
   const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
   // Squares at the region's border are judged by those beyond, too.
-  const Squares squares(grown(region, kSquare, full), full);
+  const CellGrid squares(grown_to_squares(grown(region, kSquare, full), full), kSquare);
   std::vector<PilotSums> sums(squares.cells.size());
   tbb::parallel_for(size_t{0}, sums.size(), [&](size_t i) {
     if (stop.load(std::memory_order_relaxed)) return;
@@ -131,7 +111,7 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
     if (part.width() <= 0 || part.height() <= 0) continue;
     total.add(sums[i], 1.0);
     if (!estimate_benefit(around(squares, sums, i)).pays()) continue;
-    fill(part, region, &map.pixels);
+    fill(part, region, uint8_t{1}, &map.pixels);
     kept += part.area();
   }
   map.share = double(kept) / double(region.area());

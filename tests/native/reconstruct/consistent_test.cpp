@@ -1,9 +1,8 @@
 // B1, B2 and equal bits for what the solvers with weights of every row have in common: L1, and the one that goes by measured noise.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include "reconstruct/test_images.h"
+#include "support/threads.h"
 
 namespace gradus {
 namespace {
@@ -81,14 +80,7 @@ TEST_P(Consistent, B2_WeightsAreALinearOperator) {
 
 TEST_P(Consistent, L1_SameBitsForAnyNumberOfThreads) {
   const GradientImages images = noisy_images(133, 71);
-  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
-  std::vector<float> first;
-  for (const int threads : {1, 2, 3, 7}) {
-    std::vector<float> x;
-    tbb::task_arena(threads).execute([&] { x = solve(images); });
-    if (first.empty()) first = x;
-    EXPECT_EQ(x, first) << threads << " threads";
-  }
+  test::expect_same_bits_for_any_number_of_threads([&] { return solve(images); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Consistent, ::testing::Values(GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_WEIGHTED),

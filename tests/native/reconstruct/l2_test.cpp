@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "reconstruct/test_images.h"
 #include "render/options.h"
+#include "support/threads.h"
 
 namespace gradus {
 namespace {
@@ -134,14 +135,7 @@ TEST(B2_Solver, L2LeavesOutWhatIsNotFinite) {
 TEST(L1_Threads, L2HasTheSameBitsForAnyNumberOfThreads) {
   GradientImages images = with_own_gradients(133, 71, 3, smooth_image(133, 71, 3));
   add_noise(&images.primal, 0.3f, 1);
-  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
-  std::vector<float> first;
-  for (const int threads : {1, 2, 3, 7}) {
-    std::vector<float> x;
-    tbb::task_arena(threads).execute([&] { x = solve(images); });
-    if (first.empty()) first = x;
-    EXPECT_EQ(x, first) << threads << " threads";
-  }
+  test::expect_same_bits_for_any_number_of_threads([&] { return solve(images); });
 }
 
 // A linear operator: applied to a sum, it gives the sum (contract 3.4).

@@ -1,0 +1,81 @@
+// Whether sampled differences are those of the image: in the mean over renders with different seeds.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "reconstruct/solver.h"
+
+namespace gradus::test {
+
+// Seeds of independent renders; D = sampled difference − difference of the primal images has mean 0 if both are unbiased.
+class DifferenceStatistics {
+ public:
+  void add(const GradientImages& images, bool x) {
+    const int step = images.channels * (x ? 1 : images.width);
+    const std::vector<float>& plane = x ? images.dx : images.dy;
+    sum_.resize(plane.size(), 0.0);
+    squares_.resize(plane.size(), 0.0);
+    double total = 0.0;
+    for (int row = 0; row + (x ? 0 : 1) < images.height; ++row) {
+      for (int column = 0; column + (x ? 1 : 0) < images.width; ++column) {
+        for (int c = 0; c < images.channels; ++c) {
+          const int i = (row * images.width + column) * images.channels + c;
+          const double d = double(plane[i]) - (double(images.primal[i + step]) - double(images.primal[i]));
+          sum_[i] += d;
+          squares_[i] += d * d;
+          total += d;
+        }
+      }
+    }
+    total_ += total;
+    total_squares_ += total * total;
+    ++count_;
+  }
+  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), and t of all of them together.
+  void check(const char* what, int least = 50) const {
+    double sum_t2 = 0.0;
+    int used = 0;
+    for (size_t i = 0; i < sum_.size(); ++i) {
+      const double mean = sum_[i] / count_;
+      const double variance = (squares_[i] - count_ * mean * mean) / (count_ - 1) / count_;
+      if (variance > 1e-12) {  // else certain, but for rounding
+        sum_t2 += mean * mean / variance;
+        ++used;
+      }
+    }
+    ASSERT_GT(used, least) << what;
+    const double expected = double(count_ - 1) / double(count_ - 3);
+    EXPECT_LT(sum_t2 / used, 1.6 * expected) << what;
+    // Differences share pixels and jitter, so the total's variance is that of whole renders.
+    const double total = total_ / count_;
+    const double total_variance = (total_squares_ - count_ * total * total) / (count_ - 1) / count_;
+    EXPECT_LT(std::fabs(total), 5.0 * std::sqrt(total_variance)) << what;
+    std::printf("  %s: mean t² %.3f (expected %.3f), total %.4g ± %.2g\n", what, sum_t2 / used, expected, total, std::sqrt(total_variance));
+  }
+
+ private:
+  std::vector<double> sum_;
+  std::vector<double> squares_;
+  double total_ = 0.0;  // of one render's differences
+  double total_squares_ = 0.0;
+  int count_ = 0;
+};
+
+struct BothDirections {
+  DifferenceStatistics dx, dy;
+
+  void add(const GradientImages& images) {
+    dx.add(images, true);
+    dy.add(images, false);
+  }
+  void check() {
+    dx.check("dx");
+    dy.check("dy");
+  }
+};
+
+}  // namespace gradus::test

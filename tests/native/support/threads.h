@@ -1,0 +1,24 @@
+// L1: the same bits for any number of threads.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <vector>
+
+namespace gradus::test {
+
+template <class Compute>
+void expect_same_bits_for_any_number_of_threads(Compute&& compute) {
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  std::vector<float> first;
+  for (const int threads : {1, 2, 3, 7}) {
+    std::vector<float> x;
+    tbb::task_arena(threads).execute([&] { x = compute(); });
+    if (first.empty()) first = x;
+    EXPECT_EQ(x, first) << threads << " threads";
+  }
+}
+
+}  // namespace gradus::test
