@@ -13,6 +13,11 @@ struct PathState {
   bool emission_only = false;  // the bounce limits are reached: the next vertex shows its emission and no more
 };
 
+// All that the path's last ray may have to show are lamps and the world.
+inline bool shows_lights_alone(const PathContext& context, const PathState& state) {
+  return state.emission_only && context.scene.features.only_lights_shine;
+}
+
 // A sampled scattering event, as a shift must know it.
 struct ScatterEvent {
   ScatterClass scatter_class = ScatterClass::Diffuse;

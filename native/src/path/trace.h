@@ -25,7 +25,6 @@ struct PathResult {
 
 // Looks on and does nothing: plain path tracing.
 struct NoObserver {
-  static constexpr bool kWantsVertices = false;  // of rays that end a path
   void begin(const Sampler&, const Vec2&, const Vec2&) {}
   void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
   void lamp(const RaySource&, const Contribution&, const LampSighting&) {}
@@ -94,7 +93,7 @@ class PathTracer {
     for (bool goes_on = true; goes_on;) {
       if (sees_lights_alone()) {
         counters_.rays_bounce += trace_to_lights(context_, state_.ray, &s_.segment) ? 1 : 0;
-        see(sampler, RaySource{from, &s_.event}, s_.vertices[0]);
+        step(sampler, RaySource{from, &s_.event}, &s_.vertices[0]);
         return;
       }
       Vertex* vertex = from == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
@@ -106,9 +105,7 @@ class PathTracer {
   }
 
   // The path's last ray, of which nobody wants to know more than the light that it finds.
-  bool sees_lights_alone() const {
-    return !Observer::kWantsVertices && recorder_ == nullptr && state_.emission_only && context_.scene.features.only_lights_shine;
-  }
+  bool sees_lights_alone() const { return recorder_ == nullptr && shows_lights_alone(context_, state_); }
 
   // The recorder looks at the closures of the next vertex.
   bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }

@@ -102,7 +102,7 @@ void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* 
   if (snapshot.features.min_alpha >= std::max(settings.roughness_threshold, kSmallestAlpha))
     plan->skipped.emplace_back("half-vector shifts", "no material is sharper than the roughness threshold");
   if (!snapshot.features.has_emitters) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
-  if (snapshot.features.only_lights_shine && !plan->gradients)
+  if (snapshot.features.only_lights_shine)
     plan->skipped.emplace_back("surfaces at the ends of paths", "no material emits light or lets it through");
   if (!settings.film_transparent) plan->skipped.emplace_back("alpha channel", "the film is opaque");
 }

@@ -22,7 +22,6 @@ class OffsetPaths {
 
   // What PathTracer tells.
   void begin(const Sampler& sampler, const Vec2& film, const Vec2& lens);
-  static constexpr bool kWantsVertices = true;
   void arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex);
   void passed(const Segment& segment);
   void lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp);

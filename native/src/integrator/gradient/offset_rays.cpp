@@ -7,10 +7,14 @@ namespace gradus {
 
 // Traces an offset's ray. first: its nearest hit if it is known. What the two segments show is compared in any case, see seen().
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
-  ++counters_.rays_shift;
   o->advance();
-  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment, Shading::Later);
   o->fresh = true;
+  if (shows_lights_alone(context_, base_state_)) {
+    counters_.rays_shift += trace_to_lights(context_, o->state.ray, &o->own_segment) ? 1 : 0;
+    return;
+  }
+  ++counters_.rays_shift;
+  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment, Shading::Later);
 }
 
 // In the base's cell of the lattice an offset's camera ray is that of its pixel's base path.
@@ -28,8 +32,8 @@ void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
   o->fresh = true;
 }
 
-// Same position in the pixel, same point of the lens: the camera's part of r is 1. The rays are coherent, so first hits that nobody has
-// found yet are found together.
+// Same position in the pixel, same point of the lens: the camera's part of r is 1. With a lens the four rays are traced together; without
+// one most are known, and a packet of the one that leaves the cell would take as long as three rays.
 void OffsetPaths::trace_camera(const PathState& state) {
   Ray rays[kOffsets];
   Hit hits[kOffsets];
@@ -50,8 +54,8 @@ void OffsetPaths::trace_camera(const PathState& state) {
     o.state.ray = PathRay{};
     o.state.ray.visibility = state.ray.visibility;
     o.state.ray.ray = context_.camera.ray(film_ + Vec2(kOffsetX[k], kOffsetY[k]), lens_);
-    if (known != nullptr) {
-      trace(&o, &known->hit);
+    if (sample_->first != nullptr) {
+      trace(&o, known != nullptr ? &known->hit : nullptr);
     } else {
       rays[k] = o.state.ray.ray;
       any = unknown[k] = true;
