@@ -90,7 +90,7 @@ GradientMap RenderLoop::choose_gradients() {
   const GradusSettings settings = pilot_settings(input_.settings);
   const uint64_t cpu = process_cpu_nanoseconds();
   const auto integrator = input_.factory(integrator_context(settings), plan_.integrator);
-  arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.sampled, plan_.channels, stop_); });
+  arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_); });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   return map;
 }

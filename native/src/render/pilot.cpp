@@ -9,55 +9,64 @@
 
 #include "base/fpu.h"
 #include "frame/cells.h"
+#include "plan/l2_noise.h"
+#include "reconstruct/solver.h"
 #include "sampling/hash.h"
 
 namespace gradus {
 namespace {
 
-// A square of kSquare pixels is judged by a block of kBlock pixels in it and those in the squares around: 1/32 of a sample per pixel.
+// A square of kSquare pixels is judged by some pixels in it and those in the squares around: 1/16 of a sample per pixel. They stand apart,
+// for neighbours see the same.
 constexpr int kSquare = 32;
-constexpr int kBlock = 4;
+constexpr int kColumns = 8, kRows = 4;
 constexpr uint32_t kSamples = 2;
 // No user's seed, which are below 2³¹: else the samples of frame 0 would be those that are kept.
 constexpr uint32_t kSeed = 0xf0696c6fu;
 
 Region grown(const Region& r, int by, const Region& limit) { return intersection({r.x0 - by, r.y0 - by, r.x1 + by, r.y1 + by}, limit); }
 
-// Somewhere in the square, so that no pattern of the picture meets all blocks alike.
-Region block_of(const Region& square, uint32_t seed) {
-  const uint32_t h = combine(combine(seed, uint32_t(square.x0)), uint32_t(square.y0));
-  const auto place = [](int32_t begin, int32_t end, uint32_t random) {
-    const int32_t free = std::max(end - begin - kBlock, 0);
-    return begin + int32_t(random % uint32_t(free + 1));
+// One pixel somewhere in each stratum of the square, so that no pattern of the picture meets all of them alike. Squares at the border may
+// be narrower than they have strata.
+std::vector<Region> pixels_of(const Region& square, uint32_t seed) {
+  std::vector<Region> pixels;
+  const int columns = std::min(kColumns, square.width()), rows = std::min(kRows, square.height());
+  const auto place = [](int32_t begin, int32_t size, int i, int n, uint32_t random) {
+    const int32_t first = begin + size * i / n, end = begin + size * (i + 1) / n;
+    return first + int32_t(random % uint32_t(end - first));
   };
-  const int32_t x = place(square.x0, square.x1, h & 0xffffu), y = place(square.y0, square.y1, h >> 16);
-  return intersection({x, y, x + kBlock, y + kBlock}, square);
-}
-
-double distance(const Radiance& a, const Radiance& b) {
-  const Vec3 d(a.x - b.x, a.y - b.y, a.z - b.z);
-  return std::sqrt(double(dot(d, d)) / 3.0);
-}
-
-// Every pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are alike: √2.
-PilotSums sums_of(const Frame& frame, const Region& block, const Counters& rays) {
-  const ComponentPlanes& planes = frame.components[0];
-  PilotSums sums;
-  for (int32_t y = block.y0; y < block.y1; ++y) {
-    for (int32_t x = block.x0; x < block.x1; ++x) {
-      const size_t i = frame.index(x, y);
-      ++sums.pixels;
-      sums.pixel_deviation += distance(planes.primal[0][i], planes.primal[1][i]);
-      for (int k = 0; k < kOffsets; ++k) {
-        if (!(frame.pair_count[0][k][i] > 0.0f)) continue;
-        ++sums.differences;
-        sums.difference_deviation += std::numbers::sqrt2 * distance(planes.gradient[0][k][i], planes.gradient[1][k][i]);
-      }
+  uint32_t h = combine(combine(seed, uint32_t(square.x0)), uint32_t(square.y0));
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      h = combine(h, uint32_t(j * kColumns + i));
+      const int32_t x = place(square.x0, square.width(), i, columns, h & 0xffffu);
+      const int32_t y = place(square.y0, square.height(), j, rows, h >> 16);
+      pixels.push_back({x, y, x + 1, y + 1});
     }
   }
-  sums.plain_rays = double(rays.rays_primary + rays.rays_bounce + rays.rays_shadow);
-  sums.shift_rays = double(rays.rays_shift + rays.rays_shift_shadow);
-  return sums;
+  return pixels;
+}
+
+double deviation(const Radiance& d) { return std::sqrt((double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z) / 3.0); }
+double gray(const Radiance& c) { return (double(c.x) + c.y + c.z) / 3.0; }
+
+// The pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are alike: √2.
+void add_pixel(const Frame& frame, size_t pixel, const L2Noise& l2, PilotSums* sums) {
+  const ComponentPlanes& planes = frame.components[0];
+  const Radiance spread = planes.primal[0][pixel] - planes.primal[1][pixel];
+  std::array<Radiance, kOffsets> spreads;
+  for (int k = 0; k < kOffsets; ++k) {
+    const float pair = frame.pair_count[0][k][pixel];
+    spreads[k] = pair > 0.0f ? (planes.gradient[0][k][pixel] - planes.gradient[1][k][pixel]) / pair : Radiance(0.0f);
+    if (!(pair > 0.0f)) continue;
+    ++sums->differences;
+    sums->difference_deviation += std::numbers::sqrt2 * deviation(spreads[k]);
+  }
+  ++sums->pixels;
+  sums->brightness += 0.5 * gray(planes.primal[0][pixel] + planes.primal[1][pixel]);
+  sums->pixel_deviation += deviation(spread);
+  sums->pixel_root += std::sqrt(deviation(spread));
+  sums->l2_root += std::sqrt(std::sqrt(std::max(l2.of(spread, spreads), 0.0)));
 }
 
 // Whole squares but for the frame's border: all that touch the region.
@@ -66,11 +75,30 @@ Region grown_to_squares(const Region& r, const Region& full) {
   return intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kSquare, down(r.y1 - 1) + kSquare}, full);
 }
 
-// What a square and those around it have shown.
-PilotSums around(const CellGrid& squares, const std::vector<PilotSums>& sums, size_t square) {
-  PilotSums result;
-  for_each_around(squares, square, [&](size_t i, double weight) { result.add(sums[i], weight); });
-  return result;
+// Every square with those around it, twice: one of 32 samples knows too little of what seldom fails.
+std::vector<PilotSums> spread_out(const CellGrid& squares, std::vector<PilotSums> sums) {
+  for (int step = 0; step < 2; ++step) {
+    std::vector<PilotSums> next(sums.size());
+    for (size_t i = 0; i < sums.size(); ++i) {
+      for_each_around(squares, i, [&](size_t other, double weight) { next[i].add(sums[other], weight); });
+    }
+    sums = std::move(next);
+  }
+  return sums;
+}
+
+// Which squares are to have differences. L2 has one error for the picture, and outliers in one part of it outweigh all else; where rows go
+// by their noise every part is for itself.
+std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& sums, bool is_l2) {
+  std::vector<bool> chosen;
+  std::vector<Benefit> benefits;
+  std::vector<double> pixels;
+  for (const PilotSums& around : spread_out(squares, sums)) {
+    benefits.push_back(is_l2 ? estimate_benefit_for_l2(around) : estimate_benefit(around));
+    chosen.push_back(benefits.back().pays());
+  }
+  for (const Region& square : squares.cells) pixels.push_back(double(square.area()));
+  return is_l2 ? choose_parts(benefits, pixels) : chosen;
 }
 
 }  // namespace
@@ -84,39 +112,46 @@ GradusSettings pilot_settings(GradusSettings settings) {
   return settings;
 }
 
-GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, const Region& region, int channels,
-                      const std::atomic<bool>& stop) {
+GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction, const Region& region,
+                      int channels, const std::atomic<bool>& stop) {
   const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
-  // Squares at the region's border are judged by those beyond, too.
-  const CellGrid squares(grown_to_squares(grown(region, kSquare, full), full), kSquare);
+  const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
+  // Squares at the region's border are judged by those beyond, too; L2's by all.
+  const CellGrid squares(is_l2 ? full : grown_to_squares(grown(region, 2 * kSquare, full), full), kSquare);
+  const L2Noise l2(chosen_alpha(GRADUS_RECONSTRUCTION_L2, settings.reconstruction_alpha));
   std::vector<PilotSums> sums(squares.cells.size());
   tbb::parallel_for(size_t{0}, sums.size(), [&](size_t i) {
-    if (stop.load(std::memory_order_relaxed)) return;
     const FlushDenormals flush;
-    const Region block = block_of(squares.cells[i], settings.seed);
-    Frame frame(settings.width, settings.height, grown(block, 1, full), channels, 1, true);
     Counters counters;
-    WorkUnit unit;
-    unit.tile = block;
-    unit.count = kSamples;
-    integrator.sample(unit, &frame, &counters, stop);
-    sums[i] = sums_of(frame, block, counters);
+    for (const Region& pixel : pixels_of(squares.cells[i], settings.seed)) {
+      if (stop.load(std::memory_order_relaxed)) return;
+      Frame frame(settings.width, settings.height, grown(pixel, 1, full), channels, 1, true);
+      WorkUnit unit;
+      unit.tile = pixel;
+      unit.count = kSamples;
+      integrator.sample(unit, &frame, &counters, stop);
+      add_pixel(frame, frame.index(pixel.x0, pixel.y0), l2, &sums[i]);
+    }
+    sums[i].plain_rays = double(counters.rays_primary + counters.rays_bounce + counters.rays_shadow);
+    sums[i].shift_rays = double(counters.rays_shift);
+    sums[i].shift_shadow_rays = double(counters.rays_shift_shadow);
   });
+  const std::vector<bool> chosen = choose(squares, sums, is_l2);
   GradientMap map;
   map.pixels.assign(size_t(region.area()), 0);
   PilotSums total;
   int64_t kept = 0;
   for (size_t i = 0; i < sums.size(); ++i) {
+    map.samples += kSamples * uint64_t(sums[i].pixels);
     const Region part = intersection(squares.cells[i], region);
     if (part.width() <= 0 || part.height() <= 0) continue;
     total.add(sums[i], 1.0);
-    if (!estimate_benefit(around(squares, sums, i)).pays()) continue;
+    if (!chosen[i]) continue;
     fill(part, region, uint8_t{1}, &map.pixels);
     kept += part.area();
   }
   map.share = double(kept) / double(region.area());
-  map.benefit = estimate_benefit(total);
-  map.samples = kSamples * uint64_t(kBlock * kBlock) * sums.size();
+  map.benefit = is_l2 ? estimate_benefit_for_l2(total) : estimate_benefit(total);
   return map;
 }
 

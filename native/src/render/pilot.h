@@ -2,7 +2,7 @@
 //
 // The result must not depend on samples that are kept, or L2 would be biased; nor on how many will be taken, on threads, or on the region,
 // or sampled planes would (contract 2.1). So every square of the full frame's lattice has its own few pixels, two samples each, of a seed
-// of their own; a square is judged by what it and its neighbours show.
+// of their own; a square is judged by what it and its neighbours show, and for L2 against all others.
 #pragma once
 
 #include <atomic>
@@ -28,8 +28,9 @@ struct GradientMap {
 GradusSettings pilot_settings(GradusSettings settings);
 
 // Runs in the caller's arena. `integrator`: samples gradients, made for pilot_settings().
-GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, const Region& region, int channels,
-                      const std::atomic<bool>& stop);
+// reconstruction: the one that will run, never AUTO.
+GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction, const Region& region,
+                      int channels, const std::atomic<bool>& stop);
 
 // Says what was decided, and why.
 void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped);

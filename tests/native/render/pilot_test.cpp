@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "plan/l2_noise.h"
+#include "reconstruct/solver.h"
 #include "render/fake_integrator.h"
 #include "render/options.h"
 #include "render/pilot.h"
@@ -27,14 +29,75 @@ TEST(Benefit, IsTheMeanOverAllFrequencies) {
   }
 }
 
+PilotSums quiet_sums() {  // differences a quarter as noisy as pixels, for twice the rays
+  PilotSums sums;
+  sums.pixels = sums.brightness = sums.pixel_deviation = sums.pixel_root = 100.0;
+  sums.differences = 400.0;
+  sums.difference_deviation = sums.plain_rays = 100.0;
+  sums.shift_rays = sums.shift_shadow_rays = 50.0;
+  sums.l2_root = 50.0;
+  return sums;
+}
+
 TEST(Benefit, ComparesErrorWithCost) {
-  PilotSums sums{100.0, 100.0, 400.0, 100.0, 1000.0, 1000.0};  // differences a quarter as noisy as pixels, for twice the rays
-  EXPECT_NEAR(estimate_benefit(sums).cost, 1.6, 1e-12);
+  PilotSums sums = quiet_sums();
+  EXPECT_NEAR(estimate_benefit(sums).cost, 1.68, 1e-12);
   EXPECT_NEAR(estimate_benefit(sums).error, reconstructed_variance(16.0) + 0.1, 1e-12);
   EXPECT_TRUE(estimate_benefit(sums).pays());
   sums.difference_deviation = 1600.0;
   EXPECT_FALSE(estimate_benefit(sums).pays());
-  EXPECT_FALSE(estimate_benefit(PilotSums{100.0, 0.0, 400.0, 0.0, 1000.0, 100.0}).pays()) << "no noise, nothing to gain";
+  sums.pixel_deviation = 0.0;
+  EXPECT_FALSE(estimate_benefit(sums).pays()) << "no noise, nothing to gain";
+}
+
+// Unpaired paths stand in the differences as they stand in the pixel, and L2 gives back what they were. The pilot judged differences by
+// their deviations alone, and expected a third of the noise behind a glass teapot where all of it was left.
+TEST(L2Noise, GivesBackWhatStandsAlone) {
+  const L2Noise l2(0.4);
+  const Radiance c(3.0f, 1.0f, 2.0f, 0.0f);
+  EXPECT_NEAR(l2.of(c, {-c, -c, -c, -c}), (9.0 + 1.0 + 4.0) / 3.0, 1e-9);
+  EXPECT_NEAR(l2.of(Radiance(0.0f), {}), 0.0, 1e-12);
+}
+
+// The sum of squares over a picture that one sample changes.
+TEST(L2Noise, IsWhatTheSolverMakesOfASample) {
+  constexpr int kSize = 64, kAt = 32;
+  GradientImages images;
+  images.width = images.height = kSize;
+  images.channels = 1;
+  for (auto* plane : {&images.primal, &images.dx, &images.dy}) plane->assign(size_t(kSize) * kSize, 0.0f);
+  const auto at = [&](int x, int y) { return size_t(y) * kSize + size_t(x); };
+  const float d[kOffsets] = {0.7f, -0.2f, -1.3f, 0.4f};
+  images.primal[at(kAt, kAt)] = 2.0f;
+  images.dx[at(kAt, kAt)] = d[kRight];
+  images.dy[at(kAt, kAt)] = d[kUp];
+  images.dx[at(kAt - 1, kAt)] = -d[kLeft];
+  images.dy[at(kAt, kAt - 1)] = -d[kDown];
+  const std::vector<float> x = reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, {}, nullptr);
+  double sum = 0.0;
+  for (const float v : x) sum += double(v) * v;
+  std::array<Radiance, kOffsets> differences;
+  for (int k = 0; k < kOffsets; ++k) differences[k] = Radiance(d[k]);
+  EXPECT_NEAR(L2Noise(0.4).of(Radiance(2.0f), differences) / sum, 1.0, 1e-3);
+}
+
+// One part that is dark for gradients, and has all the noise: what the others gain is not worth the time that it does without.
+TEST(Benefit, PartsAreChosenForThePicture) {
+  const auto part = [](double noise, double error, double cost) {
+    Benefit b;
+    b.noisy = true;
+    b.noise = noise;
+    b.error = error;
+    b.cost = cost;
+    b.rays = 5.0;
+    return b;
+  };
+  const std::vector<double> pixels(3, 100.0);
+  using Chosen = std::vector<bool>;
+  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.1, 2)}, pixels), (Chosen{true, true, true}));
+  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(100, 0.9, 2), part(1, 0.1, 2)}, pixels), (Chosen{false, false, false}));
+  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(100, 0.1, 2), part(1, 0.9, 2)}, pixels), (Chosen{false, true, false}));
+  EXPECT_EQ(choose_parts({part(0, 1, 2), part(0, 1, 1), part(0, 1, 3)}, pixels), (Chosen{false, false, false})) << "no noise";
 }
 
 // Pixels are noisy everywhere, differences only where x is at least `noisy_from`.
@@ -69,9 +132,10 @@ struct HalfNoisy final : Integrator {
   }
 };
 
-GradientMap pilot(const GradusSettings& settings, const Region& region, int32_t noisy_from) {
+GradientMap pilot(const GradusSettings& settings, const Region& region, int32_t noisy_from,
+                  uint32_t reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED) {
   const std::atomic<bool> stop{false};
-  return run_pilot(HalfNoisy(noisy_from), pilot_settings(settings), region, 3, stop);
+  return run_pilot(HalfNoisy(noisy_from), pilot_settings(settings), reconstruction, region, 3, stop);
 }
 
 TEST(Pilot, LeavesGradientsWhereTheyPay) {
@@ -86,17 +150,23 @@ TEST(Pilot, LeavesGradientsWhereTheyPay) {
 // Planes of a border, of another seed, of 16 and then 48 samples must fit together (contract 2.1).
 TEST(Pilot, MapDependsOnThePictureAlone) {
   GradusSettings s = small_settings(300, 200, 4);
-  const GradientMap full = pilot(s, {0, 0, 300, 200}, 130);
-  s.samples = 64;
-  s.seed = 5;
-  s.frame = 7;
-  s.first_sample = 16;
-  const Region part{77, 45, 251, 133};
-  const GradientMap map = pilot(s, part, 130);
-  for (int32_t y = part.y0; y < part.y1; ++y) {
-    for (int32_t x = part.x0; x < part.x1; ++x) {
-      ASSERT_EQ(map.pixels[size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0)], full.pixels[size_t(y) * 300 + size_t(x)])
-          << x << ", " << y;
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_WEIGHTED, GRADUS_RECONSTRUCTION_L2}) {
+    s.samples = 4;
+    s.seed = s.frame = s.first_sample = 0;
+    const GradientMap full = pilot(s, {0, 0, 300, 200}, 130, reconstruction);
+    EXPECT_GT(full.share, 0.0);
+    EXPECT_LT(full.share, 1.0);
+    s.samples = 64;
+    s.seed = 5;
+    s.frame = 7;
+    s.first_sample = 16;
+    const Region part{77, 45, 251, 133};
+    const GradientMap map = pilot(s, part, 130, reconstruction);
+    for (int32_t y = part.y0; y < part.y1; ++y) {
+      for (int32_t x = part.x0; x < part.x1; ++x) {
+        ASSERT_EQ(map.pixels[size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0)], full.pixels[size_t(y) * 300 + size_t(x)])
+            << x << ", " << y;
+      }
     }
   }
 }
