@@ -63,8 +63,9 @@ class GradientIntegrator final : public Integrator {
       const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, s.x, s.y, s.half);
       worker->offsets.start(pairs, s);
       add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, frame, counters);
+      const std::array<Radiance, kOffsets>& gradients = worker->offsets.finish();
       for (int k = 0; k < kOffsets; ++k) {
-        Radiance gradient = worker->offsets.gradient(k);
+        Radiance gradient = gradients[k];
         if (frame->channels < 4) {
           gradient.w = 0.0f;
         }

@@ -72,6 +72,9 @@ Radiance OffsetPaths::see_once(OffsetPath* o) const {
 }
 
 void OffsetPaths::seen() {
+  if (open_ == 0) {
+    return;
+  }
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
@@ -85,6 +88,9 @@ void OffsetPaths::seen() {
     }
     if (o.fresh && o.stage == OffsetStage::Traced && goes_on(o) != base_goes_on()) {
       part(k, ShiftFailure::Missed, goes_on(o), false);
+    }
+    if (o.stage == OffsetStage::Linked) {
+      join(&o);
     }
   }
 }
@@ -115,7 +121,7 @@ void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint&
 // a density of its own, so its weight against light sampling, whose density both share, is its own too.
 void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, bool joint) {
   const OffsetPath& o = offsets_[k];
-  if (!(o.shared_pdf > 0.0f && c.pdf_light > 0.0f)) {
+  if (!(c.pdf_light > 0.0f)) {
     pair(k, c, o.state.throughput * weight * c.tail, o.ratio);
     return;
   }
@@ -124,6 +130,10 @@ void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, 
 }
 
 void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
+  collect(c, lamp.weight);
+  if (open_ == 0) {
+    return;
+  }
   seen_ += Radiance(c.clamped, 0.0f);
   const bool looks = any(OffsetStage::Pending) || any(OffsetStage::Linked);
   const EmitterView base =
@@ -131,9 +141,6 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
-      continue;
-    }
-    if (separate(k, c)) {
       continue;
     }
     if (o.stage == OffsetStage::Linked) {
@@ -146,6 +153,10 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
 }
 
 void OffsetPaths::world(const RaySource& source, const Contribution& c) {
+  collect(c, Rgb(1.0f));
+  if (open_ == 0) {
+    return;
+  }
   seen_ += Radiance(c.clamped, 0.0f);
   EmitterView base;
   base.direction = base_state_.ray.ray.direction;
@@ -154,9 +165,6 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
-      continue;
-    }
-    if (separate(k, c)) {
       continue;
     }
     if (o.stage == OffsetStage::Linked) {
@@ -174,15 +182,16 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
 }
 
 void OffsetPaths::emission(const RaySource& source, const Contribution& c, const Vertex& vertex) {
+  collect(c, Rgb(1.0f));
+  if (open_ == 0) {
+    return;
+  }
   seen_ += Radiance(c.clamped, 0.0f);
   link_all(vertex);
   const EmitterPoint point = any(OffsetStage::Pending) ? emitter_of_surface(context_.scene, vertex.point) : EmitterPoint{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
-      continue;
-    }
-    if (separate(k, c)) {
       continue;
     }
     if (o.stage == OffsetStage::Linked) {

@@ -101,16 +101,15 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
 }
 
 void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+  collect(c, Rgb(1.0f));
+  if (open_ == 0) {
+    return;
+  }
   link_all(vertex);
   light_all(sample, scatter_class);
   for (int k = 0; k < kOffsets; ++k) {
-    OffsetPath& o = offsets_[k];
-    if (separate(k, c)) {
-      continue;
-    }
-    if (o.stage == OffsetStage::Linked) {
-      pair(k, c, o.state.throughput * c.tail, o.ratio);
-    } else if (o.stage == OffsetStage::Pending) {
+    const OffsetPath& o = offsets_[k];
+    if (o.stage == OffsetStage::Pending) {
       light_linked(k, vertex, sample, scatter_class, c);
     } else if (o.stage == OffsetStage::Traced) {
       light_own(k, sample, scatter_class, c);

@@ -114,7 +114,7 @@ void OffsetPaths::link_all(const Vertex& vertex) {
 // Whether the offset has a connection to the shared vertex, from the side that the base sees.
 bool OffsetPaths::arrives(OffsetPath* o, const Vertex& vertex) {
   if (!o->link.open) {
-    o->stage = OffsetStage::Dead;  // its cause was counted
+    settle(o, OffsetStage::Dead);  // its cause was counted
   } else if (!(glm::dot(vertex.facing_normal(), o->linked->wo) > 0.0f)) {
     fail(o, ShiftFailure::Side);
   }
@@ -156,22 +156,19 @@ void OffsetPaths::share_vertex(OffsetPath* o, const Vertex& vertex) {
 }
 
 void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const ScatterEvent& event) {
-  part_by_class(vertex, u);
-  bool pending = false;
-  for (OffsetPath& o : offsets_) {
-    if (o.stage == OffsetStage::Linked) {
-      o.state.throughput *= event.factor;
-      o.shared_pdf = 0.0f;
-    }
-    pending |= o.stage == OffsetStage::Pending;
+  scale(event.factor);
+  if (open_ == 0) {
+    return;
   }
-  if (pending && !reconnects(event.scatter_class)) {
+  part_by_class(vertex, u);
+  if (!any(OffsetStage::Pending)) {
+    return;
+  }
+  if (!reconnects(event.scatter_class)) {
     reach_sharp(vertex, event.scatter_class);
     return;
   }
-  if (pending) {
-    link_all(vertex);
-  }
+  link_all(vertex);
   for (OffsetPath& o : offsets_) {
     if (o.stage != OffsetStage::Pending || !arrives(&o, vertex)) {
       continue;
@@ -191,7 +188,11 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
     o.ratio = o.link.ratio * o.link.kind_ratio * shared.ratio;
     o.kind_ratio = shared.kind_ratio;
     o.shared_pdf = shared.pdf;
-    o.stage = OffsetStage::Linked;
+    if (o.link.alike) {
+      join(&o);  // its density is the base's
+    } else {
+      o.stage = OffsetStage::Linked;
+    }
   }
 }
 

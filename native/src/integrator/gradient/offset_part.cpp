@@ -21,8 +21,7 @@ bool OffsetPaths::goes_on(const OffsetPath& o) const {
 // goes_on: the offset; leaves: it stands at a vertex that was lit.
 void OffsetPaths::part(int k, ShiftFailure cause, bool goes_on, bool leaves) {
   OffsetPath& o = offsets_[k];
-  fail(&o, cause);
-  o.stage = OffsetStage::Parted;
+  count_failure(&counters_, cause);
   if (goes_on) {
     const Rgb found = own_tracer_.go_on(*sampler_, o.state, o.here, leaves);
     gradient_[k] += pairs_[k].paired(Radiance(0.0f), Radiance(found, 0.0f), o.ratio);
@@ -30,6 +29,7 @@ void OffsetPaths::part(int k, ShiftFailure cause, bool goes_on, bool leaves) {
     counters_.rays_shift_shadow += own_rays_.rays_shadow;
     own_rays_ = Counters{};
   }
+  settle(&o, OffsetStage::Parted);
 }
 
 // Where the classes differ and the base's number takes both to the same, the event is copied, but the number is no longer free: the

@@ -19,11 +19,22 @@ namespace gradus {
 
 enum class OffsetStage : uint8_t {
   Absent,   // no such neighbour, or it takes no samples
-  Dead,     // the shift failed: base contributions count alone
   Traced,   // stands at a vertex of its own that corresponds to the base's
   Pending,  // the base left in class D: stands where it was until it is known what the next vertex is used for
-  Linked,   // shares the base's vertices from here on
-  Parted,   // the two have no vertex in common any more: each goes on by itself, what it finds is paired with nothing
+  Linked,   // shares the base's vertices from here on, but on the first segment has a density of its own
+  // Settled: what the base finds from here on is paired with the same times a throughput, by one ratio (Suffix).
+  Shared,  // the first segment lies behind it
+  Parted,  // throughput 0: the two have no vertex in common any more, each goes on by itself
+  Dead,    // throughput and ratio 0: the shift failed, base contributions count alone
+};
+inline bool is_settled(OffsetStage stage) { return stage >= OffsetStage::Shared; }
+
+// What the base has found since settled offsets were last told. All of it lies behind what they share, so that one pair does for it.
+struct Suffix {
+  bool empty = true;
+  Rgb weight = Rgb(1.0f);  // by which throughputs have changed
+  Rgb base = Rgb(0.0f);    // sum of the base's contributions
+  Rgb tail = Rgb(0.0f);    // and of those of a path with the throughput 1
 };
 
 // Connection from an offset's vertex to the base's next one.
@@ -59,7 +70,7 @@ struct OffsetPath {
   bool from_camera = true;           // there was no such event
   bool fresh = false;                // it traced its own ray for the base's current segment
   bool mixed = false;                // it left its vertex, or will, by the class of the base's random number (shift/class_match.h)
-  float shared_pdf = 0.0f;  // Linked: its density of the event that it linked by, until the next one; then 0: the base's is its own
+  float shared_pdf = 0.0f;           // Linked: its density of the event that it linked by
   OffsetLink link;
   OffsetLight light;
   // Own vertices, the current one first; and the base's vertex as seen from here.

@@ -38,6 +38,7 @@ OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraV
     : context_(context),
       counters_(*counters),
       vertices_(*vertices),
+      clamps_(is_finite(context.clamp_direct) || is_finite(context.clamp_indirect)),
       joint_(!context.has_transparency && context.uniform_visibility && !context.kinds_matter),
       own_tracer_(context, &own_scratch_, nullptr, &own_rays_, &nobody_) {
   for (OffsetPath& o : offsets_) {
@@ -53,25 +54,71 @@ void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const Pixe
   gradient_.fill(Radiance(0.0f));
 }
 
+void OffsetPaths::collect(const Contribution& c, const Rgb& weight) {
+  const Rgb tail = suffix_.weight * weight * c.tail;
+  if (clamps_) {
+    for (int k = 0; k < kOffsets; ++k) {
+      const OffsetPath& o = offsets_[k];
+      if (is_settled(o.stage)) {
+        const Rgb value = clamp_contribution(context_, o.state.throughput * tail, c.indirect);
+        gradient_[k] += pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(value, 0.0f), o.ratio);
+      }
+    }
+    return;
+  }
+  suffix_.empty = false;
+  suffix_.base += c.clamped;
+  suffix_.tail += tail;
+}
+
+void OffsetPaths::scale(const Rgb& factor) {
+  suffix_.empty = false;
+  suffix_.weight *= factor;
+}
+
+void OffsetPaths::tell_settled() {
+  if (suffix_.empty) {
+    return;
+  }
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    if (is_settled(o.stage)) {
+      const Rgb value = o.state.throughput * suffix_.tail;
+      gradient_[k] += pairs_[k].paired(Radiance(suffix_.base, 0.0f), Radiance(value, 0.0f), o.ratio);
+      o.state.throughput *= suffix_.weight;
+    }
+  }
+  suffix_ = Suffix{};
+}
+
+void OffsetPaths::settle(OffsetPath* o, OffsetStage stage) {
+  tell_settled();
+  open_ -= is_settled(o->stage) ? 0 : 1;
+  o->stage = stage;
+  if (stage != OffsetStage::Shared) {
+    o->state.throughput = Rgb(0.0f);
+  }
+  if (stage == OffsetStage::Dead) {
+    o->ratio = 0.0f;
+  }
+}
+
+// All that comes is shared.
+void OffsetPaths::join(OffsetPath* o) {
+  if (o->ratio > 0.0f && is_finite(o->ratio)) {
+    settle(o, OffsetStage::Shared);
+  } else {
+    fail(o, ShiftFailure::Jacobian);
+  }
+}
+
 void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
-  offset->stage = OffsetStage::Dead;
+  settle(offset, OffsetStage::Dead);
   count_failure(&counters_, cause);
 }
 
 bool OffsetPaths::any(OffsetStage stage) const {
   return std::any_of(offsets_.begin(), offsets_.end(), [stage](const OffsetPath& o) { return o.stage == stage; });
-}
-
-bool OffsetPaths::separate(int k, const Contribution& c) {
-  if (offsets_[k].stage == OffsetStage::Parted) {
-    gradient_[k] += pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(0.0f), offsets_[k].ratio);
-    return true;
-  }
-  if (offsets_[k].stage == OffsetStage::Dead) {
-    alone(k, c);
-    return true;
-  }
-  return false;
 }
 
 void OffsetPaths::pair(int k, const Contribution& c, const Rgb& offset_value, float ratio) {
@@ -88,17 +135,23 @@ void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& le
   sampler_ = &sampler;
   film_ = film;
   lens_ = lens;
+  open_ = 0;
+  suffix_ = Suffix{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     o.stage = pairs_[k].present() ? OffsetStage::Traced : OffsetStage::Absent;
     o.state = PathState{};
     o.ratio = o.kind_ratio = 1.0f;
     o.from_camera = true;
+    open_ += o.stage == OffsetStage::Traced ? 1 : 0;
     ++(o.stage == OffsetStage::Absent ? counters_.fail_border : counters_.shifts_attempted);
   }
 }
 
 void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
+  if (open_ == 0) {
+    return;
+  }
   base_segment_ = &segment;
   base_state_ = state;
   base_in_hole_ = source.vertex == nullptr && segment.end == SegmentEnd::Surface && is_hole(context_, vertex);
@@ -126,11 +179,17 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
 // An offset that has passed more transparent surfaces than its base may meet the limit on the shared segments; so may the base on the way
 // back.
 void OffsetPaths::passed(const Segment& segment) {
+  scale(segment.weight);
+  if (open_ == 0 && segment.crossed == 0) {
+    return;
+  }
   for (OffsetPath& o : offsets_) {
-    if (o.stage != OffsetStage::Linked) {
+    if (o.stage != OffsetStage::Linked && o.stage != OffsetStage::Shared) {
       continue;
     }
-    o.state.throughput *= segment.weight;
+    if (o.stage == OffsetStage::Linked) {
+      o.state.throughput *= segment.weight;
+    }
     uint16_t& depth = o.state.ray.state.transparent_depth;
     depth = static_cast<uint16_t>(depth + segment.crossed);
     if (segment.crossed > 0 && depth > context_.settings.transparent_max_bounces) {
@@ -142,12 +201,16 @@ void OffsetPaths::passed(const Segment& segment) {
 // Roulette is the base's decision; both contributions are divided by its probability and r leaves it out.
 void OffsetPaths::survived(float probability, const Vertex& vertex) {
   const float factor = 1.0f / probability;
+  scale(Rgb(factor));
+  if (open_ == 0) {
+    return;
+  }
   for (OffsetPath& o : offsets_) {
-    o.state.throughput *= factor;
     if (o.stage == OffsetStage::Pending) {
+      o.state.throughput *= factor;
       o.link.throughput *= factor;  // a connection that emission already asked for
-    }
-    if (o.stage == OffsetStage::Traced) {
+    } else if (o.stage == OffsetStage::Traced) {
+      o.state.throughput *= factor;
       shade_vertex(context_, o.state.ray.state, o.here);
       o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);
     }

@@ -17,8 +17,11 @@ class OffsetPaths {
 
   // Before each sample.
   void start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample);
-  // After it: the weighted gradient sample of a pair, alpha included.
-  const Radiance& gradient(int offset) const { return gradient_[offset]; }
+  // After it: the weighted gradient sample of each pair, alpha included.
+  const std::array<Radiance, kOffsets>& finish() {
+    tell_settled();
+    return gradient_;
+  }
 
   // What PathTracer tells.
   void begin(const Sampler& sampler, const Vec2& film, const Vec2& lens);
@@ -38,8 +41,12 @@ class OffsetPaths {
   // Adds the gradient sample of one contribution: with the offset's, or alone.
   void pair(int k, const Contribution& c, const Rgb& offset_value, float ratio);
   void alone(int k, const Contribution& c) { gradient_[k] += pairs_[k].unpaired(Radiance(c.clamped, 0.0f)); }
-  // The offset shares nothing with this contribution; false: it may.
-  bool separate(int k, const Contribution& c);
+  // Settled offsets: a contribution of the base, behind a segment of this weight; what all of them have found so far; one more of them.
+  void collect(const Contribution& c, const Rgb& weight);
+  void scale(const Rgb& factor);
+  void tell_settled();
+  void settle(OffsetPath* offset, OffsetStage stage);
+  void join(OffsetPath* offset);
   void fail(OffsetPath* offset, ShiftFailure cause);
   // Some offset is at this stage.
   bool any(OffsetStage stage) const;
@@ -95,6 +102,9 @@ class OffsetPaths {
   std::array<PairCount, kOffsets> pairs_{};
   std::array<Radiance, kOffsets> gradient_{};
   std::array<OffsetPath, kOffsets> offsets_;
+  int open_ = 0;  // offsets that are neither absent nor settled
+  Suffix suffix_;
+  bool clamps_ = false;  // contributions are clamped one by one
   // What the base's current segment shows.
   Radiance seen_ = Radiance(0.0f);
   // Of the base: what its last ray met, and if that ray left in class D, from where and how.
