@@ -40,6 +40,14 @@ ShiftedEvent copy_dirac(const ScatterEvent& event, const Vertex& y) {
   return weigh(event, sample.wi, sample.value, closures.class_probability(event.scatter_class) * sample.pdf, 1.0f);
 }
 
+// The side and the kind of the bounce (diffuse or not) are part of the path.
+ShiftFailure compare(const BsdfSample& x, const BsdfSample& y) {
+  if (x.dirac != y.dirac || x.diffuse != y.diffuse) {
+    return ShiftFailure::Class;
+  }
+  return x.transmitted != y.transmitted ? ShiftFailure::Side : ShiftFailure::None;
+}
+
 }  // namespace
 
 ShiftedEvent event_towards(const ScatterEvent& event, const Vertex& y, const Vec3& wi, float jacobian) {
@@ -85,6 +93,27 @@ ShiftedEvent copy_event(const Vertex& x, const ScatterEvent& event, const Vertex
     return failed(ShiftFailure::Side);
   }
   return event_towards(event, y, direction.wi, direction.jacobian);
+}
+
+ShiftedEvent replay_event(const Vertex& x, const ScatterEvent& event, const VertexSample& u, const Vertex& y) {
+  const ScatterClass c = event.scatter_class;
+  const float probability = y.shade.closures.class_probability(c);
+  BsdfSample sample;
+  if (!(probability > 0.0f)) {
+    return failed(ShiftFailure::Class);
+  }
+  if (!y.shade.closures.sample(c, y.wo, u.lobe.y, u.bsdf, &sample)) {
+    return failed(ShiftFailure::Density);
+  }
+  const ShiftFailure failure = compare(event.sample, sample);
+  if (failure != ShiftFailure::None) {
+    return failed(failure);
+  }
+  const BsdfEval of_kind = event.by_kind ? sample.kind : BsdfEval{sample.value, sample.pdf};
+  ShiftedEvent shifted = weigh(event, sample.wi, of_kind.value, probability * of_kind.pdf, 1.0f);
+  shifted.pdf = probability * sample.pdf;
+  shifted.ratio = probability / x.shade.closures.class_probability(c);
+  return shifted;
 }
 
 }  // namespace gradus

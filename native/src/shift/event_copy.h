@@ -22,6 +22,8 @@ struct ShiftedEvent {
 
 // A class R or T event of the base at x, replayed at y. J = 1 for Dirac events.
 ShiftedEvent copy_event(const Vertex& x, const ScatterEvent& event, const Vertex& y);
+// Random replay: the event that the numbers u, which made the base's, make at y. They are the coordinates of the path: J·pdf'/pdf = P'/P.
+ShiftedEvent replay_event(const Vertex& x, const ScatterEvent& event, const VertexSample& u, const Vertex& y);
 // The event with a known direction wi' and Jacobian: evaluates class, value and density at y.
 ShiftedEvent event_towards(const ScatterEvent& event, const Vertex& y, const Vec3& wi, float jacobian);
 

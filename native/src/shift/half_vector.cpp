@@ -1,5 +1,6 @@
 #include "shift/half_vector.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gradus {
@@ -130,6 +131,17 @@ int dirac_lobe(const Closures& closures, ScatterClass c, int rank) {
     }
   }
   return -1;
+}
+
+float class_width(const Closures& closures, ScatterClass c) {
+  float width = kInfinity;
+  for (int i = 0; i < closures.count(); ++i) {
+    const Lobe& lobe = closures.lobe(i);
+    if (!is_dirac(lobe) && belongs(lobe, c)) {
+      width = std::min({width, lobe.alpha_x, lobe.alpha_y});
+    }
+  }
+  return width;
 }
 
 HalfVectorFrame class_frame(const Closures& closures, ScatterClass c, const Vec3& wo) {

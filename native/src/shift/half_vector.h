@@ -38,6 +38,8 @@ Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& v);
 int dirac_rank(const Closures& closures, ScatterClass c, int lobe);
 int dirac_lobe(const Closures& closures, ScatterClass c, int rank);
 
+// Roughness (alpha) of the class's sharpest lobe that is not Dirac; infinite where it has none.
+float class_width(const Closures& closures, ScatterClass c);
 // The frame of a class's half-vectors at a vertex: that of its first lobe that is not Dirac.
 HalfVectorFrame class_frame(const Closures& closures, ScatterClass c, const Vec3& wo);
 

@@ -10,13 +10,21 @@ float emitter_jacobian(float cosine_base, float distance_base, float cosine_offs
   return cosine_offset / cosine_base * ratio * ratio;
 }
 
+float parallax(const Vec3& x, const Vec3& y, const Vec3& z) {
+  return glm::length(x - y) / std::min(glm::length(z - x), glm::length(z - y));
+}
+
+bool is_short_edge(const Vec3& x, const Vec3& y, const Vec3& z) { return !(parallax(x, y, z) < 1.0f); }
+
 bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curvature, bool transmission) {
   constexpr float kCurved = 0.5f;  // curvature · edge: where the directions behind z differ alike in both cases
-  constexpr float kSmall = 0.2f;   // of a mirror's edge: what is lost at its rim outweighs what its flatness keeps
+  constexpr float kSmall = 0.2f;   // parallax at a mirror: what is lost at its rim outweighs what its flatness keeps
+  const float angle = parallax(x, y, z);
   const float edge = std::min(glm::length(z - x), glm::length(z - y));
-  const float footprint = glm::length(x - y);
-  return curvature * edge > kCurved ? footprint < edge : !transmission && footprint < kSmall * edge;
+  return curvature * edge > kCurved ? !is_short_edge(x, y, z) : !transmission && angle < kSmall;
 }
+
+bool looks_alike(const Vec3& x, const Vec3& y, const Vec3& z, float width) { return parallax(x, y, z) < width; }
 
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal) {
   Reconnection result;

@@ -252,6 +252,55 @@ TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
   EXPECT_FALSE(shares_sharp_vertex(x, y, close, 5.0f, true));
 }
 
+TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
+  Random random(17);
+  int is_short = 0, alike = 0;
+  constexpr int kCases = 10000;
+  for (int i = 0; i < kCases; ++i) {
+    const Vec3 x = random.direction(), y = x + std::exp2(-float(i % 8)) * random.direction();
+    const Vec3 z = x + std::exp2(-float(i % 5)) * random.direction();
+    const float width = 0.1f * float(1 + i % 9);
+    EXPECT_EQ(parallax(x, y, z), parallax(y, x, z));
+    EXPECT_EQ(is_short_edge(x, y, z), is_short_edge(y, x, z));
+    EXPECT_EQ(looks_alike(x, y, z, width), looks_alike(y, x, z, width));
+    is_short += is_short_edge(x, y, z) ? 1 : 0;
+    alike += looks_alike(x, y, z, width) ? 1 : 0;
+  }
+  EXPECT_GT(is_short, kCases / 10);
+  EXPECT_GT(alike, kCases / 10);
+  EXPECT_LT(is_short + alike, kCases - kCases / 10);
+}
+
+TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
+  const Vec3 x(0, 0, 0), y(0.1f, 0, 0), z(0, 0, 2);
+  EXPECT_TRUE(looks_alike(x, y, z, 0.06f));
+  EXPECT_FALSE(looks_alike(x, y, z, 0.04f));
+  EXPECT_FALSE(looks_alike(x, y, z, 0.0f));  // Dirac
+  EXPECT_FALSE(is_short_edge(x, y, z));
+  EXPECT_TRUE(is_short_edge(x, y, Vec3(0, 0, 0.1f)));
+  EXPECT_TRUE(is_short_edge(x, y, x));
+}
+
+// The sharpest lobe of the class decides, whatever else the point has.
+TEST(B4_Shift, WidthOfAClassIsThatOfItsSharpestLobe) {
+  Closures closures;
+  const auto add = [&](LobeType type, float alpha_x, float alpha_y) {
+    Lobe* lobe = closures.add();
+    lobe->type = type;
+    lobe->weight = Rgb(0.3f);
+    lobe->normal = Vec3(0, 0, 1);
+    lobe->alpha_x = alpha_x;
+    lobe->alpha_y = alpha_y;
+  };
+  add(LobeType::Diffuse, 0.0f, 0.0f);
+  add(LobeType::GgxReflection, 0.09f, 0.03f);
+  add(LobeType::GgxReflection, 0.05f, 0.05f);
+  add(LobeType::GgxReflection, 0.5f, 0.5f);  // of class D
+  closures.finish(Vec3(0, 0, 1), Vec3(0, 0, 1), 0.1f);
+  EXPECT_FLOAT_EQ(class_width(closures, ScatterClass::Reflection), 0.03f);
+  EXPECT_EQ(class_width(closures, ScatterClass::Transmission), kInfinity);
+}
+
 TEST(B4_Shift, SmallestRotationIsUndoneByItsInverse) {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {

@@ -121,6 +121,7 @@ void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint&
 // a density of its own, so its weight against light sampling, whose density both share, is its own too.
 void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, bool joint) {
   const OffsetPath& o = offsets_[k];
+  joint = joint && reconnects(base_event_.scatter_class);  // light samples of sharp classes know nothing of shared directions
   if (!(c.pdf_light > 0.0f)) {
     pair(k, c, o.state.throughput * weight * c.tail, o.ratio);
     return;

@@ -90,7 +90,8 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
     return;
   }
   const LitClass lit = o.link.alike ? LitClass{} : light_class(context_, *o.linked, scatter_class, sample, base_state_.ray.state);
-  if (is_black(lit.value) || !(link_ratio > 0.0f)) {
+  // A texture that looks at the ray may make the vertex rough for the offset alone: then the way back would be a replay.
+  if (is_black(lit.value) || !(link_ratio > 0.0f) || replays(o.here->point.position, *o.linked)) {
     ++counters_.fail_class;
     alone(k, c);
     return;

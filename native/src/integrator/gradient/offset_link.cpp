@@ -126,16 +126,34 @@ bool OffsetPaths::shares(const Vec3& y, const Vertex& z, ScatterClass next) cons
                              next == ScatterClass::Transmission);
 }
 
-// Class D before class R or T: each path goes on by a ray of its own, from the base's vertex or from one of its own.
-void OffsetPaths::reach_sharp(const Vertex& vertex, ScatterClass next) {
+// The event at z, seen from the base's vertex or from y, has a lobe that looks alike from both.
+bool OffsetPaths::shares_direction(const Vec3& y, const Vertex& z, const ScatterEvent& event) const {
+  const float width = event.sample.dirac ? 0.0f : class_width(z.shade.closures, event.scatter_class);
+  return looks_alike(base_from_->point.position, y, z.point.position, width);
+}
+
+// Class D before class R or T: the offset shares its base's vertex, and where the lobe is wide the direction, too; or it goes on by a ray
+// of its own. Where a texture looks at the ray, the two paths may judge the lobe differently: then so they would on the way back.
+void OffsetPaths::reach_sharp(const Vertex& vertex, const ScatterEvent& event) {
   for (OffsetPath& o : offsets_) {
-    if (o.stage == OffsetStage::Pending && !shares(o.here->point.position, vertex, next)) {
-      copy_direction(&o, next);
+    if (o.stage == OffsetStage::Pending && !shares(o.here->point.position, vertex, event.scatter_class) &&
+        !shares_direction(o.here->point.position, vertex, event)) {
+      copy_direction(&o, event);
     }
   }
   link_all(vertex);
   for (OffsetPath& o : offsets_) {
-    if (o.stage == OffsetStage::Pending && arrives(&o, vertex)) {
+    if (o.stage != OffsetStage::Pending || !arrives(&o, vertex)) {
+      continue;
+    }
+    see_linked(&o, vertex);
+    const Vec3& y = o.here->point.position;
+    const bool alike = shares_direction(y, vertex, event);
+    if (alike != shares_direction(y, *o.linked, event)) {
+      fail(&o, ShiftFailure::Class);
+    } else if (alike) {
+      link(&o, vertex, event);
+    } else {
       share_vertex(&o, vertex);
     }
   }
@@ -165,34 +183,38 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
     return;
   }
   if (!reconnects(event.scatter_class)) {
-    reach_sharp(vertex, event.scatter_class);
+    reach_sharp(vertex, event);
     return;
   }
   link_all(vertex);
   for (OffsetPath& o : offsets_) {
-    if (o.stage != OffsetStage::Pending || !arrives(&o, vertex)) {
-      continue;
+    if (o.stage == OffsetStage::Pending && arrives(&o, vertex)) {
+      link(&o, vertex, event);
     }
-    const ShiftedEvent shared = linked_event(&o, vertex, event);
-    if (shared.failure != ShiftFailure::None) {
-      fail(&o, shared.failure);
-      continue;
-    }
-    if (!(o.link.kind_ratio > 0.0f)) {
-      fail(&o, ShiftFailure::Class);
-      continue;
-    }
-    ++counters_.shifts_reconnected;
-    o.state.throughput = o.link.throughput * shared.factor;
-    o.state.ray.state.transparent_depth = o.link.transparent_depth;
-    o.ratio = o.link.ratio * o.link.kind_ratio * shared.ratio;
-    o.kind_ratio = shared.kind_ratio;
-    o.shared_pdf = shared.pdf;
-    if (o.link.alike) {
-      join(&o);  // its density is the base's
-    } else {
-      o.stage = OffsetStage::Linked;
-    }
+  }
+}
+
+// The rest is shared.
+void OffsetPaths::link(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) {
+  const ShiftedEvent shared = linked_event(o, vertex, event);
+  if (shared.failure != ShiftFailure::None) {
+    fail(o, shared.failure);
+    return;
+  }
+  if (!(o->link.kind_ratio > 0.0f)) {
+    fail(o, ShiftFailure::Class);
+    return;
+  }
+  ++counters_.shifts_reconnected;
+  o->state.throughput = o->link.throughput * shared.factor;
+  o->state.ray.state.transparent_depth = o->link.transparent_depth;
+  o->ratio = o->link.ratio * o->link.kind_ratio * shared.ratio;
+  o->kind_ratio = shared.kind_ratio;
+  o->shared_pdf = shared.pdf;
+  if (o->link.alike) {
+    join(o);  // its density is the base's
+  } else {
+    o->stage = OffsetStage::Linked;
   }
 }
 

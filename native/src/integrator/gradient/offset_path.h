@@ -2,7 +2,9 @@
 //
 // Which shift a path takes is decided by its classes, which a shift copies, and by predicates that are symmetric in base and offset:
 //   - a vertex of class D whose successor is of class D, or emits, or is a light sample: reconnection at the successor, the rest is shared;
-//   - class D before class R or T: the offset meets its base there, or copies the direction (shares_sharp_vertex());
+//   - class D before class R or T: the offset meets its base there, and shares the direction, too, where the lobe is wide (looks_alike()),
+//     or copies the direction (shares_sharp_vertex());
+//   - class D before a short edge (is_short_edge()): random replay;
 //   - class R or T: the event is copied (half-vector, or the Dirac lobe), the offset traces a ray of its own.
 // A light sample at a vertex of its own: the emitter point is copied.
 // Where the classes of two vertices differ, or one of two rays meets no surface, base and offset part (offset_part.cpp).

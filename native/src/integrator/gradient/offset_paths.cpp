@@ -155,6 +155,10 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
   base_segment_ = &segment;
   base_state_ = state;
   base_in_hole_ = source.vertex == nullptr && segment.end == SegmentEnd::Surface && is_hole(context_, vertex);
+  if (source.vertex != nullptr) {
+    base_event_ = *source.event;
+    base_from_ = source.vertex;
+  }
   seen_ = Radiance(0.0f);
   for (OffsetPath& o : offsets_) {
     o.light.known = false;
@@ -165,8 +169,6 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
   } else if (!reconnects(source.event->scatter_class)) {
     copy_events(source, state);
   } else {
-    base_event_ = *source.event;
-    base_from_ = source.vertex;
     for (OffsetPath& o : offsets_) {
       if (o.stage == OffsetStage::Traced) {
         o.stage = OffsetStage::Pending;
@@ -215,6 +217,7 @@ void OffsetPaths::survived(float probability, const Vertex& vertex) {
       o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);
     }
   }
+  replay_short_edges(vertex);
 }
 
 }  // namespace gradus

@@ -62,7 +62,10 @@ class OffsetPaths {
   CameraVertex* known_vertex(int k) const;
   void share(OffsetPath* offset, CameraVertex* vertex);
   void copy_events(const RaySource& source, const PathState& state);
-  void copy_direction(OffsetPath* offset, ScatterClass next);
+  void copy_direction(OffsetPath* offset, const ScatterEvent& next);
+  void replay_short_edges(const Vertex& vertex);
+  void replay(OffsetPath* offset, const Vertex& vertex);
+  bool trace_surface(OffsetPath* offset, const ShiftedEvent& event);
   // From here on the path depends on the kind of its last bounce.
   void include_kind(OffsetPath* offset);
   void leave(OffsetPath* offset, const ShiftedEvent& event, const PathState& state);
@@ -76,9 +79,12 @@ class OffsetPaths {
   RayState linked_ray(const OffsetPath& offset, const Vertex& vertex) const;
   Rgb linked_emission(const OffsetPath& offset, const Vertex& vertex) const;
   void see_linked(OffsetPath* offset, const Vertex& vertex) const;
-  void reach_sharp(const Vertex& vertex, ScatterClass next);
+  void link(OffsetPath* offset, const Vertex& vertex, const ScatterEvent& event);
+  void reach_sharp(const Vertex& vertex, const ScatterEvent& event);
   void share_vertex(OffsetPath* offset, const Vertex& vertex);
+  bool replays(const Vec3& y, const Vertex& z) const;
   bool shares(const Vec3& y, const Vertex& z, ScatterClass next) const;
+  bool shares_direction(const Vec3& y, const Vertex& z, const ScatterEvent& event) const;
   ShiftedEvent linked_event(OffsetPath* offset, const Vertex& vertex, const ScatterEvent& event) const;
 
   // Emitters (offset_emission.cpp, offset_light.cpp).
@@ -107,7 +113,7 @@ class OffsetPaths {
   bool clamps_ = false;  // contributions are clamped one by one
   // What the base's current segment shows.
   Radiance seen_ = Radiance(0.0f);
-  // Of the base: what its last ray met, and if that ray left in class D, from where and how.
+  // Of the base: what its last ray met, and from where and how that ray left, unless it came from the camera.
   const Segment* base_segment_ = nullptr;
   bool base_in_hole_ = false;
   const Vertex* base_from_ = nullptr;

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "integrator/gradient/offset_paths.h"
+#include "shift/class_match.h"
 
 namespace gradus {
 
@@ -111,13 +112,12 @@ void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
   }
 }
 
-// Class D before class R or T, away from the base's vertex: in the base's direction.
-void OffsetPaths::copy_direction(OffsetPath* o, ScatterClass next) {
+// A ray of the offset's own after class D. False: it met no surface, and the shift has failed.
+bool OffsetPaths::trace_surface(OffsetPath* o, const ShiftedEvent& event) {
   ++counters_.shifts_replayed;  // tried, too
-  const ShiftedEvent event = event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f);
   if (event.failure != ShiftFailure::None) {
     fail(o, event.failure);
-    return;
+    return false;
   }
   ++counters_.rays_shift;
   leave(o, event, base_state_);
@@ -126,15 +126,53 @@ void OffsetPaths::copy_direction(OffsetPath* o, ScatterClass next) {
   trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->own_segment);
   if (o->segment->end != SegmentEnd::Surface) {
     fail(o, ShiftFailure::Missed);
-    return;
-  }
-  if (shares(o->previous->point.position, *o->here, next)) {
-    fail(o, ShiftFailure::Class);  // the way back would share this vertex
-    return;
+    return false;
   }
   o->state.throughput *= o->segment->weight;
+  return true;
+}
+
+// Class D before class R or T, away from the base's vertex: in the base's direction. The way back must not share this vertex.
+void OffsetPaths::copy_direction(OffsetPath* o, const ScatterEvent& next) {
+  if (!trace_surface(o, event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f))) {
+    return;
+  }
+  const Vec3& y = o->previous->point.position;
+  if (replays(y, *o->here) || shares(y, *o->here, next.scatter_class) || shares_direction(y, *o->here, next)) {
+    fail(o, ShiftFailure::Class);
+    return;
+  }
   o->stage = OffsetStage::Traced;
   o->mixed = false;
+  include_kind(o);
+}
+
+// Class D before z over a short edge. Not at a surface that is sharp alone: there the direction is copied, which nothing forbids at the
+// other end.
+bool OffsetPaths::replays(const Vec3& y, const Vertex& z) const {
+  const bool rough = z.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
+  return rough && is_short_edge(base_from_->point.position, y, z.point.position);
+}
+
+void OffsetPaths::replay_short_edges(const Vertex& vertex) {
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Pending && replays(o.here->point.position, vertex)) {
+      replay(&o, vertex);
+    }
+  }
+}
+
+// By the base's random numbers. The way back must be a replay, too.
+void OffsetPaths::replay(OffsetPath* o, const Vertex& vertex) {
+  if (!trace_surface(o, replay_event(*base_from_, base_event_, sampler_->vertex(base_state_.depth - 1), *o->here))) {
+    return;
+  }
+  if (!replays(o->previous->point.position, *o->here)) {
+    fail(o, ShiftFailure::Class);
+    return;
+  }
+  o->stage = OffsetStage::Traced;
+  o->mixed = !same_classes(vertex.shade.closures, o->here->shade.closures);
   include_kind(o);
 }
 
