@@ -7,7 +7,7 @@ BLENDER ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help build render test test-full test-native test-addon stress faults compilers package format lint clean
-.PHONY: bench bench-errors bench-agreement bench-quick bench-speed bench-suite bench-pictures bench-host bench-report picture
+.PHONY: bench bench-errors bench-compare bench-agreement bench-quick bench-speed bench-suite bench-pictures bench-host bench-report picture
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -53,6 +53,9 @@ bench-agreement: ## converged images against those of Cycles and Mitsuba; limite
 
 bench-quick:    ## errors of two scenes, in under five minutes
 	@tools/bench.sh --quick
+
+bench-compare:  ## two versions among the stored results, error and rays of L2 and WEIGHTED: OLD=772811d NEW=414ff4f WIDTH=160
+	@OLD='$(OLD)' NEW='$(NEW)' WIDTH='$(WIDTH)' tools/bench.sh --compare
 
 bench-speed:    ## CPU time of a sample in a room of 1 k to 2 M triangles, against Cycles: ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3
 	@ROOMS='$(ROOMS)' SPEED_WIDTH='$(SPEED_WIDTH)' REPEATS='$(REPEATS)' tools/bench.sh --speed

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --agreement | --speed | --suite | --pictures | --host | --report]; all without one.
+# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --compare | --agreement | --speed | --suite | --pictures | --host | --report]; all without one.
 #   --errors  error against CPU time; SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 SEEDS=5 SAMPLES=4,16,64 MINUTES=60 limit it
 #   --quick   the same of two scenes, smaller
+#   --compare  the errors of two versions among the stored results; OLD=772811d NEW=414ff4f WIDTH=160
 #   --agreement  converged images against those of Cycles and Mitsuba; SCENES, WIDTH and REFERENCE as above
 #   --speed   time of a sample in the room; ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3 MINUTES=60 limit it
 #   --suite   time of the statistical tests and of the reconstructions
@@ -30,6 +31,11 @@ errors() {
   option --samples "${SAMPLES:-}"
   option --minutes "${MINUTES:-}"
   "$python" tools/bench/bench.py "${arguments[@]}"
+}
+compare() {
+  local arguments=("${OLD:?which versions?}" "${NEW:?which versions?}")
+  option --width "${WIDTH:-}"
+  "$python" tools/bench/compare.py "${arguments[@]}"
 }
 agreement() {  # from the references of errors(), where these are there
   local arguments=()
@@ -62,6 +68,7 @@ report() { "$python" tools/bench/report.py; }
 case $part in
   --errors) set_up; errors; report ;;
   --quick) set_up; errors --quick; report ;;
+  --compare) tools/setup/setup bpy; compare ;;
   --agreement) set_up; agreement; report ;;
   --speed) set_up blender; speed; report ;;
   --suite) set_up; suite; report ;;
