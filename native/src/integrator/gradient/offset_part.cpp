@@ -5,8 +5,8 @@
 // unpaired contribution would count −C. The same happens from the other end, for the decision looks at the pair alone:
 //   - one of the two rays met a surface to scatter from, and the other did not;
 //   - the classes of the two vertices differ, and the base's random number takes them to different ones.
-// Both vertices must have been found by rays of the same kind, from the camera or by copied events. A direction copied at class D will
-// not do: had the offset's next event been of class D, its path would have been reconnected.
+// Both vertices must have been found by rays of the same kind, from the camera, by copied or by replayed events. A direction copied at
+// class D will not do: had the offset's next event been of class D, its path would have been reconnected.
 #include "integrator/gradient/offset_paths.h"
 #include "shift/class_match.h"
 
