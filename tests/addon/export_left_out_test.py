@@ -46,14 +46,6 @@ def test_motion_blur_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -
     assert warnings(scene) == []
 
 
-def test_a_holdout_in_an_opaque_film_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    """Cycles gives it alpha 0; here it was 1 without a word."""
-    plane.is_holdout = True
-    assert warnings(scene) == ["Object 'Plane' is held out, which leaves alpha at 1 without Film > Transparent"]
-    scene.render.film_transparent = True
-    assert warnings(scene) == []
-
-
 @pytest.mark.parametrize("kind", ["object", "material", "asset"])
 def test_cryptomatte_is_named(scene: bpy.types.Scene, plane: bpy.types.Object, kind: str) -> None:
     layer = scene.view_layers[0]

@@ -102,7 +102,6 @@ class _Sync:
         for text in (
             *left_out.of_scene(self._scene, self._depsgraph.view_layer_eval),
             *collected.left_out,
-            *left_out.of_holdouts(self._scene, collected.surfaces),
         ):
             self.warnings.add(text)
         for entry in collected.surfaces:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
-from .visibility import HOLDOUT
 
 _KINDS = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
 KINDS = frozenset(_KINDS)
@@ -33,13 +32,6 @@ def _is_hair(modifier: Any) -> bool:
         return False
     settings = modifier.particle_system.settings
     return settings.type == "HAIR" and settings.render_type == "PATH"
-
-
-def of_holdouts(scene: Any, surfaces: Iterable[Any]) -> Iterator[str]:
-    """Alpha is sampled only where the film is transparent."""
-    held_out = [] if scene.render.film_transparent else [entry.name for entry in surfaces if entry.visibility & HOLDOUT]
-    if held_out:
-        yield f"Object '{held_out[0]}' is held out, which leaves alpha at 1 without Film > Transparent"
 
 
 def of_scene(scene: Any, view_layer: Any) -> Iterator[str]:

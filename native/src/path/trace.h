@@ -197,7 +197,7 @@ class PathTracer {
 
   void add_world(const RaySource& source) {
     if (recorder_ != nullptr) recorder_->escaped(state_);
-    if (state_.depth == 0) add_transparent(mean_component(state_.throughput));
+    if (state_.depth == 0 && context_.settings.film_transparent != 0) add_transparent(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
     if (!is_black(c.clamped)) {
       add(c.clamped);

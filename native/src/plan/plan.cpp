@@ -104,7 +104,7 @@ void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* 
   if (!snapshot.features.has_emitters) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
   if (snapshot.features.only_lights_shine)
     plan->skipped.emplace_back("surfaces at the ends of paths", "no material emits light or lets it through");
-  if (!settings.film_transparent) plan->skipped.emplace_back("alpha channel", "the film is opaque");
+  if (plan->channels == 3) plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
 }
 
 void list_passes(const GradusSettings& settings, Plan* plan) {
@@ -132,7 +132,7 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
   choose_integrator(settings, &plan);
   choose_reconstruction(settings, &plan);
   choose_region(settings, &plan);
-  plan.channels = settings.film_transparent ? 4 : 3;
+  plan.channels = settings.film_transparent || snapshot.features.has_holdouts ? 4 : 3;
   plan.first_check = first_check(settings);
   plan.adaptive = settings.noise_threshold > 0.0f && settings.samples > kFirstCheck;
   if (plan.adaptive) {

@@ -147,6 +147,14 @@ void find_sharpest(Snapshot* snapshot) {
   for (const InstanceData& instance : snapshot->instances) std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
 }
 
+// Holes in the film, by their object or by a shader.
+void find_holdouts(Snapshot* snapshot) {
+  const auto holds_out = [&](uint32_t m) { return snapshot->materials[m]->has_holdout; };
+  snapshot->features.has_holdouts = std::any_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const InstanceData& i) {
+    return (i.visibility & GRADUS_HOLDOUT) != 0 || std::any_of(i.materials.begin(), i.materials.end(), holds_out);
+  });
+}
+
 void find_what_shines(Snapshot* snapshot) {
   const auto dark = [&](uint32_t m) {
     const MaterialData& material = *snapshot->materials[m];
@@ -203,6 +211,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     place_world(*state_, materials, snapshot.get());
     build_lights(device_, place_lamps(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
+    find_holdouts(snapshot.get());
     find_what_shines(snapshot.get());
   };
   // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.

@@ -49,6 +49,7 @@ struct SceneFeatures {
   bool has_emitters = false;
   bool only_lights_shine = false;  // no surface has anything to show to a ray that ends a path: it sees lamps and the world alone
   bool world_shines = true;
+  bool has_holdouts = false;  // holes in the film, which have alpha 0 in an opaque one, too
 };
 
 // All positions that go in and come out are in internal space: world = internal + origin. The camera and the lamps are moved alike, so

@@ -5,6 +5,8 @@
 
 #include "render/pass_read.h"
 #include "render/pass_table.h"
+#include "render/render.h"
+#include "shading/program_builder.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -90,6 +92,39 @@ TEST(DataPasses, NormalsFaceTheViewer) {
   EXPECT_NEAR(normal[i], 0.0f, 1e-5f);
   EXPECT_NEAR(normal[i + 1], 0.0f, 1e-5f);
   EXPECT_NEAR(normal[i + 2], 1.0f, 1e-5f);
+}
+
+// Alpha of an opaque film was 1 everywhere. Cycles lets a hole through it, be it an object or a shader, and shows the world behind all
+// else.
+TEST(Holdout, IsAHoleInAnOpaqueFilmToo) {
+  test::PathScene scene;
+  test::ProgramBuilder program;
+  const uint64_t shader = scene.material(program.desc(program.add(GRADUS_OP_HOLDOUT, {}))), wall = scene.material(test::matte(Rgb(0.8f)));
+  scene.quad(Vec3(-1, -0.5f, 0), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), wall);
+  scene.quad(Vec3(-0.5f, -0.5f, 0), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), wall, GRADUS_VISIBLE_ALL | GRADUS_HOLDOUT);
+  scene.quad(Vec3(0, -0.5f, 0), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), shader);
+  scene.camera(Vec3(0, 0, 3), Vec3(0, 0, 0), 2.0f / 3.0f);
+  GradusSettings settings = test::test_settings(16, 4);
+  settings.samples = 4;
+  settings.filter_width = 0.01f;  // no pixel has a part of two
+  const std::shared_ptr<const Snapshot> snapshot = scene.context(settings).snapshot;
+  for (const uint32_t integrator : {GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT}) {
+    for (const uint32_t transparent : {0u, 1u}) {
+      settings.integrator = integrator;
+      settings.film_transparent = transparent;
+      Render render(nullptr, snapshot, settings);
+      ASSERT_TRUE(render.wait(-1.0));
+      for (const uint32_t pass : {GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_COMBINED}) {
+        std::vector<float> image(16 * 4 * 4);
+        render.read_pass(pass, image.data(), image.size());
+        const auto alpha = [&](int x) { return image[4 * (2 * 16 + size_t(x)) + 3]; };
+        EXPECT_NEAR(alpha(2), 1.0f, 0.02f) << "wall";
+        EXPECT_NEAR(alpha(6), 0.0f, 0.02f) << "object";
+        EXPECT_NEAR(alpha(10), 0.0f, 0.02f) << "shader";
+        EXPECT_NEAR(alpha(14), transparent ? 0.0f : 1.0f, 0.02f) << "world";
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ Radiance OffsetPaths::see(OffsetPath* o) const {
   o->state.throughput *= o->segment->weight;
   const float all = mean_component(o->state.throughput);
   if (o->segment->end == SegmentEnd::Escaped) {
-    seen += Radiance(world_contribution(context_, o->source(), o->state).clamped, o->from_camera ? -all : 0.0f);
+    const bool shows_through = o->from_camera && context_.settings.film_transparent != 0;
+    seen += Radiance(world_contribution(context_, o->source(), o->state).clamped, shows_through ? -all : 0.0f);
   } else if (o->segment->end == SegmentEnd::Surface) {
     const ShadeResult& shade = o->here->shade;
     if (o->from_camera && is_hole(context_, *o->here)) {
