@@ -4,6 +4,7 @@
 #include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
+#include "base/fpu.h"
 #include "frame/store.h"
 #include "render/combine.h"
 #include "render/options.h"
@@ -45,6 +46,18 @@ uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
   }
 }
 
+// RGBA, by as many threads as a render with the frame's settings has.
+void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, float* rgba) {
+  tbb::task_arena arena(arena_size(frame.settings.threads > 0 ? frame.settings.threads : object->device->threads()));
+  arena.execute([&] {
+    const FlushDenormals flush;
+    SolveReport report;
+    const std::vector<float> image = combine(
+        frame, resolve(reconstruction, frame), alpha, delivered(frame), [] { return false; }, &report);
+    std::copy(image.begin(), image.end(), rgba);
+  });
+}
+
 }  // namespace
 }  // namespace gradus::api
 
@@ -55,8 +68,7 @@ GradusError gradus_frame_save(GradusFrame frame, const char* path) {
 GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame* frame) {
   return api::guard([&] {
     api::require(frame, "frame") = 0;
-    api::find_handle<Device>(device);
-    auto object = std::make_shared<api::FrameObject>();
+    auto object = std::make_shared<api::FrameObject>(api::find_handle<Device>(device));
     object->frame = load_frame(&api::require(path, "path"));
     *frame = api::add_handle(std::move(object));
   });
@@ -83,30 +95,24 @@ GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* heig
 
 GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, float* rgba, size_t count) {
   return api::guard([&] {
-    const auto object = api::find_handle<api::FrameObject>(frame)->get();
-    const Region region = api::delivered(*object);
-    api::check_count(count, region, 4);
+    const auto object = api::find_handle<api::FrameObject>(frame);
+    const std::shared_ptr<const Frame> content = object->get();
+    api::check_count(count, api::delivered(*content), 4);
     api::check_array(rgba, count, "rgba");
     check_alpha(alpha);
-    SolveReport report;
-    const std::vector<float> image = combine(
-        *object, api::resolve(reconstruction, *object), alpha, region, [] { return false; }, &report);
-    std::copy(image.begin(), image.end(), rgba);
+    api::reconstruct_into(object.get(), *content, reconstruction, alpha, rgba);
   });
 }
 
 GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count) {
   return api::guard([&] {
-    const auto object = api::find_handle<api::FrameObject>(frame)->get();
-    const Region region = api::delivered(*object);
+    const auto object = api::find_handle<api::FrameObject>(frame);
+    const std::shared_ptr<const Frame> content = object->get();
+    const Region region = api::delivered(*content);
     api::check_count(count, region, pass_info(pass).channels);
     api::check_array(pixels, count, "pixels");
-    if (pass != GRADUS_PASS_COMBINED) return read_frame_pass(*object, pass, region, pixels);
-    SolveReport report;
-    const GradusSettings& s = object->settings;
-    const std::vector<float> image = combine(
-        *object, api::resolve(s.reconstruction, *object), s.reconstruction_alpha, region, [] { return false; }, &report);
-    std::copy(image.begin(), image.end(), pixels);
+    if (pass != GRADUS_PASS_COMBINED) return read_frame_pass(*content, pass, region, pixels);
+    api::reconstruct_into(object.get(), *content, content->settings.reconstruction, content->settings.reconstruction_alpha, pixels);
   });
 }
 

@@ -31,9 +31,10 @@ struct SceneObject {
 };
 
 struct RenderObject {
-  RenderObject(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
+  RenderObject(std::shared_ptr<Device> shared_device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
                std::shared_ptr<const Frame> resumed)
-      : render(std::move(device), std::move(snapshot), settings, std::move(resumed)) {}
+      : device(std::move(shared_device)), render(device, std::move(snapshot), settings, std::move(resumed)) {}
+  std::shared_ptr<Device> device;
   Render render;
   std::mutex mutex;
   std::string stats;  // kept for the caller until release
@@ -41,7 +42,9 @@ struct RenderObject {
 
 // Frames of renders are shared and immutable; merging replaces the frame by a new one.
 struct FrameObject {
+  explicit FrameObject(std::shared_ptr<Device> shared_device) : device(std::move(shared_device)) {}
   std::mutex mutex;
+  std::shared_ptr<Device> device;
   std::shared_ptr<const Frame> frame;
   std::shared_ptr<const Frame> get() {
     const std::lock_guard lock(mutex);

@@ -86,8 +86,9 @@ GradusError gradus_render_stats(GradusRender render, const char** json) {
 GradusError gradus_render_frame(GradusRender render, GradusFrame* frame) {
   return api::guard([&] {
     api::require(frame, "frame") = 0;
-    auto object = std::make_shared<api::FrameObject>();
-    object->frame = api::find_handle<api::RenderObject>(render)->render.frame();
+    const auto from = api::find_handle<api::RenderObject>(render);
+    auto object = std::make_shared<api::FrameObject>(from->device);
+    object->frame = from->render.frame();
     *frame = api::add_handle(std::move(object));
   });
 }

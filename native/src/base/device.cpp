@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <embree3/rtcore.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/version.h>
 
@@ -78,6 +79,11 @@ uint32_t thread_count(uint32_t wanted) {
 }
 
 }  // namespace
+
+int arena_size(uint32_t threads) {
+  const size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return int(std::clamp<size_t>(threads, 1, std::max<size_t>(most, 1)));
+}
 
 Device::Device(const GradusDeviceSettings& settings) : threads_(thread_count(settings.threads)) {
   check_tbb();

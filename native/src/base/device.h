@@ -14,6 +14,9 @@ namespace gradus {
 
 class ColorManager;  // color/color.h
 
+// Concurrency of an arena for so many threads: no more than TBB has, which would print a warning.
+int arena_size(uint32_t threads);
+
 class Device {
  public:
   // Throws Error UNSUPPORTED if Embree or TBB are not those it was built with (contract 7.5).

@@ -1,12 +1,12 @@
 #include "render/loop.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <chrono>
 #include <cmath>
 
+#include "base/device.h"
 #include "base/fpu.h"
 #include "frame/cells.h"
 #include "render/batches.h"
@@ -21,12 +21,6 @@ namespace {
 
 // How often a long batch says that there is something new to see.
 constexpr int64_t kImageIntervalMs = 300;
-
-// TBB prints a warning when asked for more than it has.
-int arena_size(uint32_t threads) {
-  const size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return int(std::clamp<size_t>(threads, 1, std::max<size_t>(most, 1)));
-}
 
 uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow; }
 
