@@ -39,7 +39,7 @@ TEST_P(A1_Furnace, RadianceIsOne) {
   Frame frame = test::make_test_frame(settings, gradient);
   test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, test::full_run() ? 256 : 64,
                      &frame);
-  const GradientImages images = read_images(frame, 0, false);
+  const GradientImages images = read_images(frame, 0);
   double sum = 0.0;
   for (float value : images.primal) sum += value;
   EXPECT_NEAR(sum / double(images.primal.size()), 1.0, 0.025);

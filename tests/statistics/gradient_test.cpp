@@ -48,7 +48,7 @@ class Scenarios : public testing::TestWithParam<Scenario> {
       const IntegratorContext c = context(seed);
       Frame frame = test::make_test_frame(c.settings, true);
       sample(*make_gradient_integrator(c), &frame);
-      differences.add(read_images(frame, 0, false));
+      differences.add(read_images(frame, 0));
     }
     differences.check();
   }
@@ -77,7 +77,7 @@ TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
     const IntegratorContext c = context(100 + seed);
     Frame frame = test::make_test_frame(c.settings, true);
     test::sample_frame(*make_gradient_integrator(c), 0, 24, &frame);
-    differences.add(read_images(frame, 0, false));
+    differences.add(read_images(frame, 0));
     counters.add(frame.counters);
   }
   differences.check();
@@ -207,7 +207,7 @@ GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
   const IntegratorContext c = scene.context(settings);
   Frame frame = test::make_test_frame(c.settings, true);
   test::sample_frame(*make_gradient_integrator(c), 0, 8192, &frame);
-  return read_images(frame, 0, false);
+  return read_images(frame, 0);
 }
 
 // An offset that has joined its base scatters at the shared vertex with a density of its own; a light that BSDF sampling found next was
@@ -259,7 +259,7 @@ class Kinds : public testing::TestWithParam<KindCase> {
     const IntegratorContext c = scene.context(settings);
     Frame frame = test::make_test_frame(c.settings, true);
     test::sample_frame(*make_gradient_integrator(c), 0, samples, &frame);
-    return read_images(frame, 0, false);
+    return read_images(frame, 0);
   }
 };
 
@@ -323,7 +323,7 @@ class Edges : public testing::TestWithParam<Halves> {
     const IntegratorContext c = scene.context(settings);
     Frame frame = test::make_test_frame(c.settings, true);
     test::sample_frame(*make_gradient_integrator(c), 0, 64, &frame);
-    return read_images(frame, 0, false);
+    return read_images(frame, 0);
   }
 
  private:
@@ -417,7 +417,7 @@ class Reflections : public testing::TestWithParam<Above> {
     const IntegratorContext c = scene.context(settings);
     Frame frame = test::make_test_frame(c.settings, true);
     test::sample_frame(*make_gradient_integrator(c), 0, 256, &frame);
-    return read_images(frame, 0, false);
+    return read_images(frame, 0);
   }
 };
 

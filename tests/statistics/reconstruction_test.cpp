@@ -73,7 +73,7 @@ Comparison compare(Scenario scenario) {
   const int seeds = 64, samples = test::full_run() ? 5 : 1;
   std::vector<std::vector<float>> path(static_cast<size_t>(seeds)), l2(path.size());
   tbb::parallel_for(0, seeds, [&](int k) {
-    path[k] = gray(read_images(render(context, false, uint32_t(k), samples), 0, false).primal);
+    path[k] = gray(read_images(render(context, false, uint32_t(k), samples), 0).primal);
     l2[k] = gray(reconstructed(render(context, true, uint32_t(1000 + k), samples), GRADUS_RECONSTRUCTION_L2));
   });
   Comparison result;
@@ -194,7 +194,7 @@ TEST_P(B3_Consistent, BiasStaysWithinItsBound) {
   std::vector<Differences> all(test::full_run() ? 64 : 8);
   tbb::parallel_for(size_t(0), all.size(), [&](size_t k) {
     const Frame frame = render(context, true, uint32_t(k), samples);
-    all[k].truth = block_means(gray(read_images(frame, 0, false).primal), width, height, side);
+    all[k].truth = block_means(gray(read_images(frame, 0).primal), width, height, side);
     for (size_t r = 0; r < std::size(kBiased); ++r) {
       std::vector<float>& difference = all[k].from_truth[r];
       difference = block_means(gray(reconstructed(frame, kBiased[r])), width, height, side);

@@ -264,7 +264,7 @@ double mean_squared_error(const IntegratorContext& base, int n, int images, cons
     context.settings.seed = uint32_t(1000 * n + k);
     Frame frame = test::make_test_frame(context.settings, false);
     test::sample_frame(*make_path_integrator(context), 0, uint32_t(n), &frame);
-    const std::vector<float> image = read_images(frame, 0, false).primal;
+    const std::vector<float> image = read_images(frame, 0).primal;
     for (size_t pixel = 0; pixel < image.size() / 3; ++pixel) {
       const double gray = (reference[3 * pixel] + reference[3 * pixel + 1] + reference[3 * pixel + 2]) / 3.0;
       for (size_t c = 0; c < 3; ++c) error += std::pow(image[3 * pixel + c] - reference[3 * pixel + c], 2) / (1e-3 + gray * gray);
@@ -283,7 +283,7 @@ TEST(A7_Convergence, FourTimesTheSamplesQuarterTheError) {
     const IntegratorContext context = scene.context(settings);
     Frame frame = test::make_test_frame(settings, false);
     test::sample_frame(*make_path_integrator(context), 0, 2048, &frame);
-    const std::vector<float> image = read_images(frame, 0, false).primal;
+    const std::vector<float> image = read_images(frame, 0).primal;
     const std::vector<double> reference(image.begin(), image.end());
     const int images = test::full_run() ? 16 : 4;
     const double ratio = mean_squared_error(context, 64, images, reference) / mean_squared_error(context, 16, 4 * images, reference);

@@ -109,15 +109,16 @@ struct GradientImages {
   int width = 0, height = 0, channels = 3;
   std::vector<float> primal;  // mean
   std::vector<float> dx, dy;  // forward differences, y up; last column, row are 0; NaN where a pair has no samples (kAbsentPair)
-  // The same from one half alone, for variances; empty unless asked for.
-  std::array<std::vector<float>, kHalves> primal_half, dx_half, dy_half;
   // Estimated standard deviations of the means, one value per pixel: the root mean square over RGB of half the difference between the two
   // halves (contract 1.2). NaN where a half has no samples. Empty unless asked for.
   std::vector<float> primal_deviation, dx_deviation, dy_deviation;
 };
 
-// Merges halves and pairs. with_halves: also fills the half images.
-GradientImages read_images(const Frame& frame, int component, bool with_halves);
+// Merges halves and pairs.
+GradientImages read_images(const Frame& frame, int component);
+// Half the differences of the halves, (A − B)/2, in the place of primal, dx and dy: their squares estimate variances (contract 1.2), and
+// what is linear in those is so in these.
+GradientImages read_half_differences(const Frame& frame, int component);
 // Fills the deviations.
 void read_deviations(const Frame& frame, int component, GradientImages* images);
 // Estimated variance of the mean of the primal: ((A - B)/2)², per channel (contract 1.2).

@@ -79,31 +79,51 @@ void read_difference_row(const Frame& frame, int component, Offset offset, HalfR
   std::fill(row + last * channels, row + width * channels, 0.0f);
 }
 
-GradientImages read_images(const Frame& frame, int component, bool with_halves) {
-  const auto primal = [&](HalfRange halves) {
-    return read_rows(frame, [&](int y, float* row) { read_primal_row(frame, component, halves, y, row); });
-  };
-  const auto differences = [&](Offset offset, HalfRange halves) {
-    return read_rows(frame, [&](int y, float* row) { read_difference_row(frame, component, offset, halves, y, row); });
-  };
+namespace {
+
+// Images by rows: read_primal(y, row) and read_difference(offset, y, row).
+template <class ReadPrimal, class ReadDifference>
+GradientImages read_all(const Frame& frame, const ReadPrimal& read_primal, const ReadDifference& read_difference) {
   GradientImages images;
   images.width = frame.region.width();
   images.height = frame.region.height();
   images.channels = frame.channels;
-  images.primal = primal({});
-  if (frame.gradients) {
-    images.dx = differences(kRight, {});
-    images.dy = differences(kUp, {});
-  }
-  for (int h = 0; h < kHalves && with_halves; ++h) {
-    const HalfRange half{h, h + 1};
-    images.primal_half[h] = primal(half);
-    if (frame.gradients) {
-      images.dx_half[h] = differences(kRight, half);
-      images.dy_half[h] = differences(kUp, half);
-    }
-  }
+  images.primal = read_rows(frame, read_primal);
+  if (!frame.gradients) return images;
+  images.dx = read_rows(frame, [&](int y, float* row) { read_difference(kRight, y, row); });
+  images.dy = read_rows(frame, [&](int y, float* row) { read_difference(kUp, y, row); });
   return images;
+}
+
+// (A − B)/2 of a row: read(halves, where to).
+template <class Read>
+void read_half_difference(size_t size, const Read& read, float* row) {
+  std::vector<float> other(size);
+  read(HalfRange{0, 1}, row);
+  read(HalfRange{1, 2}, other.data());
+  for (size_t i = 0; i < size; ++i) row[i] = 0.5f * (row[i] - other[i]);
+}
+
+}  // namespace
+
+GradientImages read_images(const Frame& frame, int component) {
+  return read_all(
+      frame, [&](int y, float* row) { read_primal_row(frame, component, {}, y, row); },
+      [&](Offset offset, int y, float* row) { read_difference_row(frame, component, offset, {}, y, row); });
+}
+
+GradientImages read_half_differences(const Frame& frame, int component) {
+  const size_t size = size_t(frame.region.width()) * size_t(frame.channels);
+  return read_all(
+      frame,
+      [&](int y, float* row) {
+        read_half_difference(
+            size, [&](HalfRange half, float* to) { read_primal_row(frame, component, half, y, to); }, row);
+      },
+      [&](Offset offset, int y, float* row) {
+        read_half_difference(
+            size, [&](HalfRange half, float* to) { read_difference_row(frame, component, offset, half, y, to); }, row);
+      });
 }
 
 namespace {

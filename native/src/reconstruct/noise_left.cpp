@@ -6,23 +6,6 @@
 namespace gradus {
 namespace {
 
-std::vector<float> half_difference(const std::array<std::vector<float>, kHalves>& halves) {
-  std::vector<float> result(halves[0].size());
-  for (size_t i = 0; i < result.size(); ++i) result[i] = 0.5f * (halves[0][i] - halves[1][i]);
-  return result;
-}
-
-GradientImages half_differences(const GradientImages& images) {
-  GradientImages result;
-  result.width = images.width;
-  result.height = images.height;
-  result.channels = images.channels;
-  result.primal = half_difference(images.primal_half);
-  result.dx = half_difference(images.dx_half);
-  result.dy = half_difference(images.dy_half);
-  return result;
-}
-
 // The estimate needs no more digits than this.
 constexpr CgGoal kGoal{.residual = 1e-2f, .row_error = 0.1f};
 constexpr int kMostSteps = 10;
@@ -48,19 +31,16 @@ NoiseLeft left_by_weighted(const GradientImages& images, const GradientImages& d
 
 }  // namespace
 
-NoiseLeft noise_left(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel) {
-  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return {images.primal, half_difference(images.primal_half)};
+NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, uint32_t reconstruction, float alpha,
+                     const CancelTest& cancel) {
+  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return {images.primal, half_differences.primal};
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
     SolveReport report;
-    return {reconstruct(images, reconstruction, alpha, cancel, &report), noise_left_by_l2(images, alpha, cancel)};
+    return {reconstruct(images, reconstruction, alpha, cancel, &report),
+            reconstruct(half_differences, reconstruction, alpha, cancel, &report)};
   }
   // L1, too: its weights are of the same kind, and those of the noise are known without iterating.
-  return left_by_weighted(images, half_differences(images), chosen_alpha(reconstruction, alpha), cancel);
-}
-
-std::vector<float> noise_left_by_l2(const GradientImages& images, float alpha, const CancelTest& cancel) {
-  SolveReport report;
-  return reconstruct(half_differences(images), GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report);
+  return left_by_weighted(images, half_differences, chosen_alpha(reconstruction, alpha), cancel);
 }
 
 }  // namespace gradus

@@ -13,10 +13,9 @@ struct NoiseLeft {
   std::vector<float> image, noise;
 };
 
-// `images` have halves. NONE: of the noisy image itself.
-NoiseLeft noise_left(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel);
-
-// The same of L2 alone: above what WEIGHTED and L1 leave, whose weights follow the noise and hide some of it from the estimate, too.
-std::vector<float> noise_left_by_l2(const GradientImages& images, float alpha, const CancelTest& cancel);
+// images: with deviations for L1 and WEIGHTED, whose weights follow the noise and hide a part of it from this estimate. half_differences:
+// of the same frame (read_half_differences()). NONE: of the noisy image itself.
+NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, uint32_t reconstruction, float alpha,
+                     const CancelTest& cancel);
 
 }  // namespace gradus

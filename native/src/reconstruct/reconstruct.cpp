@@ -89,9 +89,9 @@ std::vector<float> reconstruct(const Frame& frame, int component, uint32_t recon
     FrameRows rows(frame, component);
     alpha = chosen_alpha(reconstruction, alpha);
     if (auto image = solve_l2(w, h, frame.channels, alpha, std::ref(rows))) return *std::move(image);
-    return solve_l2_with_gaps(read_images(frame, component, false), alpha, cancel, report);
+    return solve_l2_with_gaps(read_images(frame, component), alpha, cancel, report);
   }
-  GradientImages images = read_images(frame, component, false);
+  GradientImages images = read_images(frame, component);
   read_deviations(frame, component, &images);
   return reconstruct_unsettled(images, reconstruction, alpha, cancel, report);
 }

@@ -9,10 +9,11 @@
 namespace gradus {
 
 struct CellNoise {
-  // Root of mean squared error over mean squared gray: what the threshold is set against (contract 5.3). Of the L2 reconstruction, where
-  // there is one: what WEIGHTED and L1 leave is less, but an estimate by their own weights is up to ten times too small.
+  // Root of mean squared error over mean squared gray, of the reconstruction that will be delivered: what the threshold is set against
+  // (contract 5.3).
   double relative_error = 0.0;
-  // Root of the mean over pixels of squared error over squared gray, of the reconstruction that will be delivered. It tells cells apart.
+  // Root of the mean over pixels of squared error over squared gray, by the weights of that reconstruction. It tells cells apart, but of
+  // WEIGHTED and L1, whose weights follow the noise, it is up to ten times too small.
   double spread = 0.0;
 };
 

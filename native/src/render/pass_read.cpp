@@ -54,7 +54,7 @@ void read_gradient(const Frame& frame, const Region& region, bool vertical, floa
   if (!frame.gradients) return;
   const float exposure = frame.settings.film_exposure;
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    const GradientImages images = read_images(frame, component, false);
+    const GradientImages images = read_images(frame, component);
     const std::vector<float>& plane = vertical ? images.dy : images.dx;
     for_pixels(frame, region, [&](size_t i, size_t out) {
       for (int c = 0; c < 3; ++c) {

@@ -43,7 +43,7 @@ TEST(B6_Gate, SumsThatWouldOverflowStayOutAndAreCounted) {
   EXPECT_EQ(frame.counters.nonfinite_gradient, 4u);
   EXPECT_EQ(frame.counters.nonfinite_feature, 5u);
   EXPECT_EQ(frame.components[0].primal[0][5].x, 6e36f);
-  EXPECT_TRUE(is_finite(read_images(frame, 0, false).primal[15]));
+  EXPECT_TRUE(is_finite(read_images(frame, 0).primal[15]));
   EXPECT_TRUE(is_finite(read_variance(frame)[15]));
 }
 
@@ -56,13 +56,12 @@ TEST(Frame, MergesPairsByTheirCounts) {
   frame.components[0].gradient[0][kLeft][q] = Radiance(-2.0f);
   frame.pair_count[0][kRight][p] = 4.0f;
   frame.pair_count[0][kLeft][q] = 1.0f;
-  const GradientImages images = read_images(frame, 0, true);
+  const GradientImages images = read_images(frame, 0);
   EXPECT_FLOAT_EQ(images.dx[3 * p], 3.5f);
-  EXPECT_FLOAT_EQ(images.dx_half[0][3 * p], 3.5f);
-  EXPECT_TRUE(std::isnan(images.dx_half[1][3 * p])) << "absent";
+  EXPECT_TRUE(std::isnan(read_half_differences(frame, 0).dx[3 * p])) << "absent in one half";
   EXPECT_TRUE(std::isnan(images.dx[3 * q]));
   frame.pair_count[0][kLeft][q] = 0.0f;  // seen from one end alone: absent
-  EXPECT_TRUE(std::isnan(read_images(frame, 0, false).dx[3 * p]));
+  EXPECT_TRUE(std::isnan(read_images(frame, 0).dx[3 * p]));
 }
 
 TEST(Frame, LastColumnAndRowHaveNoDifference) {
@@ -73,7 +72,7 @@ TEST(Frame, LastColumnAndRowHaveNoDifference) {
   for (auto& plane : frame.pair_count[0]) {
     plane.assign(12, 1.0f);
   }
-  const GradientImages images = read_images(frame, 0, false);
+  const GradientImages images = read_images(frame, 0);
   EXPECT_EQ(images.dx[3 * frame.index(3, 1)], 0.0f);
   EXPECT_EQ(images.dy[3 * frame.index(1, 2)], 0.0f);
   EXPECT_EQ(images.dx[3 * frame.index(2, 1)], 2.0f);
@@ -87,6 +86,7 @@ TEST(Frame, VarianceIsThatOfTheMean) {
   frame.components[0].primal[0].assign(12, Radiance(2.0f));
   frame.components[0].primal[1].assign(12, Radiance(6.0f));
   EXPECT_FLOAT_EQ(read_variance(frame)[0], 1.0f);  // ((1 − 3)/2)²
+  EXPECT_FLOAT_EQ(read_half_differences(frame, 0).primal[0], -1.0f);
 }
 
 }  // namespace

@@ -211,7 +211,7 @@ TEST(B2_Solver, L2OfAFrameHasTheBitsOfItsImagesChannelByChannel) {
   for (const Size s : kSizes) {
     for (const int channels : {3, 4}) {
       const Frame frame = noisy_frame(s.width, s.height, channels);
-      const GradientImages images = read_images(frame, 0, false);
+      const GradientImages images = read_images(frame, 0);
       std::vector<float> expected(images.primal.size());
       for (int c = 0; c < channels; ++c) {
         const PoissonPlanes planes{images.primal.data() + c, images.dx.data() + c, images.dy.data() + c, size_t(channels)};

@@ -200,7 +200,7 @@ TEST(Pilot, AutoDecidesAndSaysWhy) {
   EXPECT_NE(none["plan"]["skipped"]["gradients"].get<std::string>().find("pilot"), std::string::npos);
   // What the user says is obeyed.
   EXPECT_EQ(stats_of(0, GRADUS_INTEGRATOR_GRADIENT, &frame)["integrator"], "gradient");
-  const GradientImages images = read_images(*frame, 0, false);
+  const GradientImages images = read_images(*frame, 0);
   for (const auto* differences : {&images.dx, &images.dy}) {
     EXPECT_TRUE(std::all_of(differences->begin(), differences->end(), [](float v) { return is_finite(v); }));
   }

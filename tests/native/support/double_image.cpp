@@ -84,7 +84,7 @@ DoubleImage render_in_double(const IntegratorContext& context, uint32_t samples)
     sums[s.pixel].squares += observer.radiance * observer.radiance;
   });
   DoubleImage result;
-  result.image = read_images(frame, 0, false).primal;
+  result.image = read_images(frame, 0).primal;
   for (size_t i = 0; i < result.image.size(); ++i) {
     const double mean = sums[i / 3].sum[int(i % 3)] / samples;
     const double variance = (sums[i / 3].squares[int(i % 3)] / samples - mean * mean) / std::max(1u, samples - 1);
