@@ -62,6 +62,14 @@ struct Counters {
   void add(const Counters& other);
 };
 
+// How far an adaptive render has come (render/adaptive_sampling.h), so that it can go on as if it had not ended. By cells of the lattice,
+// row by row; empty where no such render can go on from the frame.
+struct SharedSamples {
+  uint32_t mean = 0;             // samples of a pixel, on average over those that went on
+  std::vector<uint64_t> rays;    // that the samples of a cell have cost
+  std::vector<uint8_t> stopped;  // 1: takes no more
+};
+
 class Frame {
  public:
   // full: size of the full frame; region: what is sampled (guard ring included); channels: 3, or 4 with a transparent film.
@@ -85,6 +93,7 @@ class Frame {
 
   // Sample numbers that were taken; of some pixels fewer, where tiles stopped early or the render was cancelled.
   SampleRanges samples;
+  SharedSamples shared;
   // Keys of what was sampled (contract 7.2) and settings that reading needs.
   GradusSettings settings{};
   uint64_t scene_key = 0;

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "frame/cells.h"
 #include "frame/exr_stream.h"
 #include "frame/store_planes.h"
 #include "render/clock.h"
@@ -27,6 +28,9 @@ constexpr int kFormat = 2;
 constexpr int kMaxSide = 1 << 16;
 constexpr int kBlockRows = 16;  // of the ZIP compression: blocks are written whole
 constexpr const char* kAttribute = "gradus";
+
+// What is wrong with a file, as the exception that load_frame() throws.
+Error damaged(const std::string& why) { return invalid_argument(why); }
 
 std::string hex(uint64_t value) {
   char text[20];
@@ -59,7 +63,16 @@ SampleRanges ranges_from_json(const json& j) {
   return SampleRanges(std::move(list));
 }
 
-json describe(const Frame& frame) {
+json shared_to_json(const SharedSamples& shared) { return {{"mean", shared.mean}, {"rays", shared.rays}, {"stopped", shared.stopped}}; }
+
+SharedSamples shared_from_json(const json& j, const Region& region) {
+  SharedSamples shared{j.at("mean"), j.at("rays").get<std::vector<uint64_t>>(), j.at("stopped").get<std::vector<uint8_t>>()};
+  const size_t cells = make_cells(region).size();
+  if (shared.rays.size() != cells || shared.stopped.size() != cells) throw damaged("its cells are wrong");
+  return shared;
+}
+
+json describe_samples(const Frame& frame) {
   return {{"format", kFormat},
           {"version", gradus_version_text()},
           {"frame", frame.frame_number},
@@ -71,6 +84,12 @@ json describe(const Frame& frame) {
           {"settings", settings_to_json(frame.settings)},
           {"samples", ranges_to_json(frame.samples)},
           {"counters", counters_to_json(frame.counters)}};
+}
+
+json describe(const Frame& frame) {
+  json j = describe_samples(frame);
+  if (!frame.shared.rays.empty()) j["shared"] = shared_to_json(frame.shared);
+  return j;
 }
 
 Imf::PixelType type_of(const StoredPlane& plane) { return plane.integer ? Imf::UINT : Imf::FLOAT; }
@@ -139,9 +158,6 @@ void write_rows(const Frame& frame, const std::vector<StoredPlane>& planes, cons
   }
 }
 
-// What is wrong with a file, as the exception that load_frame() throws.
-Error damaged(const std::string& why) { return invalid_argument(why); }
-
 Frame make_frame(const Imf::Header& header, const json& description) {
   const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
   const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
@@ -165,6 +181,7 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   frame.scene_key = std::stoull(description.at("scene_key").get<std::string>(), nullptr, 16);
   frame.counters = counters_from_json(description.at("counters"));
   frame.samples = ranges_from_json(description.at("samples"));
+  if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), region);
   frame.passes = make_pass_planes(settings.passes, size_t(region.area()));
   if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame.fallback.assign(size_t(region.area()), 0.0f);
   return frame;

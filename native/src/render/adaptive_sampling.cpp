@@ -15,24 +15,28 @@ AdaptiveSampling::AdaptiveSampling(const Frame& frame, float threshold, uint32_t
       grid_(frame.region),
       rays_(grid_.cells.size(), 0),
       spread_(grid_.cells.size(), 1.0),
-      done_(grid_.cells.size(), false) {
+      stopped_(grid_.cells.size(), 0) {
   for (const Region& cell : grid_.cells) {
     const size_t i = frame.index(cell.x0, cell.y0);
     taken_.push_back(frame.count[0][i] + frame.count[1][i]);
   }
-  begun_with_ = taken_;
+  uncounted_ = taken_;
+  if (frame.shared.rays.empty()) return;
+  uncounted_.assign(grid_.cells.size(), 0);
+  rays_ = frame.shared.rays;
+  stopped_ = frame.shared.stopped;
 }
 
 void AdaptiveSampling::judge(const std::vector<CellNoise>& noise) {
   judged_ = true;
   for (size_t i = 0; i < grid_.cells.size(); ++i) {
     spread_[i] = noise[i].spread * std::sqrt(double(taken_[i]));
-    if (taken_[i] >= first_check_ && noise[i].relative_error < threshold_) done_[i] = true;  // NaN goes on
+    if (taken_[i] >= first_check_ && noise[i].relative_error < threshold_) stopped_[i] = 1;  // NaN goes on
   }
 }
 
 bool AdaptiveSampling::all_done() const {
-  return std::all_of(done_.begin(), done_.end(), [](bool done) { return done; });
+  return std::all_of(stopped_.begin(), stopped_.end(), [](uint8_t stopped) { return stopped != 0; });
 }
 
 size_t AdaptiveSampling::index(int32_t x, int32_t y) const {
@@ -49,16 +53,16 @@ double AdaptiveSampling::smooth_spread(size_t cell) const {
   return sum / weights;
 }
 
-// 1 where none were counted: before the first batch of a render that goes on from a frame.
+// 1 where none were counted: before the first batch of a render that goes on from samples that were not taken for it.
 double AdaptiveSampling::rays_per_sample(size_t cell) const {
-  const double samples = double(grid_.cells[cell].area()) * (taken_[cell] - begun_with_[cell]);
+  const double samples = double(grid_.cells[cell].area()) * (taken_[cell] - uncounted_[cell]);
   return rays_[cell] > 0 ? double(rays_[cell]) / samples : 1.0;
 }
 
 void AdaptiveSampling::start_batch(uint32_t mean) {
   std::vector<CellShare> shares;
   for (size_t i = 0; i < grid_.cells.size(); ++i) {
-    shares.push_back({grid_.cells[i].area(), taken_[i], smooth_spread(i) / std::sqrt(rays_per_sample(i)), !done_[i]});
+    shares.push_back({grid_.cells[i].area(), taken_[i], smooth_spread(i) / std::sqrt(rays_per_sample(i)), stopped_[i] == 0});
   }
   const std::vector<uint32_t> counts = judged_ ? share_samples(shares, mean) : std::vector<uint32_t>(grid_.cells.size(), mean);
   batch_.first.resize(size_t(region_.area()));

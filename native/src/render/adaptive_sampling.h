@@ -17,12 +17,13 @@ struct SampleMap {
 
 class AdaptiveSampling {
  public:
-  // All pixels of a cell have the same number of samples in `frame`. A cell may stop from `first_check` samples on; once stopped it stays
-  // so.
+  // Goes on from `frame`, in which all pixels of a cell have the same number of samples. A cell may stop from `first_check` samples on;
+  // once stopped it stays so.
   AdaptiveSampling(const Frame& frame, float threshold, uint32_t first_check);
 
   void judge(const std::vector<CellNoise>& noise);
-  // What the samples of a cell in a batch have cost. Thread-safe for different cells.
+  // What the samples of a cell in a batch have cost: rays, which are the same whenever and wherever they are traced, where times are not.
+  // Thread-safe for different cells.
   void add_rays(const Region& cell, uint64_t rays) { rays_[index(cell.x0, cell.y0)] += rays; }
   const std::vector<Region>& cells() const { return grid_.cells; }
   bool all_done() const;
@@ -32,6 +33,8 @@ class AdaptiveSampling {
   const SampleMap& batch() const { return batch_; }
   // Samples of the pixels that have most.
   uint32_t most_taken() const;
+  // What the next render needs to go on, after batches of `mean` samples altogether.
+  SharedSamples state(uint32_t mean) const { return {mean, rays_, stopped_}; }
 
  private:
   size_t index(int32_t x, int32_t y) const;
@@ -43,10 +46,10 @@ class AdaptiveSampling {
   float threshold_;
   uint32_t first_check_;
   CellGrid grid_;
-  std::vector<uint32_t> begun_with_, taken_;
+  std::vector<uint32_t> uncounted_, taken_;  // samples: those whose rays are not known, and all
   std::vector<uint64_t> rays_;
   std::vector<double> spread_;  // relative deviation of one sample
-  std::vector<bool> done_;
+  std::vector<uint8_t> stopped_;
   bool judged_ = false;
   SampleMap batch_;
 };

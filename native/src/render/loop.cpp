@@ -103,6 +103,7 @@ void RenderLoop::prepare() {
     frame->passes = make_pass_planes(settings.passes, size_t(plan_.sampled.area()));
     if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
+  if (frame->settings.noise_threshold != settings.noise_threshold) frame->shared.stopped.assign(frame->shared.stopped.size(), 0);
   frame->settings = settings;
   frame->settings.struct_size = sizeof(GradusSettings);
   // AUTO is resolved here, once: whoever reads the frame later must not decide again.
@@ -153,19 +154,22 @@ void RenderLoop::judge() {
 void RenderLoop::sample() {
   sampling_began_ = clock_.seconds();
   const auto cancel = [this] { return stop_.load(std::memory_order_relaxed); };
-  uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed) : 0;
+  const bool adaptively = input_.settings.noise_threshold > 0.0f;  // a render that is too short to be so may go on as one that is
+  uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
-  if (plan_.adaptive) adaptive_ = std::make_unique<AdaptiveSampling>(*frame_, input_.settings.noise_threshold, plan_.first_check);
+  if (adaptively) adaptive_ = std::make_unique<AdaptiveSampling>(*frame_, input_.settings.noise_threshold, plan_.first_check);
   first_begin_ = begin;
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
-    if (adaptive_ && begin >= kLongestBatch && begin % kLongestBatch == 0) judge();
+    if (adaptive_ && begin >= kLongestBatch && (begin % kLongestBatch == 0 || begin == first_begin_)) judge();
     if (cancel() || is_done()) break;
     if (adaptive_) adaptive_->start_batch(end - begin);
     frame_->samples.add({first + begin, first + (adaptive_ ? adaptive_->most_taken() : end)});
+    frame_->shared = {};
     run_batch(begin, end);
     if (cancel()) break;
+    if (adaptive_) frame_->shared = adaptive_->state(end);
     tracker_.set_samples(end);
     tracker_.new_image();
   }

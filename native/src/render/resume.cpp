@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "frame/cells.h"
 #include "render/options.h"
 
 namespace gradus {
@@ -47,13 +48,20 @@ void check_gradients(const Frame& frame, bool wanted) {
   if (frame.gradients != wanted) throw invalid_argument(wanted ? "the frame holds no gradients" : "the frame holds gradients");
 }
 
-uint32_t resumed_samples(const Frame& frame) {
+uint32_t resumed_samples(const Frame& frame, bool adaptively) {
+  const bool by_cells = adaptively && !frame.shared.rays.empty();
   const auto samples = [&](size_t i) { return frame.count[0][i] + frame.count[1][i]; };
-  const size_t pixels = frame.count[0].size();
-  for (size_t i = 1; i < pixels; ++i) {
-    if (samples(i) != samples(0)) throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot go on from it");
+  for (const Region& part : by_cells ? make_cells(frame.region) : std::vector<Region>{frame.region}) {
+    const uint32_t first = samples(frame.index(part.x0, part.y0));
+    for (int32_t y = part.y0; y < part.y1; ++y) {
+      for (int32_t x = part.x0; x < part.x1; ++x) {
+        if (samples(frame.index(x, y)) == first) continue;
+        throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot go on from it");
+      }
+    }
   }
-  return pixels > 0 ? samples(0) : 0;
+  if (by_cells) return frame.shared.mean;
+  return frame.region.area() > 0 ? samples(0) : 0;
 }
 
 void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
@@ -67,7 +75,8 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
   const std::string gap = frame.samples.first_gap(settings.first_sample);
   if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
   if (frame.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
-  if (resumed_samples(frame) > settings.samples) throw invalid_argument("the frame has more samples than are asked for");
+  if (resumed_samples(frame, settings.noise_threshold > 0.0f) > settings.samples)
+    throw invalid_argument("the frame has more samples than are asked for");
 }
 
 void merge_frames(Frame* frame, const Frame& other) {
@@ -78,7 +87,10 @@ void merge_frames(Frame* frame, const Frame& other) {
       frame->components.size() != other.components.size() || !same_planes(*frame, other)) {
     throw invalid_argument("the frames differ in size or planes");
   }
-  if (frame->samples.overlap(other.samples)) throw invalid_argument("the frames share samples: first_sample must differ");
+  if (frame->samples.overlap(other.samples)) {
+    const uint32_t end = std::max(frame->samples.list().back().end, other.samples.list().back().end);
+    throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));
+  }
   const bool other_is_first = other.settings.first_sample < frame->settings.first_sample;
   for (int half = 0; half < kHalves; ++half) {
     for (size_t c = 0; c < frame->components.size(); ++c) {
@@ -93,6 +105,7 @@ void merge_frames(Frame* frame, const Frame& other) {
     add_planes(&frame->passes[i], other.passes[i]);
   }
   add(&frame->fallback, other.fallback);
+  frame->shared = {};  // each has taken other samples of a cell
   frame->counters.add(other.counters);
   for (const SampleRange& range : other.samples.list()) frame->samples.add(range);
   if (other_is_first) frame->settings.first_sample = other.settings.first_sample;

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "frame/store.h"
 #include "render/fake_integrator.h"
+#include "render/resume.h"
 
 namespace gradus {
 namespace {
@@ -99,6 +101,79 @@ TEST(L1_Threads, AdaptiveSamplesHaveTheSameBitsForAnyNumberOfThreads) {
 TEST(L3_Resume, AdaptiveRendersGoOnWithTheSameBits) {
   const auto whole = render_frame(adaptive_settings(64));
   EXPECT_TRUE(same_samples(*whole, *render_frame(adaptive_settings(64), render_frame(adaptive_settings(16)))));
+}
+
+// The cost of cells, and which of them had stopped, was forgotten between the two renders.
+TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
+  GradusSettings settings = adaptive_settings(80, 0.05f);
+  settings.integrator = GRADUS_INTEGRATOR_PATH;
+  const auto costly_below = fake_factory([](FakeIntegrator* fake) {
+    fake->quiet_until = kQuiet;
+    fake->rays_below = 40;
+  });
+  const auto part = [&](uint32_t samples, std::shared_ptr<const Frame> from) {
+    settings.samples = samples;
+    const auto render = start(settings, costly_below, std::move(from));
+    render->wait(-1.0);
+    return render->frame();
+  };
+  const auto whole = part(80, nullptr);
+  const std::string path = testing::TempDir() + "/adaptive.exr";
+  std::shared_ptr<const Frame> last;
+  for (const uint32_t samples : {16u, 48u, 64u, 80u}) {
+    last = part(samples, last);
+    save_frame(*last, path);
+    last = load_frame(path);
+    EXPECT_EQ(last->shared.mean, samples);
+  }
+  std::remove(path.c_str());
+  EXPECT_TRUE(same_samples(*whole, *last));
+  EXPECT_EQ(whole->shared.rays, last->shared.rays);
+  EXPECT_LT(mean_count(*whole, 0, 16), 80.0) << "stopped";
+}
+
+// A lower threshold starts cells again that had stopped at a higher one; without one their counts would differ for nothing.
+TEST(L3_Resume, ALowerThresholdGoesOnWhereAHigherOneHadStopped) {
+  const auto settings = [](uint32_t samples, float threshold) {
+    GradusSettings s = adaptive_settings(samples, threshold);
+    s.integrator = GRADUS_INTEGRATOR_PATH;
+    return s;
+  };
+  const auto coarse = render_frame(settings(64, 0.06f));
+  ASSERT_EQ(mean_count(*coarse, 0, 16), 16.0);
+  ASSERT_GT(mean_count(*coarse, kWidth - 16, kWidth), 60.0);
+  EXPECT_GT(mean_count(*render_frame(settings(96, 1e-6f), coarse), 0, 16), 16.0);
+  EXPECT_THROW(start(settings(96, 0.0f), quiet_at_the_left(), coarse), Error);
+}
+
+// Sums and counts are all that is needed: a cell with more samples counts for more.
+TEST(L3_Merge, FramesOfUnequalCountsAreAddedPixelByPixel) {
+  GradusSettings settings = adaptive_settings(32);
+  const auto first = render_frame(settings);
+  Frame merged = *first;
+  settings.first_sample = 16;  // the noisy cells have taken these already
+  const auto overlapping = render_frame(settings);
+  try {
+    merge_frames(&merged, *overlapping);
+    FAIL();
+  } catch (const Error& e) {
+    const uint32_t end = std::max(first->samples.list().back().end, overlapping->samples.list().back().end);
+    EXPECT_EQ(std::string(e.what()), "the frames share samples: render one of them with first_sample " + std::to_string(end));
+  }
+  settings.first_sample = 256;
+  const auto second = render_frame(settings);
+  merge_frames(&merged, *second);
+  for (const int x : {3, kWidth - 5}) {
+    const size_t i = merged.index(x, 7);
+    for (int half = 0; half < kHalves; ++half) {
+      EXPECT_EQ(merged.count[half][i], first->count[half][i] + second->count[half][i]);
+      EXPECT_EQ(merged.components[0].primal[half][i].x, first->components[0].primal[half][i].x + second->components[0].primal[half][i].x);
+      EXPECT_EQ(merged.pair_count[half][kUp][i], first->pair_count[half][kUp][i] + second->pair_count[half][kUp][i]);
+    }
+  }
+  EXPECT_NE(merged.count[0][merged.index(3, 7)], merged.count[0][merged.index(kWidth - 5, 7)]);
+  EXPECT_THROW(start(adaptive_settings(1024), quiet_at_the_left(), std::make_shared<const Frame>(merged)), Error)
+      << "no one goes on from it";
 }
 
 // All cells share what is left where others are done: no more than the batch would take of them.

@@ -37,7 +37,9 @@ struct FakeIntegrator final : Integrator {
   GradusSettings settings;
   bool gradients;
   float noise = 1.0f;
-  int32_t quiet_until = 0;  // left of this column there is a tenth of the noise
+  int32_t quiet_until = 0;          // left of this column there is a tenth of the noise
+  int32_t rays_below = 0;           // below this row a sample costs five rays in place of one
+  int32_t pairs_until = INT32_MAX;  // right of this column there are no gradients
 
   uint32_t count_at(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) const {
     return unit.count_map ? (*unit.count_map)[frame.index(x, y)] : unit.count;
@@ -60,9 +62,9 @@ struct FakeIntegrator final : Integrator {
       const float value = value_of(x, y, s);
       frame->components[0].primal[half][i] += Radiance(value, 0.5f * value, 2.0f * value, frame->channels == 4 ? 0.75f : 0.0f);
       ++frame->count[half][i];
-      ++counters->rays_primary;
+      counters->rays_primary += y < rays_below ? 5 : 1;
       for (PassPlane& plane : frame->passes) add_pass(&plane, i, value, s);
-      if (gradients) add_gradients(unit, x, y, half, frame);
+      if (gradients && x < pairs_until) add_gradients(unit, x, y, half, frame);
     }
   }
 
