@@ -14,8 +14,15 @@ namespace {
 
 std::atomic<uint64_t> requests{0}, refused_request{0};
 std::atomic<bool> refused{false};
-std::atomic<int64_t> pieces{0};
+std::atomic<int64_t> pieces{0}, bytes{0}, most_bytes{0};
 std::atomic<int> unrefused{0};
+
+void count(void* memory) noexcept {
+  const int64_t now = bytes += int64_t(malloc_usable_size(memory));
+  int64_t most = most_bytes;
+  while (now > most && !most_bytes.compare_exchange_weak(most, now)) {
+  }
+}
 
 void* allocate(size_t size, size_t alignment) noexcept {
   const uint64_t k = unrefused == 0 ? ++requests : 0;
@@ -24,8 +31,10 @@ void* allocate(size_t size, size_t alignment) noexcept {
     return nullptr;
   }
   ++pieces;
-  return alignment <= alignof(std::max_align_t) ? std::malloc(size)
-                                                : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  void* memory = alignment <= alignof(std::max_align_t) ? std::malloc(size)
+                                                        : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  count(memory);
+  return memory;
 }
 
 void* allocate_or_throw(size_t size, size_t alignment) {
@@ -36,6 +45,7 @@ void* allocate_or_throw(size_t size, size_t alignment) {
 void release(void* memory) noexcept {
   if (memory == nullptr) return;
   --pieces;
+  bytes -= int64_t(malloc_usable_size(memory));
   std::free(memory);
 }
 
@@ -61,6 +71,9 @@ Unrefused::~Unrefused() { --unrefused; }
 
 bool was_refused() { return refused; }
 int64_t live() { return pieces; }
+int64_t live_bytes() { return bytes; }
+int64_t peak_bytes() { return most_bytes; }
+void forget_peak() { most_bytes = bytes.load(); }
 
 uint64_t resident_bytes() {
   malloc_trim(0);  // what the allocator keeps for later is no leak

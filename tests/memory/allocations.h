@@ -18,6 +18,10 @@ class Unrefused {
 };
 // Pieces that are not given back yet.
 int64_t live();
+// Bytes of them, and the most of these since the last call of forget_peak().
+int64_t live_bytes();
+int64_t peak_bytes();
+void forget_peak();
 
 // Of this process, now.
 uint64_t resident_bytes();

@@ -152,12 +152,32 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
 
 namespace {
 
-// Work space of the reconstruction, floats per pixel.
-uint64_t solver_floats(const Plan& plan) {
-  const uint64_t c = uint64_t(plan.channels), shared = std::min<uint64_t>(c, 3);
-  if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return 6 * c;
-  // Images and the result; the solver's planes and vectors; its matrices, of all levels; deviations.
-  return 4 * c + 10 * shared + 20 + 3;
+// Floats per pixel of an iterative solver for so many channels: matrices of all levels, interpolation and weights; vectors.
+uint64_t solver_floats(uint64_t channels) { return 12 + 6 * channels; }
+// The same with its input and solution.
+uint64_t solve_floats(uint64_t channels) { return solver_floats(channels) + 4 * channels; }
+
+// Where a pilot leaves differences out, L2 iterates (reconstruct/l2_with_gaps.h).
+bool l2_iterates(const Plan& plan) { return plan.pilot; }
+
+// What the reconstruction takes beside the frame, floats per pixel: its result, and until it is there
+uint64_t reconstruction_floats(const Plan& plan) {
+  const uint64_t c = uint64_t(plan.channels), rgba = 4;
+  if (!plan.solves) return rgba;
+  if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return rgba + (l2_iterates(plan) ? 4 * c + solve_floats(c) : c + 1);
+  // images, deviations, what is settled; then the solve with its blurred deviations, or that of alpha by the same weights.
+  const uint64_t colors = std::min<uint64_t>(c, 3), images = 3 * c + 3 + c + 1;
+  const uint64_t of_colors = solve_floats(colors) + 3 + c, of_alpha = solver_floats(colors) + colors + c + 1 + solve_floats(1);
+  return rgba + images + (c > colors ? std::max(of_colors, of_alpha) : of_colors);
+}
+
+// What the estimate of noise takes (render/cell_noise.h): images and the halves' differences, what is delivered and its noise, and those
+// of L2 where the weights follow the noise.
+uint64_t noise_floats(const Plan& plan) {
+  const uint64_t c = uint64_t(plan.channels), images = 2 * c * (plan.gradients ? 3 : 1), result = 2 * c;
+  if (!plan.solves) return images + result;
+  if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return images + result + (l2_iterates(plan) ? solve_floats(c) : 0);
+  return images + 3 + result + solve_floats(std::min<uint64_t>(c, 3)) + 3 + result;
 }
 
 }  // namespace
@@ -168,9 +188,13 @@ uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings) {
   bytes += kHalves * (sizeof(uint32_t) + (plan.gradients ? kOffsets * sizeof(float) : 0));
   bytes += pass_bytes_per_pixel(settings.passes);
   if (wants(settings.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
-  // Images read for the solver, its work planes, the result.
-  if (plan.solves) bytes += solver_floats(plan) * sizeof(float);
-  bytes += 4 * sizeof(float);
+  bytes += 4 * sizeof(float);  // what is shown meanwhile
+  uint64_t floats = reconstruction_floats(plan);
+  if (plan.adaptive) {
+    floats = std::max(floats, noise_floats(plan));
+    bytes += 2 * sizeof(uint32_t);  // where the samples of a batch go
+  }
+  bytes += floats * sizeof(float);
   return bytes * uint64_t(plan.sampled.area());
 }
 

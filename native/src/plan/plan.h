@@ -36,7 +36,7 @@ inline constexpr int kGuardRing = 35;
 // Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced (contract 5.1).
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot);
 
-// Bytes of the frame and of the reconstruction's work space.
+// Most bytes that a render takes at a time: the frame, and the work space of its reconstruction or of the estimate of its noise.
 uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings);
 
 }  // namespace gradus
