@@ -46,6 +46,12 @@ def test_motion_blur_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -
     assert warnings(scene) == []
 
 
+def test_a_camera_of_scale_0_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    """It gave a black picture without a word. (Cycles shows the world's colour all over.)"""
+    scene.camera.scale = (1.0, 1.0, 0.0)
+    assert warnings(scene) == ["Camera 'Camera' has scale 0: it has no direction to look to"]
+
+
 @pytest.mark.parametrize("kind", ["object", "material", "asset"])
 def test_cryptomatte_is_named(scene: bpy.types.Scene, plane: bpy.types.Object, kind: str) -> None:
     layer = scene.view_layers[0]
