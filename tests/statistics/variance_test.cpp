@@ -139,8 +139,9 @@ double estimated_error(const Frame& frame, uint32_t reconstruction, const std::v
   return relative * relative * signal;
 }
 
-// Cells were judged by L2's error whatever was delivered: WEIGHTED took up to four times the samples that its threshold asks for. By its
-// own weights, which follow the noise, it would have stopped far too early. L1, whose weights are not those of the least error, is off by most.
+// Cells were judged by L2's error whatever was delivered: WEIGHTED took twice the samples that its threshold asks for. By its
+// own weights, which follow the noise, it would have stopped far too early. L1, whose weights are not those of the least error, is off by
+// most.
 TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
   test::PathScene scene;
   test::build(GetParam(), &scene);

@@ -16,6 +16,8 @@ struct PhaseTimes {
 };
 
 struct RenderStats {
+  // CPU time of samples is that of our threads, by tiles; that of the pilot, of estimates of noise and of solves is the whole process's
+  // meanwhile, what the host does in these moments included.
   PhaseTimes seconds, cpu_seconds;
   double total_seconds = 0.0;
   double process_cpu = 0.0;
