@@ -18,6 +18,7 @@ struct MaterialData;  // shading/material.h: compiled node program and flags
 class ImageStore;     // scene/image_store.h
 struct Accelerator;   // scene/accelerator.h: Embree scenes
 struct TangentField;  // scene/tangent_field.h
+struct Rays4;         // scene/rays4.h
 struct FlatTriangle;  // scene/flat_triangle.h
 
 // Matrices lead to and from the snapshot's internal space (Snapshot::origin). A mirrored instance keeps outside outside: normals are
@@ -64,7 +65,8 @@ class Snapshot {
   bool occluded(const Ray& ray) const;
   // Some surface that such rays meet lies on it.
   bool meets(const Ray& ray, uint32_t visibility) const;
-  void occluded4(const Ray rays[4], bool blocked[4]) const;
+  // The same of four rays at once; false where none is wanted.
+  void occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const;
   // Transmittance of the segment through transparent surfaces, at most max_transparent of them; 0 if blocked.
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
   // Geometry at a hit. place() writes it where it is wanted: copies of what has just been written stall.

@@ -1,8 +1,11 @@
 // Ray queries of a snapshot. Embree's internal assertions abort on rays that are not finite, and NaN makes traversal slow: such rays
 // are misses and never reach it.
+#include <cstring>
+
 #include <embree3/rtcore.h>
 
 #include "scene/accelerator.h"
+#include "scene/rays4.h"
 #include "scene/snapshot.h"
 
 namespace gradus {
@@ -28,6 +31,13 @@ void set_ray(const Ray& ray, uint32_t mask, RTCRay* r) {
   r->mask = mask;
   r->id = 0;
   r->flags = 0;
+}
+
+using LaneBits = int32_t __attribute__((vector_size(16)));
+
+template <class Field, class Values>
+void set(Field* lanes, const Values& values) {
+  std::memcpy(lanes, &values, sizeof(values));
 }
 
 template <class Packet>
@@ -115,18 +125,30 @@ void Snapshot::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) c
   }
 }
 
-void Snapshot::occluded4(const Ray rays[4], bool blocked[4]) const {
-  alignas(16) int valid[4];
+void Snapshot::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const {
+  const Lanes3 &o = rays.origin, &d = rays.direction;
+  const Lanes length2 = d.x * d.x + d.y * d.y + d.z * d.z;
+  const Lanes sum = o.x + o.y + o.z + length2;
+  const LaneBits want{-int(wanted[0]), -int(wanted[1]), -int(wanted[2]), -int(wanted[3])};
+  const LaneBits valid = want & (sum - sum == 0.0f) & (length2 > 0.0f) & (rays.t_max >= 0.0f);
+  const Lanes zero{};
   RTCRay4 query;
-  for (int i = 0; i < 4; ++i) {
-    const bool trace = traceable(rays[i]);
-    valid[i] = trace ? -1 : 0;
-    set_lane(trace ? rays[i] : Ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), -1.0f}, GRADUS_VISIBLE_SHADOW, i, &query);
-  }
+  set(query.org_x, o.x);
+  set(query.org_y, o.y);
+  set(query.org_z, o.z);
+  set(query.tnear, zero);
+  set(query.dir_x, d.x);
+  set(query.dir_y, d.y);
+  set(query.dir_z, d.z);
+  set(query.time, zero);
+  set(query.tfar, rays.t_max);
+  set(query.mask, LaneBits{} + int32_t(GRADUS_VISIBLE_SHADOW));
+  set(query.id, zero);
+  set(query.flags, zero);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded4(valid, accelerator->scene, &context, &query);
-  for (int i = 0; i < 4; ++i) blocked[i] = valid[i] && query.tfar[i] < 0.0f;
+  rtcOccluded4(reinterpret_cast<const int*>(&valid), accelerator->scene, &context, &query);
+  for (int i = 0; i < 4; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0.0f;
 }
 
 }  // namespace gradus

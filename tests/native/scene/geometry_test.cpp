@@ -6,6 +6,7 @@
 #include "render/clock.h"
 #include "scene/camera.h"
 #include "scene/emitters.h"
+#include "scene/rays4.h"
 #include "scene_fixture.h"
 
 namespace gradus::test {
@@ -235,7 +236,9 @@ TEST(Trace, FourAtOnceEqualsFourTimesOne) {
     bool blocked[4];
     for (int k = 0; k < 4; ++k) rays[k] = {Vec3(0.0f), 0.0f, random_direction(random), k == 3 && i % 3 == 0 ? -1.0f : kInfinity};
     snapshot->intersect4(rays, GRADUS_VISIBLE_CAMERA, four);
-    snapshot->occluded4(rays, blocked);
+    const Vec3 d[4] = {rays[0].direction, rays[1].direction, rays[2].direction, rays[3].direction};
+    const bool wanted[4] = {true, true, true, rays[3].t_max > 0.0f};
+    snapshot->occluded4({same(Vec3(0.0f)), lanes(d[0], d[1], d[2], d[3]), same(kInfinity)}, wanted, blocked);
     for (int k = 0; k < 4; ++k) {
       Hit one;
       const bool hit = snapshot->intersect(rays[k], GRADUS_VISIBLE_CAMERA, &one);

@@ -20,14 +20,12 @@ EmitterView view_from(const PathContext& context, const LightSample& sample, con
 // The copied emitter point as seen from the offsets that stand at vertices of their own; shadow rays together, and none where nothing would
 // be scattered.
 void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_class) {
-  Ray rays[kOffsets];
   bool wanted[kOffsets];
   bool blocked[kOffsets] = {};
   bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     OffsetLight& light = o.light;
-    rays[k] = kNoRay;
     wanted[k] = false;
     if (o.stage != OffsetStage::Traced) {
       continue;
@@ -41,14 +39,19 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
     wanted[k] = !light.traced && !is_black(light.lit.value);
     if (wanted[k]) {
       light.traced = true;
-      rays[k] = shadow_ray(o.here->point, sample.point, light.view);
       ++counters_.rays_shift_shadow;
       any = true;
     }
   }
   const bool packet = !context_.scene.features.has_transparent_shadows && sample.view.casts_shadow;
   if (any && packet) {
-    context_.scene.occluded4(rays, blocked);
+    const EmitterView& a = offsets_[0].light.view;
+    const EmitterView& b = offsets_[1].light.view;
+    const EmitterView& c = offsets_[2].light.view;
+    const EmitterView& d = offsets_[3].light.view;
+    const Lanes3 direction = lanes(a.direction, b.direction, c.direction, d.direction);
+    const Lanes distance{a.distance, b.distance, c.distance, d.distance};
+    context_.scene.occluded4(shadow_rays(own_points(), direction, distance, sample.point), wanted, blocked);
   }
   for (int k = 0; k < kOffsets; ++k) {
     if (wanted[k]) {

@@ -70,15 +70,11 @@ ShiftedEvent OffsetPaths::linked_event(OffsetPath* o, const Vertex& vertex, cons
 
 // Connects all pending offsets that have not tried yet.
 void OffsetPaths::link_all(const Vertex& vertex) {
-  const bool packet = !context_.has_transparency && context_.uniform_visibility;
   ShiftedEvent events[kOffsets];
-  Ray rays[kOffsets];
   bool wanted[kOffsets];
-  bool blocked[kOffsets] = {};
   bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    rays[k] = kNoRay;
     wanted[k] = o.stage == OffsetStage::Pending && !o.link.known;
     if (wanted[k]) {
       o.link = OffsetLink{};
@@ -87,26 +83,28 @@ void OffsetPaths::link_all(const Vertex& vertex) {
       const ShiftFailure failure = try_link(&o, vertex, &events[k]);
       wanted[k] = failure == ShiftFailure::None;
       count_failure(&counters_, failure);
-    }
-    if (wanted[k]) {
-      ++counters_.rays_shift_shadow;
-      rays[k] = spawn_ray_to(o.here->point, vertex.point);
-      any = true;
+      counters_.rays_shift_shadow += wanted[k] ? 1 : 0;
+      any |= wanted[k];
     }
   }
+  const bool packet = !context_.has_transparency && context_.uniform_visibility;
+  bool blocked[kOffsets] = {};
   if (any && packet) {
-    context_.scene.occluded4(rays, blocked);
+    const Lanes3 direction = lanes(events[0].wi, events[1].wi, events[2].wi, events[3].wi);
+    context_.scene.occluded4(spawn_rays_to(own_points(), direction, vertex.point), wanted, blocked);
   }
   for (int k = 0; k < kOffsets; ++k) {
     if (!wanted[k]) {
       continue;
     }
-    const Rgb through = packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
-                               : segment_transmittance(context_, rays[k], base_state_.ray, &offsets_[k].link.transparent_depth);
+    OffsetPath& o = offsets_[k];
+    const Rgb through =
+        packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
+               : segment_transmittance(context_, spawn_ray_to(o.here->point, vertex.point), base_state_.ray, &o.link.transparent_depth);
     if (is_black(through)) {
       ++counters_.fail_occluded;
     } else {
-      open_link(&offsets_[k], events[k], through);
+      open_link(&o, events[k], through);
     }
   }
 }

@@ -117,6 +117,10 @@ void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
   count_failure(&counters_, cause);
 }
 
+Points4 OffsetPaths::own_points() const {
+  return gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point, offsets_[3].here->point);
+}
+
 bool OffsetPaths::any(OffsetStage stage) const {
   return std::any_of(offsets_.begin(), offsets_.end(), [stage](const OffsetPath& o) { return o.stage == stage; });
 }

@@ -4,6 +4,7 @@
 #include "integrator/gradient/offset_path.h"
 #include "integrator/gradient/pair.h"
 #include "integrator/pixel_loop.h"
+#include "scene/rays4.h"
 
 namespace gradus {
 
@@ -48,6 +49,8 @@ class OffsetPaths {
   void settle(OffsetPath* offset, OffsetStage stage);
   void join(OffsetPath* offset);
   void fail(OffsetPath* offset, ShiftFailure cause);
+  // Where the offsets stand.
+  Points4 own_points() const;
   // Some offset is at this stage.
   bool any(OffsetStage stage) const;
 

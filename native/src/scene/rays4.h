@@ -1,0 +1,40 @@
+// Four rays to one point, one in each lane: the same arithmetic as for one (surface.h, emitters.h), up to rounding.
+#pragma once
+
+#include "scene/emitters.h"
+#include "scene/surface.h"
+
+namespace gradus {
+
+using Lanes = float __attribute__((vector_size(16)));
+
+struct Lanes3 {
+  Lanes x, y, z;
+};
+
+inline Lanes same(float v) { return Lanes{v, v, v, v}; }
+inline Lanes3 same(const Vec3& v) { return {same(v.x), same(v.y), same(v.z)}; }
+// Written at once: lanes that are stored one by one and loaded together stall.
+inline Lanes3 lanes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return {Lanes{a.x, b.x, c.x, d.x}, Lanes{a.y, b.y, c.y, d.y}, Lanes{a.z, b.z, c.z, d.z}};
+}
+
+// From t = 0; empty where t_max < 0.
+struct Rays4 {
+  Lanes3 origin, direction;
+  Lanes t_max;
+};
+
+// Of four surface points, what rays that leave them need.
+struct Points4 {
+  Lanes3 position, normal;
+  Lanes error;
+};
+Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d);
+
+// The rays between surface points, both ends off their surfaces; direction: from `from` to `to`.
+Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfacePoint& to);
+// Those of shadow_ray(); direction and distance: of the emitter's point, as seen from each.
+Rays4 shadow_rays(const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to);
+
+}  // namespace gradus

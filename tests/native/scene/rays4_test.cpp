@@ -1,0 +1,89 @@
+#include "scene/rays4.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "path/segment.h"
+
+namespace gradus::test {
+namespace {
+
+Vec3 lane(const Lanes3& v, int i) { return Vec3(v.x[i], v.y[i], v.z[i]); }
+
+class Rays4Test : public testing::Test {
+ protected:
+  float number() { return std::uniform_real_distribution<float>(-1.0f, 1.0f)(random_); }
+  Vec3 vector() { return Vec3(number(), number(), number()); }
+  Vec3 unit() { return glm::normalize(vector() + Vec3(0.0f, 0.0f, 1e-3f)); }
+  SurfacePoint point(const Vec3& position) {
+    SurfacePoint p;
+    p.position = position;
+    p.geometric_normal = unit();
+    p.error = 1e-6f * (1.5f + number());
+    return p;
+  }
+  void expect_same(const Ray& ray, const Rays4& rays, int i) {
+    EXPECT_LT(glm::length(ray.origin - lane(rays.origin, i)), 5e-7f);
+    EXPECT_LT(glm::length(ray.direction - lane(rays.direction, i)), 5e-6f);
+    EXPECT_NEAR(ray.t_max, rays.t_max[i], 2e-6f);
+  }
+  std::mt19937 random_{3};
+};
+
+TEST_F(Rays4Test, LeaveSurfacesAndArriveAsOneDoes) {
+  for (int n = 0; n < 1000; ++n) {
+    const SurfacePoint from[4] = {point(vector()), point(Vec3(0.0f)), point(vector()), point(vector())};
+    const SurfacePoint to = point(vector() + Vec3(2.0f, 0.0f, 0.0f));
+    Vec3 d[4];
+    for (int i = 0; i < 4; ++i) d[i] = glm::normalize(to.position - from[i].position);
+    const Rays4 rays = spawn_rays_to(gather(from[0], from[1], from[2], from[3]), lanes(d[0], d[1], d[2], d[3]), to);
+    for (int i = 0; i < 4; ++i) expect_same(spawn_ray_to(from[i], to), rays, i);
+  }
+}
+
+TEST_F(Rays4Test, AreEmptyBetweenPointsThatRoundingCannotTellApart) {
+  SurfacePoint a, b;
+  a.error = b.error = 1e-5f;
+  b.geometric_normal = Vec3(0, 0, -1);
+  b.position = Vec3(0, 0, 1e-6f);
+  const Rays4 rays = spawn_rays_to(gather(a, a, a, a), same(Vec3(0, 0, 1)), b);
+  EXPECT_LT(spawn_ray_to(a, b).t_max, 0.0f);
+  for (int i = 0; i < 4; ++i) EXPECT_LT(rays.t_max[i], 0.0f);
+}
+
+TEST_F(Rays4Test, ReachEmittersOfAllKindsAsOneShadowRayDoes) {
+  EmitterPoint emitters[3];
+  emitters[0].kind = EmitterKind::Lamp;
+  emitters[0].normal = Vec3(0, 0, -1);
+  emitters[1].kind = EmitterKind::Triangle;
+  emitters[1].error = 1e-6f;
+  emitters[1].normal = Vec3(0, 0, 1);
+  emitters[2].kind = EmitterKind::World;
+  emitters[2].direction = Vec3(0.6f, 0.0f, 0.8f);
+  for (EmitterPoint& emitter : emitters) {
+    emitter.position = Vec3(2.0f, 0.5f, 0.25f);
+    SurfacePoint from[4];
+    EmitterView view[4];
+    for (int i = 0; i < 4; ++i) {
+      from[i] = point(vector());
+      view[i].distance = glm::length(emitter.position - from[i].position);
+      view[i].direction = emitter.at_infinity() ? emitter.direction : (emitter.position - from[i].position) / view[i].distance;
+    }
+    const Rays4 rays = shadow_rays(gather(from[0], from[1], from[2], from[3]),
+                                   lanes(view[0].direction, view[1].direction, view[2].direction, view[3].direction),
+                                   Lanes{view[0].distance, view[1].distance, view[2].distance, view[3].distance}, emitter);
+    for (int i = 0; i < 4; ++i) {
+      const Ray one = shadow_ray(from[i], emitter, view[i]);
+      if (emitter.at_infinity()) {
+        EXPECT_EQ(rays.t_max[i], kInfinity);
+        EXPECT_EQ(lane(rays.direction, i), one.direction);
+      } else {
+        expect_same(one, rays, i);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gradus::test
