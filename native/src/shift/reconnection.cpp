@@ -10,21 +10,21 @@ float emitter_jacobian(float cosine_base, float distance_base, float cosine_offs
   return cosine_offset / cosine_base * ratio * ratio;
 }
 
-float parallax(const Vec3& x, const Vec3& y, const Vec3& z) {
-  return glm::length(x - y) / std::min(glm::length(z - x), glm::length(z - y));
+bool is_parallax_below(const Vec3& x, const Vec3& y, const Vec3& z, float angle) {
+  const Vec3 across = x - y, from_x = z - x, from_y = z - y;
+  return glm::dot(across, across) < angle * angle * std::min(glm::dot(from_x, from_x), glm::dot(from_y, from_y));
 }
 
-bool is_short_edge(const Vec3& x, const Vec3& y, const Vec3& z) { return !(parallax(x, y, z) < 1.0f); }
+bool is_short_edge(const Vec3& x, const Vec3& y, const Vec3& z) { return !is_parallax_below(x, y, z, 1.0f); }
 
 bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curvature, bool transmission) {
   constexpr float kCurved = 0.5f;  // curvature · edge: where the directions behind z differ alike in both cases
   constexpr float kSmall = 0.2f;   // parallax at a mirror: what is lost at its rim outweighs what its flatness keeps
-  const float angle = parallax(x, y, z);
   const float edge = std::min(glm::length(z - x), glm::length(z - y));
-  return curvature * edge > kCurved ? !is_short_edge(x, y, z) : !transmission && angle < kSmall;
+  return curvature * edge > kCurved ? !is_short_edge(x, y, z) : !transmission && is_parallax_below(x, y, z, kSmall);
 }
 
-bool looks_alike(const Vec3& x, const Vec3& y, const Vec3& z, float width) { return parallax(x, y, z) < width; }
+bool looks_alike(const Vec3& x, const Vec3& y, const Vec3& z, float width) { return is_parallax_below(x, y, z, width); }
 
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal) {
   Reconnection result;

@@ -17,9 +17,9 @@ struct Reconnection {
 // target. Inverse: base and offset exchanged.
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal);
 
-// About the angle between the paths from x and y to z: |x − y|, the footprint of a pixel's ray where the paths stand, over the shorter
-// edge. Symmetric in x and y, and so is what follows.
-float parallax(const Vec3& x, const Vec3& y, const Vec3& z);
+// Parallax is about the angle between the paths from x and y to z: |x − y|, the footprint of a pixel's ray where the paths stand, over the
+// shorter edge. Symmetric in x and y, and so is what follows.
+bool is_parallax_below(const Vec3& x, const Vec3& y, const Vec3& z, float angle);
 
 // Edges shorter than the footprint are not connected: Jacobians and cosines are of any size there.
 bool is_short_edge(const Vec3& x, const Vec3& y, const Vec3& z);
