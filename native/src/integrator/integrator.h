@@ -15,6 +15,7 @@ namespace gradus {
 // A unit of work (contract 1.3): pixels of a tile, sample numbers [first, first + count) of each. count_map: samples per pixel of the
 // frame's region, 0 allowed, replaces `count`; the same map tells the counts of neighbours for the pair weights (contract 1.5).
 // first_map: each pixel's first sample number, the same within a cell of the lattice, replaces `first_sample`.
+// pixel_map: 0 for pixels of the frame's region that are passed over, though their counts are those of the others.
 // gradient_map: 0 for pixels of the region whose paths have no offsets; pairs with such a pixel are absent.
 struct WorkUnit {
   Region tile;
@@ -22,6 +23,7 @@ struct WorkUnit {
   uint32_t count = 0;
   const std::vector<uint32_t>* count_map = nullptr;
   const std::vector<uint32_t>* first_map = nullptr;
+  const std::vector<uint8_t>* pixel_map = nullptr;
   const std::vector<uint8_t>* gradient_map = nullptr;
 };
 

@@ -57,7 +57,8 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fra
       vertices->begin(jitter);
       for (int32_t y = cell.y0; y < cell.y1; ++y) {
         for (int32_t x = cell.x0; x < cell.x1; ++x) {
-          if (i >= unit_count(unit, frame.index(x, y))) {
+          const size_t pixel = frame.index(x, y);
+          if (i >= unit_count(unit, pixel) || (unit.pixel_map != nullptr && (*unit.pixel_map)[pixel] == 0)) {
             continue;
           }
           if (stop.load(std::memory_order_relaxed)) {

@@ -28,8 +28,8 @@ Region grown(const Region& r, int by, const Region& limit) { return intersection
 
 // One pixel somewhere in each stratum of the square, so that no pattern of the picture meets all of them alike. Squares at the border may
 // be narrower than they have strata.
-std::vector<Region> pixels_of(const Region& square, uint32_t seed) {
-  std::vector<Region> pixels;
+std::vector<size_t> pixels_of(const Region& square, const Frame& frame, uint32_t seed) {
+  std::vector<size_t> pixels;
   const int columns = std::min(kColumns, square.width()), rows = std::min(kRows, square.height());
   const auto place = [](int32_t begin, int32_t size, int i, int n, uint32_t random) {
     const int32_t first = begin + size * i / n, end = begin + size * (i + 1) / n;
@@ -41,7 +41,7 @@ std::vector<Region> pixels_of(const Region& square, uint32_t seed) {
       h = combine(h, uint32_t(j * kColumns + i));
       const int32_t x = place(square.x0, square.width(), i, columns, h & 0xffffu);
       const int32_t y = place(square.y0, square.height(), j, rows, h >> 16);
-      pixels.push_back({x, y, x + 1, y + 1});
+      pixels.push_back(frame.index(x, y));
     }
   }
   return pixels;
@@ -123,15 +123,17 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
   tbb::parallel_for(size_t{0}, sums.size(), [&](size_t i) {
     const FlushDenormals flush;
     Counters counters;
-    for (const Region& pixel : pixels_of(squares.cells[i], settings.seed)) {
-      if (stop.load(std::memory_order_relaxed)) return;
-      Frame frame(settings.width, settings.height, grown(pixel, 1, full), channels, 1, true);
-      WorkUnit unit;
-      unit.tile = pixel;
-      unit.count = kSamples;
-      integrator.sample(unit, &frame, &counters, stop);
-      add_pixel(frame, frame.index(pixel.x0, pixel.y0), l2, &sums[i]);
-    }
+    Frame frame(settings.width, settings.height, grown(squares.cells[i], 1, full), channels, 1, true);
+    const std::vector<size_t> pixels = pixels_of(squares.cells[i], frame, settings.seed);
+    std::vector<uint8_t> map(size_t(frame.region.area()), 0);
+    for (const size_t pixel : pixels) map[pixel] = 1;
+    WorkUnit unit;
+    unit.tile = squares.cells[i];
+    unit.count = kSamples;
+    unit.pixel_map = &map;
+    integrator.sample(unit, &frame, &counters, stop);
+    if (stop.load(std::memory_order_relaxed)) return;
+    for (const size_t pixel : pixels) add_pixel(frame, pixel, l2, &sums[i]);
     sums[i].plain_rays = double(counters.rays_primary + counters.rays_bounce + counters.rays_shadow);
     sums[i].shift_rays = double(counters.rays_shift);
     sums[i].shift_shadow_rays = double(counters.rays_shift_shadow);

@@ -108,6 +108,7 @@ struct HalfNoisy final : Integrator {
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& /*stop*/) const override {
     for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
       for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
+        if (unit.pixel_map != nullptr && (*unit.pixel_map)[frame->index(x, y)] == 0) continue;
         const bool is_on = unit.gradient_map == nullptr || (*unit.gradient_map)[frame->index(x, y)] != 0;
         for (uint32_t s = unit.first_sample; s < unit.first_sample + unit.count; ++s) {
           sample_pixel(x, y, s, frame->gradients && is_on, frame, counters);
