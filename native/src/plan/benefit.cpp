@@ -23,6 +23,9 @@ constexpr double kShiftRay = 0.48, kShiftShadowRay = 0.88;
 // Of squared brightness, as in the stopping rule: below it noise is not seen.
 constexpr double kDark = 1e-3;
 
+// A part of the picture has to promise this against all or nothing: of many uncertain sums the least is one that is too low.
+constexpr double kWorthParting = 0.75;
+
 double squared(double x) { return x * x; }
 
 // All but the error.
@@ -86,7 +89,8 @@ std::vector<bool> choose_parts(const std::vector<Benefit>& parts, const std::vec
   std::iota(order.begin(), order.end(), size_t{0});
   const auto worth = [&](size_t i) { return extra[i] > 0.0 ? gain[i] / extra[i] : gain[i] > 0.0 ? HUGE_VAL : 0.0; };
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return worth(a) > worth(b); });
-  double least = error * cost;
+  const double none = error * cost;
+  double least = none;
   size_t best = 0;
   for (size_t n = 0; n < order.size(); ++n) {
     error -= gain[order[n]];
@@ -96,6 +100,9 @@ std::vector<bool> choose_parts(const std::vector<Benefit>& parts, const std::vec
       best = n + 1;
     }
   }
+  // error and cost are now those of all.
+  const double all = error * cost;
+  if (least > kWorthParting * std::min(all, none)) best = all < none ? parts.size() : 0;
   std::vector<bool> chosen(parts.size(), false);
   for (size_t n = 0; n < best; ++n) chosen[order[n]] = true;
   return chosen;

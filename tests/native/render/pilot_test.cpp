@@ -97,6 +97,7 @@ TEST(Benefit, PartsAreChosenForThePicture) {
   EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.1, 2)}, pixels), (Chosen{true, true, true}));
   EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(100, 0.9, 2), part(1, 0.1, 2)}, pixels), (Chosen{false, false, false}));
   EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(100, 0.1, 2), part(1, 0.9, 2)}, pixels), (Chosen{false, true, false}));
+  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.6, 2)}, pixels), (Chosen{true, true, true})) << "hardly better";
   EXPECT_EQ(choose_parts({part(0, 1, 2), part(0, 1, 1), part(0, 1, 3)}, pixels), (Chosen{false, false, false})) << "no noise";
 }
 
@@ -154,7 +155,7 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_WEIGHTED, GRADUS_RECONSTRUCTION_L2}) {
     s.samples = 4;
     s.seed = s.frame = s.first_sample = 0;
-    const GradientMap full = pilot(s, {0, 0, 300, 200}, 130, reconstruction);
+    const GradientMap full = pilot(s, {0, 0, 300, 200}, 230, reconstruction);
     EXPECT_GT(full.share, 0.0);
     EXPECT_LT(full.share, 1.0);
     s.samples = 64;
@@ -162,7 +163,7 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
     s.frame = 7;
     s.first_sample = 16;
     const Region part{77, 45, 251, 133};
-    const GradientMap map = pilot(s, part, 130, reconstruction);
+    const GradientMap map = pilot(s, part, 230, reconstruction);
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
         ASSERT_EQ(map.pixels[size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0)], full.pixels[size_t(y) * 300 + size_t(x)])
