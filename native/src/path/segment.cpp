@@ -43,7 +43,7 @@ void see_lamps(const PathContext& context, const Ray& whole, float begin, float 
   const Ray part{whole.origin, std::max(whole.t_min, begin), whole.direction, end};
   intersect_lamps(context.scene, part, &segment->met);
   for (const LampHit& hit : segment->met) {
-    segment->lamps.push_back({hit.point, hit.distance, segment->weight, segment->probability});
+    segment->lamps.push_back({hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
   }
 }
 

@@ -16,6 +16,7 @@ struct LampSighting {
   float distance = 0.0f;
   Rgb weight = Rgb(1.0f);    // of the segment up to there, see Segment
   float probability = 1.0f;  // likewise
+  int crossed = 0;           // likewise
 };
 
 enum class SegmentEnd : uint8_t {

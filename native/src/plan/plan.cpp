@@ -143,11 +143,14 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
                               settings.noise_threshold > 0.0f ? "too few samples to judge by" : "noise_threshold is 0");
   }
   const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
-  const bool is_linear = plan.reconstruction == GRADUS_RECONSTRUCTION_L2 || plan.reconstruction == GRADUS_RECONSTRUCTION_NONE;
-  plan.unbiased = is_linear && !plan.adaptive && !clamps;
+  plan.unbiased = !plan.adaptive && !clamps;
   list_scene(settings, snapshot, &plan);
   list_passes(settings, &plan);
   return plan;
+}
+
+bool delivers_unbiased(const Plan& plan, uint32_t reconstruction) {
+  return plan.unbiased && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
 }
 
 namespace {

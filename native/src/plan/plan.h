@@ -20,7 +20,7 @@ struct Plan {
   bool gradients = false;
   bool pilot = false;     // a few samples tell where gradients pay
   bool solves = false;    // Combined comes from a solver
-  bool unbiased = true;   // contract 2.2
+  bool unbiased = true;   // what is sampled; see delivers_unbiased()
   bool adaptive = false;  // tiles take samples by their noise, and may stop early
   int channels = 3;
   uint32_t first_check = 0;  // samples before a tile may stop
@@ -35,6 +35,9 @@ inline constexpr int kGuardRing = 35;
 
 // Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced (contract 5.1).
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot);
+
+// Contract 2.2. reconstruction: what is done in the end, which the pilot may have changed to NONE.
+bool delivers_unbiased(const Plan& plan, uint32_t reconstruction);
 
 // Most bytes that a render takes at a time: the frame, and the work space of its reconstruction or of the estimate of its noise.
 uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings);

@@ -66,7 +66,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["seed"] = settings.seed;
   j["integrator"] = choice_name(*find_option("integrator"), settings.integrator);
   j["reconstruction"] = choice_name(*find_option("reconstruction"), settings.reconstruction);
-  j["unbiased"] = plan.unbiased;
+  j["unbiased"] = delivers_unbiased(plan, settings.reconstruction);
   j["samples"] = mean_samples(frame);
   j["spp_base"] = j["samples"];
   j["spp_offset"] = 0;

@@ -297,6 +297,18 @@ TEST(Loop, ATimeLimitIsMetWithinHalfASample) {
 // The pace was taken from all samples, those of the frame that it went on from included.
 TEST(Loop, ATimeLimitHoldsForAResumedRender) { EXPECT_LT(limited_seconds(0.3, 0.05, rendered(small_settings(8, 8, 64))), 0.45); }
 
+// Statistics went by the reconstruction that was planned.
+TEST(Loop, NoisyImageThatThePilotLeavesIsUnbiased) {
+  GradusSettings settings = small_settings(64, 64, 8);
+  settings.integrator = GRADUS_INTEGRATOR_AUTO;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_AUTO;
+  auto render = start(settings, fake_factory([](FakeIntegrator*) {}));
+  ASSERT_TRUE(render->wait(20.0));
+  const auto stats = nlohmann::json::parse(render->stats_json());
+  EXPECT_EQ(stats["reconstruction"], "none");
+  EXPECT_TRUE(stats["unbiased"]);
+}
+
 TEST(Loop, StopsTilesByNoise) {
   GradusSettings settings = small_settings(128, 64, 256);
   settings.noise_threshold = 0.05f;

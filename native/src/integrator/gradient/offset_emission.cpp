@@ -145,7 +145,11 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Linked) {
+    if ((o.stage == OffsetStage::Linked || o.stage == OffsetStage::Deeper) && !passes(o, lamp.crossed)) {
+      alone(k, c);
+    } else if (o.stage == OffsetStage::Deeper) {
+      pair(k, c, o.state.throughput * lamp.weight * c.tail, o.ratio);
+    } else if (o.stage == OffsetStage::Linked) {
       found_linked(k, c, lamp.weight, joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
@@ -169,7 +173,9 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Linked) {
+    if (o.stage == OffsetStage::Deeper) {
+      pair(k, c, o.state.throughput * c.tail, o.ratio);
+    } else if (o.stage == OffsetStage::Linked) {
       found_linked(k, c, Rgb(1.0f), joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       // The same direction, so the same radiance.
@@ -196,8 +202,10 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Linked) {
-      found_linked(k, c, Rgb(1.0f), joint_);
+    if (o.stage == OffsetStage::Deeper) {
+      pair(k, c, o.state.throughput * c.tail, o.ratio);
+    } else if (o.stage == OffsetStage::Linked) {
+      found_linked(k, c, Rgb(1.0f), joint_ && !o.mixed);  // as for light samples there
     } else if (o.stage == OffsetStage::Pending) {
       const Rgb emission = o.link.open ? linked_emission(o, vertex) : Rgb(0.0f);
       if (is_black(emission)) {

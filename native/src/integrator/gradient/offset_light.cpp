@@ -79,10 +79,18 @@ void OffsetPaths::light_own(int k, const LightSample& sample, ScatterClass scatt
   pair(k, c, value, o.ratio * copy_jacobian(sample.point, sample.view, view) * pdf / base_pdf);
 }
 
+// Whether light that reaches the base's vertex does so for a path that came there through so many transparent surfaces.
+bool OffsetPaths::is_lit(const Vertex& vertex, const LightSample& sample, uint32_t transparent_depth) const {
+  if (!context_.scene.features.has_transparent_shadows || transparent_depth <= base_state_.ray.state.transparent_depth) {
+    return true;
+  }
+  return !is_black(light_transmittance(context_, vertex.point, sample.point, sample.view, transparent_depth));
+}
+
 // At the shared vertex, seen from the offset's last one: emitter, shadow and p_n are those of the base.
 void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
   OffsetPath& o = offsets_[k];
-  if (!o.link.open || !(glm::dot(vertex.facing_normal(), o.linked->wo) > 0.0f)) {
+  if (!o.link.open || !(glm::dot(vertex.facing_normal(), o.linked->wo) > 0.0f) || !is_lit(vertex, sample, o.link.transparent_depth)) {
     alone(k, c);
     return;
   }
@@ -117,6 +125,13 @@ void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, Scatter
       light_linked(k, vertex, sample, scatter_class, c);
     } else if (o.stage == OffsetStage::Traced) {
       light_own(k, sample, scatter_class, c);
+    } else if (o.stage == OffsetStage::Deeper) {
+      if (is_lit(vertex, sample, o.state.ray.state.transparent_depth)) {
+        pair(k, c, o.state.throughput * c.tail, o.ratio);
+      } else {
+        ++counters_.fail_occluded;
+        alone(k, c);
+      }
     }
   }
 }

@@ -177,6 +177,11 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
     return;
   }
   part_by_class(vertex, u);
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Deeper) {
+      o.state.throughput *= event.factor;
+    }
+  }
   if (!any(OffsetStage::Pending)) {
     return;
   }

@@ -103,13 +103,19 @@ void OffsetPaths::settle(OffsetPath* o, OffsetStage stage) {
   }
 }
 
-// All that comes is shared.
+// All that comes is shared, but for the limit of transparent surfaces.
 void OffsetPaths::join(OffsetPath* o) {
-  if (o->ratio > 0.0f && is_finite(o->ratio)) {
-    settle(o, OffsetStage::Shared);
-  } else {
+  if (!(o->ratio > 0.0f) || !is_finite(o->ratio)) {
     fail(o, ShiftFailure::Jacobian);
+  } else if (o->state.ray.state.transparent_depth > base_state_.ray.state.transparent_depth) {
+    o->stage = OffsetStage::Deeper;
+  } else {
+    settle(o, OffsetStage::Shared);
   }
+}
+
+bool OffsetPaths::passes(const OffsetPath& o, int crossed) const {
+  return crossed == 0 || uint32_t(o.state.ray.state.transparent_depth) + uint32_t(crossed) <= context_.settings.transparent_max_bounces;
 }
 
 void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
@@ -186,21 +192,20 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
 // back.
 void OffsetPaths::passed(const Segment& segment) {
   scale(segment.weight);
-  if (open_ == 0 && segment.crossed == 0) {
+  if (open_ == 0) {
     return;
   }
   for (OffsetPath& o : offsets_) {
-    if (o.stage != OffsetStage::Linked && o.stage != OffsetStage::Shared) {
+    if (o.stage != OffsetStage::Linked && o.stage != OffsetStage::Deeper) {
       continue;
     }
-    if (o.stage == OffsetStage::Linked) {
-      o.state.throughput *= segment.weight;
+    if (!passes(o, segment.crossed)) {
+      fail(&o, ShiftFailure::Occluded);
+      continue;
     }
+    o.state.throughput *= segment.weight;
     uint16_t& depth = o.state.ray.state.transparent_depth;
     depth = static_cast<uint16_t>(depth + segment.crossed);
-    if (segment.crossed > 0 && depth > context_.settings.transparent_max_bounces) {
-      fail(&o, ShiftFailure::Occluded);
-    }
   }
 }
 
@@ -215,6 +220,8 @@ void OffsetPaths::survived(float probability, const Vertex& vertex) {
     if (o.stage == OffsetStage::Pending) {
       o.state.throughput *= factor;
       o.link.throughput *= factor;  // a connection that emission already asked for
+    } else if (o.stage == OffsetStage::Deeper) {
+      o.state.throughput *= factor;
     } else if (o.stage == OffsetStage::Traced) {
       o.state.throughput *= factor;
       shade_vertex(context_, o.state.ray.state, o.here);

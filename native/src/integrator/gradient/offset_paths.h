@@ -46,6 +46,8 @@ class OffsetPaths {
   void collect(const Contribution& c, const Rgb& weight);
   void scale(const Rgb& factor);
   void tell_settled();
+  // A path that shares a segment passes so many of its surfaces, as the base did.
+  bool passes(const OffsetPath& offset, int crossed) const;
   void settle(OffsetPath* offset, OffsetStage stage);
   void join(OffsetPath* offset);
   void fail(OffsetPath* offset, ShiftFailure cause);
@@ -95,6 +97,7 @@ class OffsetPaths {
   Radiance see_once(OffsetPath* offset) const;
   void light_all(const LightSample& sample, ScatterClass scatter_class);
   void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
+  bool is_lit(const Vertex& vertex, const LightSample& sample, uint32_t transparent_depth) const;
   void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void found_linked(int k, const Contribution& c, const Rgb& weight, bool joint);
   void copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,

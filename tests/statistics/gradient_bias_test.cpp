@@ -1,0 +1,93 @@
+// Differences of two pixels that were wrong in the mean, each for a reason of its own.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+using test::Surface;
+
+// The sampled difference against that of the images, over renders of two pixels.
+void check_difference(PathScene* scene, GradusSettings settings, uint32_t samples) {
+  constexpr int renders = 300;
+  test::sample_at_pixel_centres(&settings);
+  IntegratorContext context = scene->context(settings);
+  double sum = 0.0, squares = 0.0;
+  for (uint32_t seed = 0; seed < renders; ++seed) {
+    context.settings.seed = seed;
+    Frame frame = test::make_test_frame(context.settings, true);
+    test::sample_frame(*make_gradient_integrator(context), 0, samples, &frame);
+    const GradientImages images = read_images(frame, 0, false);
+    const double off = images.dx[0] - (double(images.primal[3]) - double(images.primal[0]));
+    sum += off;
+    squares += off * off;
+  }
+  const double mean = sum / renders, error = std::sqrt((squares / renders - mean * mean) / renders);
+  std::printf("  off by %.4g ± %.2g\n", mean, error);
+  EXPECT_GT(error, 0.0);
+  EXPECT_LT(std::fabs(mean), 4.0 * error);
+}
+
+// Where the classes of base and offset differ, light samples behind the vertex they share next were paired by themselves, and BSDF samples
+// that met the same emitter by the density of both techniques.
+TEST(B7_EdgeOfAMirror, EmittersBehindTheNextVertexAreWeighedAlikeByBothTechniques) {
+  PathScene scene;
+  Surface left = test::matte(Rgb(0.8f)), right = left, metal, light;
+  right.glossy = Rgb(0.3f);
+  metal.glossy = Rgb(0.9f);
+  metal.glossy_roughness = 0.34f;
+  light.emission = Rgb(10.0f);
+  scene.quad(Vec3(-1, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2), scene.material(left));
+  scene.quad(Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2), scene.material(right));
+  scene.quad(Vec3(-3, 1, -3), Vec3(6, 0, 0), Vec3(0, 0, 6), scene.material(metal));
+  scene.quad(Vec3(-3.2f, -0.1f, -1), Vec3(2, 0, 0), Vec3(0, 0, 2), scene.material(light));
+  scene.camera(Vec3(0, 0.9f, 0), Vec3(0), 1.0f);
+  GradusSettings settings = test::test_settings(2, 1);
+  settings.max_bounces = 1;
+  check_difference(&scene, settings, 1024);
+}
+
+// A floor whose left half is seen through a veil, below another one; light from above that one.
+void add_veiled_floor(PathScene* scene) {
+  Surface veil = test::matte(Rgb(0.05f));
+  veil.transparent = 0.9f;
+  const uint64_t wall = scene->material(test::matte(Rgb(0.8f))), veils = scene->material(veil);
+  scene->quad(Vec3(-1, 0, 1), Vec3(2, 0, 0), Vec3(0, 0, -2), wall);
+  scene->quad(Vec3(-1, 0, -1), Vec3(2, 0, 0), Vec3(0, 1.5f, 0), wall);
+  scene->quad(Vec3(-1, 0.05f, 0.3f), Vec3(1, 0, 0), Vec3(0, 0.8f, 0), veils);
+  scene->quad(Vec3(-1, 1.3f, -1), Vec3(2, 0, 0), Vec3(0, 0, 2), veils);
+  scene->camera(Vec3(0, 0.4f, 1.2f), Vec3(0), 0.3f);
+}
+
+GradusSettings one_veil_only() {
+  GradusSettings settings = test::test_settings(2, 1);
+  settings.max_bounces = 2;
+  settings.transparent_max_bounces = 1;
+  return settings;
+}
+
+// A path that came through the first veil gets no light through the second; its pair was given that of its base.
+TEST(B7_LimitOfTransparentSurfaces, CountsForTheLightOfSharedVertices) {
+  PathScene scene;
+  add_veiled_floor(&scene);
+  Surface light;
+  light.emission = Rgb(10.0f);
+  scene.quad(Vec3(-1, 1.5f, -0.5f), Vec3(2, 0, 0), Vec3(0, 0, 1), scene.material(light));
+  check_difference(&scene, one_veil_only(), 512);
+}
+
+TEST(B7_LimitOfTransparentSurfaces, CountsForLampsThatSharedRaysMeet) {
+  PathScene scene;
+  add_veiled_floor(&scene);
+  GradusLight ball = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 1.8f, 0)), Rgb(1.0f));
+  ball.radius = 0.4f;
+  scene.light(ball);
+  check_difference(&scene, one_veil_only(), 512);
+}
+
+}  // namespace
+}  // namespace gradus
