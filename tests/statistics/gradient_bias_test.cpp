@@ -21,7 +21,7 @@ void check_difference(PathScene* scene, GradusSettings settings, uint32_t sample
     context.settings.seed = seed;
     Frame frame = test::make_test_frame(context.settings, true);
     test::sample_frame(*make_gradient_integrator(context), 0, samples, &frame);
-    const GradientImages images = read_images(frame, 0, false);
+    const GradientImages images = read_images(frame, 0);
     const double off = images.dx[0] - (double(images.primal[3]) - double(images.primal[0]));
     sum += off;
     squares += off * off;
