@@ -36,6 +36,7 @@ MODES = {
     "gradient-weighted": Mode("Gradus G-PT + WEIGHTED", GRADUS, _gradus("GRADIENT", "WEIGHTED")),
     "gradient-l1": Mode("Gradus G-PT + L1", GRADUS, _gradus("GRADIENT", "L1")),
     "auto": Mode("Gradus AUTO", GRADUS, _gradus("AUTO", "AUTO")),
+    "auto-l2": Mode("Gradus AUTO + L2", GRADUS, _gradus("AUTO", "L2")),
     "cycles": Mode("Cycles", CYCLES, _CYCLES_PLAIN),
     "cycles-denoised": Mode("Cycles + denoiser", CYCLES, _CYCLES_PLAIN | _DENOISER),
     "cycles-shipped": Mode("Cycles as shipped", CYCLES),
