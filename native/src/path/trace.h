@@ -93,7 +93,7 @@ class PathTracer {
     for (bool goes_on = true; goes_on;) {
       if (sees_lights_alone()) {
         counters_.rays_bounce += trace_to_lights(context_, state_.ray, &s_.segment) ? 1 : 0;
-        step(sampler, RaySource{from, &s_.event}, &s_.vertices[0]);
+        see_end(sampler, RaySource{from, &s_.event});
         return;
       }
       Vertex* vertex = from == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
@@ -121,6 +121,13 @@ class PathTracer {
     const bool goes_on = see(sampler, source, *vertex);
     observer_.seen();
     return goes_on && !state_.emission_only && light_and_leave(sampler, vertex);
+  }
+
+  // What a segment shows whose surface nobody asks for.
+  void see_end(const Sampler& sampler, const RaySource& source) {
+    observer_.arrive(source, state_, *segment_, s_.vertices[0]);
+    see(sampler, source, s_.vertices[0]);
+    observer_.seen();
   }
 
   // False: the path has ended.
