@@ -302,7 +302,7 @@ TEST(Loop, NoisyImageThatThePilotLeavesIsUnbiased) {
   GradusSettings settings = small_settings(64, 64, 8);
   settings.integrator = GRADUS_INTEGRATOR_AUTO;
   settings.reconstruction = GRADUS_RECONSTRUCTION_AUTO;
-  auto render = start(settings, fake_factory([](FakeIntegrator*) {}));
+  auto render = start(settings, fake_factory([](FakeIntegrator* fake) { fake->noise = 0.0f; }));
   ASSERT_TRUE(render->wait(20.0));
   const auto stats = nlohmann::json::parse(render->stats_json());
   EXPECT_EQ(stats["reconstruction"], "none");
