@@ -9,9 +9,9 @@ namespace {
 // The integrands are smooth but for α near 0, where little of a spectrum is.
 constexpr int kSteps = 128;
 
-double product(const Radiance& a, const Radiance& b) { return (double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z) / 3.0; }
-
 }  // namespace
+
+double mean_product(const Radiance& a, const Radiance& b) { return (double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z) / 3.0; }
 
 L2Noise::L2Noise(double alpha) {
   for (int j = 0; j < kSteps; ++j) {
@@ -32,10 +32,10 @@ L2Noise::L2Noise(double alpha) {
 
 double L2Noise::of(const Radiance& pixel, const std::array<Radiance, kOffsets>& d) const {
   const Radiance across = d[kRight] + d[kLeft], along = d[kUp] + d[kDown];
-  double sum = pixel_ * product(pixel, pixel) + 2.0 * mixed_ * product(pixel, across + along);
-  for (const Radiance& difference : d) sum += same_ * product(difference, difference);
-  sum += 2.0 * right_angle_ * product(across, along);
-  sum += 2.0 * opposite_ * (product(d[kRight], d[kLeft]) + product(d[kUp], d[kDown]));
+  double sum = pixel_ * mean_product(pixel, pixel) + 2.0 * mixed_ * mean_product(pixel, across + along);
+  for (const Radiance& difference : d) sum += same_ * mean_product(difference, difference);
+  sum += 2.0 * right_angle_ * mean_product(across, along);
+  sum += 2.0 * opposite_ * (mean_product(d[kRight], d[kLeft]) + mean_product(d[kUp], d[kDown]));
   return sum;
 }
 

@@ -14,6 +14,9 @@
 
 namespace gradus {
 
+// Mean over RGB of the products.
+double mean_product(const Radiance& a, const Radiance& b);
+
 class L2Noise {
  public:
   explicit L2Noise(double alpha);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 
 #include "base/fpu.h"
 #include "frame/cells.h"
@@ -47,11 +48,12 @@ std::vector<size_t> pixels_of(const Region& square, const Frame& frame, uint32_t
   return pixels;
 }
 
-double deviation(const Radiance& d) { return std::sqrt((double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z) / 3.0); }
+double deviation(const Radiance& d) { return std::sqrt(mean_product(d, d)); }
 double gray(const Radiance& c) { return (double(c.x) + c.y + c.z) / 3.0; }
 
 // The pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are alike: √2.
-void add_pixel(const Frame& frame, size_t pixel, const L2Noise& l2, PilotSums* sums) {
+// l2: where it will run.
+void add_pixel(const Frame& frame, size_t pixel, const std::optional<L2Noise>& l2, PilotSums* sums) {
   const ComponentPlanes& planes = frame.components[0];
   const Radiance spread = planes.primal[0][pixel] - planes.primal[1][pixel];
   std::array<Radiance, kOffsets> spreads;
@@ -66,7 +68,7 @@ void add_pixel(const Frame& frame, size_t pixel, const L2Noise& l2, PilotSums* s
   sums->brightness += 0.5 * gray(planes.primal[0][pixel] + planes.primal[1][pixel]);
   sums->pixel_deviation += deviation(spread);
   sums->pixel_root += std::sqrt(deviation(spread));
-  sums->l2_root += std::sqrt(std::sqrt(std::max(l2.of(spread, spreads), 0.0)));
+  if (l2) sums->l2_root += std::sqrt(std::sqrt(std::max(l2->of(spread, spreads), 0.0)));
 }
 
 // Whole squares but for the frame's border: all that touch the region.
@@ -87,18 +89,21 @@ std::vector<PilotSums> spread_out(const CellGrid& squares, std::vector<PilotSums
   return sums;
 }
 
+Benefit benefit_of(const PilotSums& sums, bool is_l2) { return is_l2 ? estimate_benefit_for_l2(sums) : estimate_benefit(sums); }
+
 // Which squares are to have differences. L2 has one error for the picture, and outliers in one part of it outweigh all else; where rows go
 // by their noise every part is for itself.
 std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& sums, bool is_l2) {
-  std::vector<bool> chosen;
   std::vector<Benefit> benefits;
-  std::vector<double> pixels;
-  for (const PilotSums& around : spread_out(squares, sums)) {
-    benefits.push_back(is_l2 ? estimate_benefit_for_l2(around) : estimate_benefit(around));
-    chosen.push_back(benefits.back().pays());
+  for (const PilotSums& around : spread_out(squares, sums)) benefits.push_back(benefit_of(around, is_l2));
+  if (is_l2) {
+    std::vector<double> pixels;
+    for (const Region& square : squares.cells) pixels.push_back(double(square.area()));
+    return choose_parts(benefits, pixels);
   }
-  for (const Region& square : squares.cells) pixels.push_back(double(square.area()));
-  return is_l2 ? choose_parts(benefits, pixels) : chosen;
+  std::vector<bool> chosen;
+  for (const Benefit& benefit : benefits) chosen.push_back(benefit.pays());
+  return chosen;
 }
 
 }  // namespace
@@ -118,7 +123,8 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   // Squares at the region's border are judged by those beyond, too; L2's by all.
   const CellGrid squares(is_l2 ? full : grown_to_squares(grown(region, 2 * kSquare, full), full), kSquare);
-  const L2Noise l2(chosen_alpha(GRADUS_RECONSTRUCTION_L2, settings.reconstruction_alpha));
+  std::optional<L2Noise> l2;
+  if (is_l2) l2.emplace(chosen_alpha(reconstruction, settings.reconstruction_alpha));
   std::vector<PilotSums> sums(squares.cells.size());
   tbb::parallel_for(size_t{0}, sums.size(), [&](size_t i) {
     const FlushDenormals flush;
@@ -153,7 +159,7 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
     kept += part.area();
   }
   map.share = double(kept) / double(region.area());
-  map.benefit = is_l2 ? estimate_benefit_for_l2(total) : estimate_benefit(total);
+  map.benefit = benefit_of(total, is_l2);
   return map;
 }
 

@@ -123,7 +123,7 @@ void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint&
 void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, bool joint) {
   const OffsetPath& o = offsets_[k];
   joint = joint && reconnects(base_event_.scatter_class);  // light samples of sharp classes know nothing of shared directions
-  if (!(c.pdf_light > 0.0f)) {
+  if (o.stage == OffsetStage::Deeper || !(c.pdf_light > 0.0f)) {
     pair(k, c, o.state.throughput * weight * c.tail, o.ratio);
     return;
   }
@@ -145,11 +145,9 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
     if (o.fresh) {
       continue;
     }
-    if ((o.stage == OffsetStage::Linked || o.stage == OffsetStage::Deeper) && !passes(o, lamp.crossed)) {
+    if (is_beside(o.stage) && !passes(o, lamp.crossed)) {
       alone(k, c);
-    } else if (o.stage == OffsetStage::Deeper) {
-      pair(k, c, o.state.throughput * lamp.weight * c.tail, o.ratio);
-    } else if (o.stage == OffsetStage::Linked) {
+    } else if (is_beside(o.stage)) {
       found_linked(k, c, lamp.weight, joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
@@ -173,9 +171,7 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Deeper) {
-      pair(k, c, o.state.throughput * c.tail, o.ratio);
-    } else if (o.stage == OffsetStage::Linked) {
+    if (is_beside(o.stage)) {
       found_linked(k, c, Rgb(1.0f), joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       // The same direction, so the same radiance.
@@ -202,9 +198,7 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
     if (o.fresh) {
       continue;
     }
-    if (o.stage == OffsetStage::Deeper) {
-      pair(k, c, o.state.throughput * c.tail, o.ratio);
-    } else if (o.stage == OffsetStage::Linked) {
+    if (is_beside(o.stage)) {
       found_linked(k, c, Rgb(1.0f), joint_ && !o.mixed);  // as for light samples there
     } else if (o.stage == OffsetStage::Pending) {
       const Rgb emission = o.link.open ? linked_emission(o, vertex) : Rgb(0.0f);

@@ -31,6 +31,8 @@ enum class OffsetStage : uint8_t {
   Dead,    // throughput and ratio 0: the shift failed, base contributions count alone
 };
 inline bool is_settled(OffsetStage stage) { return stage >= OffsetStage::Shared; }
+// Goes along the base's segment, but each contribution is weighed for it.
+inline bool is_beside(OffsetStage stage) { return stage == OffsetStage::Linked || stage == OffsetStage::Deeper; }
 
 // What the base has found since settled offsets were last told. All of it lies behind what they share, so that one pair does for it.
 struct Suffix {

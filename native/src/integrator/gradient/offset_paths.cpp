@@ -196,7 +196,7 @@ void OffsetPaths::passed(const Segment& segment) {
     return;
   }
   for (OffsetPath& o : offsets_) {
-    if (o.stage != OffsetStage::Linked && o.stage != OffsetStage::Deeper) {
+    if (!is_beside(o.stage)) {
       continue;
     }
     if (!passes(o, segment.crossed)) {
@@ -217,13 +217,13 @@ void OffsetPaths::survived(float probability, const Vertex& vertex) {
     return;
   }
   for (OffsetPath& o : offsets_) {
+    if (is_settled(o.stage)) {
+      continue;  // told by the suffix
+    }
+    o.state.throughput *= factor;
     if (o.stage == OffsetStage::Pending) {
-      o.state.throughput *= factor;
       o.link.throughput *= factor;  // a connection that emission already asked for
-    } else if (o.stage == OffsetStage::Deeper) {
-      o.state.throughput *= factor;
     } else if (o.stage == OffsetStage::Traced) {
-      o.state.throughput *= factor;
       shade_vertex(context_, o.state.ray.state, o.here);
       o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);
     }

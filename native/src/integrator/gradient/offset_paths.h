@@ -8,9 +8,6 @@
 
 namespace gradus {
 
-// In the place of a packet's ray that is not wanted: it is empty.
-inline constexpr Ray kNoRay{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
-
 class OffsetPaths {
  public:
   // vertices: of the cell that is being sampled.
