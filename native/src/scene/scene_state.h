@@ -29,6 +29,9 @@ struct LoadedImage {
   std::shared_ptr<const Image> image;  // null: to be loaded by the next commit
 };
 
+// Image key -> pixels.
+using StoredImages = std::map<uint64_t, std::shared_ptr<const Image>>;
+
 struct MaterialData;
 
 struct CompiledMaterial {
@@ -55,7 +58,7 @@ struct Scene::State {
   // Results of the last commit that the next may take over.
   std::shared_ptr<const Snapshot> current;
   std::shared_ptr<const ImageStore> image_store;
-  std::vector<uint64_t> stored_images;
+  StoredImages stored_images;  // in image_store
   std::map<uint64_t, CompiledMaterial> compiled;
   std::shared_ptr<const Accelerator> accelerator;
   uint64_t geometry_key = 0;  // of `accelerator`

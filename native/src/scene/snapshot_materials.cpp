@@ -12,8 +12,8 @@ namespace gradus {
 
 namespace {
 
-// Decodes what is new, several at once. True if any was.
-bool load_new_images(Device& device, Scene::State* state, const CommitMonitor& monitor) {
+// Decodes what is new, several at once.
+void load_new_images(Device& device, Scene::State* state, const CommitMonitor& monitor) {
   std::vector<LoadedImage*> pending;
   for (auto& [key, image] : state->images)
     if (!image.image) pending.push_back(&image);
@@ -21,7 +21,6 @@ bool load_new_images(Device& device, Scene::State* state, const CommitMonitor& m
     if (monitor.go_on()) pending[i]->image = load_image(pending[i]->source, device.color());
   });
   monitor.check();
-  return !pending.empty();
 }
 
 // A material that does not compile costs itself, not the frame.
@@ -35,22 +34,23 @@ CompiledMaterial compile(const std::shared_ptr<const MaterialSource>& source, co
   }
 }
 
-std::vector<uint64_t> image_keys(const Scene::State& state) {
-  std::vector<uint64_t> keys;
-  for (const auto& entry : state.images) keys.push_back(entry.first);
-  return keys;
+StoredImages loaded_images(const Scene::State& state) {
+  StoredImages images;
+  for (const auto& [key, image] : state.images) images.emplace_hint(images.end(), key, image.image);
+  return images;
 }
 
 }  // namespace
 
 void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
-  const bool loaded = load_new_images(device, state, monitor);
-  const std::vector<uint64_t> keys = image_keys(*state);
-  if (loaded || !state->image_store || keys != state->stored_images) {
+  load_new_images(device, state, monitor);
+  StoredImages images = loaded_images(*state);
+  // Not by what was loaded just now: a commit that was cancelled may have loaded it.
+  if (!state->image_store || images != state->stored_images) {
     auto store = std::make_shared<ImageStore>();
-    for (const auto& [key, image] : state->images) store->add(key, image.image);
+    for (const auto& [key, image] : images) store->add(key, image);
     state->image_store = std::move(store);
-    state->stored_images = keys;
+    state->stored_images = std::move(images);
     // A program may have been folded with what an image holds.
     state->compiled.clear();
   }
