@@ -185,22 +185,34 @@ ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const st
   return tile;
 }
 
-void measure_tile(const ImageTile& tile, Rgb* mean, bool* has_alpha) {
+Rgb mean_color(const ImageTile& tile) {
   const uint64_t count = static_cast<uint64_t>(tile.width) * tile.height;
   // An odd step, so that it does not meet the same columns in each row.
   const uint64_t step = (count >> 20) | 1u;
   double sum[3] = {0.0, 0.0, 0.0};
   uint64_t n = 0;
-  *has_alpha = false;
   for (uint64_t i = 0; i < count; i += step, n++) {
     const Vec4 v = decode_texel(tile, tile.texel(static_cast<uint32_t>(i % tile.width), static_cast<uint32_t>(i / tile.width)));
     sum[0] += static_cast<double>(v.x);
     sum[1] += static_cast<double>(v.y);
     sum[2] += static_cast<double>(v.z);
-    *has_alpha = *has_alpha || v.w < 1.0f;
   }
   const double scale = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  *mean = Rgb(static_cast<float>(sum[0] * scale), static_cast<float>(sum[1] * scale), static_cast<float>(sum[2] * scale));
+  return {static_cast<float>(sum[0] * scale), static_cast<float>(sum[1] * scale), static_cast<float>(sum[2] * scale)};
+}
+
+bool has_transparency(const ImageTile& tile) {
+  if (!has_alpha_channel(tile.channels)) {
+    return false;
+  }
+  for (uint32_t y = 0; y < tile.height; y++) {
+    for (uint32_t x = 0; x < tile.width; x++) {
+      if (tile.texel(x, y).w < 1.0f) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace gradus

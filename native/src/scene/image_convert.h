@@ -13,7 +13,9 @@ class ColorManager;
 // is not associated yet becomes so if `associate`.
 ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool associate);
 
-// Mean colour over at most about a million texels, and whether some alpha is below 1.
-void measure_tile(const ImageTile& tile, Rgb* mean, bool* has_alpha);
+// Mean colour over at most about a million texels.
+Rgb mean_color(const ImageTile& tile);
+// Whether the alpha of any texel is below 1: all are looked at, for a material may be taken for opaque by it.
+bool has_transparency(const ImageTile& tile);
 
 }  // namespace gradus

@@ -54,9 +54,8 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
     if (decode_tile(tile, &decoded, &problem)) {
       problem = decoded.warning;
       stored = convert_tile(std::move(decoded), color, source.color_space, source.alpha_mode == GRADUS_ALPHA_STRAIGHT);
-      bool has_alpha = false;
-      measure_tile(stored, &mean, &has_alpha);
-      image->has_alpha = image->has_alpha || (has_alpha && !image->ignores_alpha);
+      mean = mean_color(stored);
+      image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
     }
     if (!problem.empty()) {
       image->warnings.push_back(describe(source, tile, problem));

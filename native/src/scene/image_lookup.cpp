@@ -34,6 +34,9 @@ class SrgbTable {
   std::array<float, 1026> values_;
 };
 
+// Beyond this a clipped image is empty, whatever its size: cubic weights reach two texels out.
+constexpr float kEmpty = 3.0f;
+
 // One axis: brings any coordinate close to 0…1 without changing what it means, then texel numbers into the image.
 float reduce(float u, Extension extension) {
   if (!is_finite(u)) {
@@ -44,6 +47,8 @@ float reduce(float u, Extension extension) {
       return u - std::floor(u);
     case Extension::Mirror:
       return u - 2.0f * std::floor(0.5f * u);
+    case Extension::Clip:
+      return std::clamp(u, -kEmpty, 1.0f + kEmpty);
     default:
       return std::clamp(u, 0.0f, 1.0f);
   }
@@ -77,25 +82,41 @@ struct Taps {
   std::array<float, N> weight;
 };
 
+// The texels from number `first` on. Around a clipped image lies nothing: interpolation fades its border, as in Cycles.
+template <int N>
+Taps<N> make_taps(int first, const std::array<float, N>& weight, uint32_t size, Extension extension) {
+  Taps<N> taps{{}, weight};
+  for (int k = 0; k < N; k++) {
+    taps.texel[size_t(k)] = wrap(first + k, size, extension);
+    if (extension == Extension::Clip && (first + k < 0 || first + k >= static_cast<int>(size))) {
+      taps.weight[size_t(k)] = 0.0f;
+    }
+  }
+  return taps;
+}
+
+Taps<1> closest_taps(float u, uint32_t size, Extension extension) {
+  return make_taps<1>(static_cast<int>(std::floor(u * static_cast<float>(size))), {1.0f}, size, extension);
+}
+
 Taps<2> linear_taps(float u, uint32_t size, Extension extension) {
   const float x = u * static_cast<float>(size) - 0.5f;
   const float first = std::floor(x);
-  const int i = static_cast<int>(first);
   const float t = x - first;
-  return {{wrap(i, size, extension), wrap(i + 1, size, extension)}, {1.0f - t, t}};
+  return make_taps<2>(static_cast<int>(first), {1.0f - t, t}, size, extension);
 }
 
 // Uniform cubic B-spline: smooth, and not interpolating, as in Cycles.
 Taps<4> cubic_taps(float u, uint32_t size, Extension extension) {
   const float x = u * static_cast<float>(size) - 0.5f;
   const float first = std::floor(x);
-  const int i = static_cast<int>(first);
   const float t = x - first;
   const float t2 = t * t;
   const float t3 = t2 * t;
-  const std::array<float, 4> weight = {(1.0f - 3.0f * t + 3.0f * t2 - t3) / 6.0f, (4.0f - 6.0f * t2 + 3.0f * t3) / 6.0f,
-                                       (1.0f + 3.0f * t + 3.0f * t2 - 3.0f * t3) / 6.0f, t3 / 6.0f};
-  return {{wrap(i - 1, size, extension), wrap(i, size, extension), wrap(i + 1, size, extension), wrap(i + 2, size, extension)}, weight};
+  return make_taps<4>(static_cast<int>(first) - 1,
+                      {(1.0f - 3.0f * t + 3.0f * t2 - t3) / 6.0f, (4.0f - 6.0f * t2 + 3.0f * t3) / 6.0f,
+                       (1.0f + 3.0f * t + 3.0f * t2 - 3.0f * t3) / 6.0f, t3 / 6.0f},
+                      size, extension);
 }
 
 template <int N>
@@ -116,8 +137,7 @@ Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolat
   const float v = reduce(uv.y, extension);
   switch (interpolation) {
     case Interpolation::Closest:
-      return tile.texel(wrap(static_cast<int>(u * static_cast<float>(tile.width)), tile.width, extension),
-                        wrap(static_cast<int>(v * static_cast<float>(tile.height)), tile.height, extension));
+      return gather(tile, closest_taps(u, tile.width, extension), closest_taps(v, tile.height, extension));
     case Interpolation::Cubic:
       return gather(tile, cubic_taps(u, tile.width, extension), cubic_taps(v, tile.height, extension));
     default:
@@ -160,10 +180,6 @@ Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolat
   const ImageTile* tile = find_tile(image, &local);
   if (tile == nullptr || tile->width == 0) {
     return kMissing;
-  }
-  const bool outside = local.x < 0.0f || local.y < 0.0f || local.x > 1.0f || local.y > 1.0f;
-  if (extension == Extension::Clip && outside) {
-    return Vec4(0.0f);
   }
   Vec4 value = interpolate(*tile, local, interpolation, extension);
   if (image.ignores_alpha) {

@@ -60,6 +60,23 @@ TEST(ImageLookup, Linear) {
   EXPECT_NEAR(at(0.0f, Extension::Mirror), 0.0f, 1e-6f);
 }
 
+// Clipped images ended at once where Cycles lets interpolation reach into the emptiness around them.
+TEST(ImageLookup, BordersOfClippedImagesFade) {
+  const StoredImage image = store_source(rgba_source({255, 255, 255, 255}, GRADUS_ALPHA_STRAIGHT, "Non-Color"));
+  const auto at = [&](float u, Interpolation i) { return image.at(u, 0.5f, i, Extension::Clip); };
+  EXPECT_EQ(at(0.5f, Interpolation::Linear), Vec4(1.0f));
+  EXPECT_EQ(at(0.0f, Interpolation::Linear), Vec4(0.5f));
+  EXPECT_EQ(at(-0.25f, Interpolation::Linear), Vec4(0.25f));
+  EXPECT_EQ(at(1.25f, Interpolation::Linear), Vec4(0.25f));
+  EXPECT_EQ(at(1.5f, Interpolation::Linear), Vec4(0.0f));
+  const float middle = 4.0f / 6.0f;
+  EXPECT_NEAR(at(0.5f, Interpolation::Cubic).w, middle * middle, 1e-6f);
+  EXPECT_NEAR(at(1.5f, Interpolation::Cubic).w, middle / 6.0f, 1e-6f);
+  EXPECT_EQ(at(0.0f, Interpolation::Closest), Vec4(1.0f));
+  EXPECT_EQ(at(-0.01f, Interpolation::Closest), Vec4(0.0f));
+  EXPECT_EQ(at(1e9f, Interpolation::Linear), Vec4(0.0f));
+}
+
 TEST(ImageLookup, CubicWeightsSumToOne) {
   const StoredImage image = black_and_white();
   for (float u = -1.0f; u < 2.0f; u += 0.1f) {
@@ -107,6 +124,20 @@ TEST(ImageLookup, AlphaModes) {
   EXPECT_NEAR(at(GRADUS_ALPHA_CHANNEL_PACKED, false).x, 1.0f, 1e-6f);
   EXPECT_NEAR(at(GRADUS_ALPHA_CHANNEL_PACKED, false).w, a, 1e-6f);
   EXPECT_EQ(at(GRADUS_ALPHA_NONE, false), Vec4(1, 0, 0, 1));
+}
+
+// Of a large image every seventh texel and so on was looked at: a small hole was missed, and the material taken for opaque.
+TEST(ImageLookup, OneTransparentTexelOfALargeImageCounts) {
+  constexpr uint32_t kSide = 2048;
+  std::vector<uint8_t> pixels(size_t{kSide} * kSide * 4, 255);
+  ImageSource source = rgba_source({255, 255, 255, 255}, GRADUS_ALPHA_STRAIGHT, "Non-Color");
+  source.tiles[0].width = source.tiles[0].height = kSide;
+  source.tiles[0].data = pixels;
+  const StoredImage opaque = store_source(source);
+  EXPECT_FALSE(opaque.store.has_alpha(opaque.index));
+  source.tiles[0].data[4 * 7 + 3] = 254;
+  const StoredImage holed = store_source(source);
+  EXPECT_TRUE(holed.store.has_alpha(holed.index));
 }
 
 TEST(ImageLookup, FloatPixelsBottomRowFirst) {
