@@ -59,6 +59,17 @@ def normal_colors(graph: Graph) -> bpy.types.NodeSocket:
     return graph("MixRGB", "Color", {"Fac": 0.25, "Color1": (0.5, 0.5, 1.0, 1.0), "Color2": image})
 
 
+def coarse_image() -> bpy.types.Image:
+    image = bpy.data.images.new("coarse", 3, 3, alpha=True, float_buffer=True)
+    image.pixels.foreach_set(np.linspace(0.3, 1.0, 36, dtype=np.float32))
+    return image
+
+
+def beyond_borders(graph: Graph) -> bpy.types.NodeSocket:
+    """UV from -0.5 to 1.5."""
+    return graph("Mapping", "Vector", {"Vector": graph("TexCoord", "UV"), "Location": (-0.5, -0.5, 0.0), "Scale": (2.0, 2.0, 1.0)})
+
+
 CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
     "generated": lambda g: g("TexCoord", "Generated"),
     "normal": lambda g: g("TexCoord", "Normal"),
@@ -93,18 +104,25 @@ CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
     "normal map": lambda g: g("NormalMap", "Normal", {"Color": normal_colors(g)}),
     "bump": lambda g: g("Bump", "Normal", {"Distance": 0.2, "Height": g("TexNoise", "Fac", {"Vector": g.place(), "Scale": 2.0})}),
     "tangent uv": lambda g: g("Tangent", "Tangent", direction_type="UV_MAP"),
+    "image clipped": lambda g: g("TexImage", "Color", {"Vector": beyond_borders(g)}, image=coarse_image(), extension="CLIP"),
+    "image clipped, cubic": lambda g: g(
+        "TexImage", "Alpha", {"Vector": beyond_borders(g)}, image=coarse_image(), extension="CLIP", interpolation="Cubic"
+    ),
+    "candle": lambda g: g("Blackbody", "Color", {"Temperature": 1500.0}),
+    "blue sky": lambda g: g("Blackbody", "Color", {"Temperature": 20000.0}),
 }
 
 
 @pytest.fixture(scope="module")
 def stage() -> bpy.types.Scene:
-    """A smooth sphere and a turned cube before a grey world."""
+    """A smooth sphere and a turned cube of uneven scale before a grey world."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)
     bpy.ops.mesh.primitive_uv_sphere_add(location=(-1.2, 0.0, 0.0))
     bpy.ops.object.shade_smooth()
     bpy.ops.mesh.primitive_cube_add(size=1.5, location=(1.2, 0.2, 0.0), rotation=(0.3, 0.2, 0.5))
+    bpy.context.object.scale = (1.3, 1.0, 0.6)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location, camera.rotation_euler = (0.5, -6.0, 1.5), (1.33, 0.0, 0.08)
     scene.collection.objects.link(camera)

@@ -9,6 +9,7 @@ from .program import FLOAT, VECTOR, Value
 from .registry import translator
 
 _CLAMP_RESULT = 64
+_CLAMP_RANGE, _OF_VECTORS = 8, 16
 
 
 @translator("ShaderNodeMath")
@@ -26,10 +27,10 @@ def clamp(view: NodeView) -> Value:
 @translator("ShaderNodeMapRange")
 def map_range(view: NodeView) -> Value:
     node = view.node
-    mode = MapRange[node.interpolation_type] | (8 if node.clamp else 0)
+    mode = MapRange[node.interpolation_type] | (_CLAMP_RANGE if node.clamp else 0)
     if getattr(node, "data_type", "FLOAT") == "FLOAT_VECTOR":
         names = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
-        return view.add_vector(Op.MAP_RANGE, tuple(view.value(name) for name in names), mode)
+        return view.add_vector(Op.MAP_RANGE, tuple(view.value(name) for name in names), mode | _OF_VECTORS)
     names = ("Value", "From Min", "From Max", "To Min", "To Max", "Steps")
     return view.add_float(Op.MAP_RANGE, tuple(view.value(name) for name in names), mode)
 

@@ -79,7 +79,7 @@
  *   MATH          a, b, c                               mode: GradusMath, + 64: clamp the result to 0…1
  *   VECTOR_MATH   a, b, c, scale -> vector, value       mode: GradusVectorMath
  *   CLAMP         value, min, max                       mode: 0 min max, 1 range (swapped where min > max); componentwise
- *   MAP_RANGE     value, from min, from max, to min, to max, steps    mode: GradusMapRange, + 8: clamp; componentwise
+ *   MAP_RANGE     value, from min, from max, to min, to max, steps    mode: GradusMapRange, + 8: clamp, + 16: of vectors; componentwise
  *   RAMP          factor -> color, alpha                mode: 1 = no interpolation; floats: RGBA at even steps over 0…1
  *   CURVES        factor, value                         mode: GradusCurves; floats: min x, max x, extrapolate, then rows of mode's channels
  *   SEPARATE      color -> 3 floats                     mode: GradusColorModel

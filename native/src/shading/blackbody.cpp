@@ -1,39 +1,24 @@
 // Colour of a black body: Planck's law through the CIE 1931 observer.
+#include <algorithm>
+#include <cmath>
+
 #include "shading/ops.h"
-#include "shading/scalar.h"
+#include "shading/sky/sky_color.h"
+#include "shading/sky/spectrum.h"
 
 namespace gradus {
-namespace {
 
-// Wyman, Sloan, Shirley: "Simple Analytic Approximations to the CIE XYZ Color Matching Functions" (2013), multi-lobe fit; nm.
-float lobe(float wavelength, float center, float below, float above) {
-  const float t = (wavelength - center) * (wavelength < center ? below : above);
-  return std::exp(-0.5f * t * t);
-}
-
-Vec3 observer(float w) {
-  return Vec3(
-      0.362f * lobe(w, 442.0f, 0.0624f, 0.0374f) + 1.056f * lobe(w, 599.8f, 0.0264f, 0.0323f) - 0.065f * lobe(w, 501.1f, 0.0490f, 0.0382f),
-      0.821f * lobe(w, 568.8f, 0.0213f, 0.0247f) + 0.286f * lobe(w, 530.9f, 0.0613f, 0.0322f),
-      1.217f * lobe(w, 437.0f, 0.0845f, 0.0278f) + 0.681f * lobe(w, 459.0f, 0.0385f, 0.0725f));
-}
-
-}  // namespace
-
+// Temperatures beyond those that Cycles knows have the colour of its last one; what Rec. 709 cannot show is cut off.
 Rgb blackbody(float kelvin) {
-  const double t = std::clamp(kelvin, 800.0f, 40000.0f);
+  const double t = std::clamp(kelvin, 800.0f, 12000.0f);
   glm::dvec3 xyz(0.0);
-  for (int nm = 380; nm <= 780; nm += 5) {
-    const double metres = nm * 1e-9;
+  for (int i = 0; i < kWavelengths; ++i) {
+    const double nm = kFirstWavelength + i * double(kWavelengthStep);
     // Second radiation constant hc/k = 0.014388 m·K; the scale of the spectrum does not matter.
-    const double spectrum = 1.0 / (std::pow(nm * 1e-2, 5.0) * std::expm1(0.01438777 / (metres * t)));
-    xyz += glm::dvec3(observer(static_cast<float>(nm))) * spectrum;
+    const double spectrum = 1.0 / (std::pow(nm * 1e-2, 5.0) * std::expm1(0.01438777 / (nm * 1e-9 * t)));
+    xyz += glm::dvec3(kObserver[i][0], kObserver[i][1], kObserver[i][2]) * spectrum;
   }
-  xyz /= xyz.y;
-  // XYZ to Rec. 709.
-  return Rgb(static_cast<float>(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z),
-             static_cast<float>(-0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z),
-             static_cast<float>(0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z));
+  return glm::max(xyz_to_rgb(Vec3(xyz / xyz.y)), Rgb(0.0f));
 }
 
 }  // namespace gradus

@@ -86,7 +86,7 @@ float clamp_one(float x, float lower, float upper, bool range) {
 
 float map_one(uint32_t mode, const OpArgs& args, int i) {
   const float x = args.in[0][i], from0 = args.in[1][i], from1 = args.in[2][i], to0 = args.in[3][i], to1 = args.in[4][i];
-  if (from0 == from1 && mode != GRADUS_MAP_RANGE_SMOOTHSTEP) return 0.0f;
+  if (from0 == from1) return args.mode & 16 ? to0 : 0.0f;  // Cycles' two nodes differ here
   float t = safe_divide(x - from0, from1 - from0);
   if (mode == GRADUS_MAP_RANGE_STEPPED) t = args.in[5][i] > 0.0f ? std::floor(t * (args.in[5][i] + 1.0f)) / args.in[5][i] : 0.0f;
   if (mode == GRADUS_MAP_RANGE_SMOOTHSTEP) t = from0 > from1 ? 1.0f - smoothstep(from1, from0, x) : smoothstep(from0, from1, x);
@@ -149,12 +149,10 @@ Vec4 clamp_op(const OpArgs& args) {
 
 Vec4 map_range(const OpArgs& args) {
   const uint32_t mode = args.mode & 7;
-  // The smooth forms stay in the range by themselves, and Cycles does not clamp them.
-  const bool clamped = (args.mode & 8) && mode <= GRADUS_MAP_RANGE_STEPPED;
   Vec4 r;
   for (int i = 0; i < 4; i++) {
     r[i] = map_one(mode, args, i);
-    if (clamped) r[i] = clamp_one(r[i], args.in[3][i], args.in[4][i], true);
+    if (args.mode & 8) r[i] = clamp_one(r[i], args.in[3][i], args.in[4][i], true);
   }
   return r;
 }

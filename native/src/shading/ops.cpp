@@ -1,5 +1,6 @@
 // One place where the pure operations are named.
 #include "shading/ops.h"
+#include "shading/scalar.h"
 #include "shading/sky/sky.h"
 
 namespace gradus {
@@ -8,11 +9,9 @@ namespace {
 Vec4 mix(const OpArgs& args) { return args.in[1] + (args.in[2] - args.in[1]) * args.in[0]; }
 
 void normal_dot(const OpArgs& args, Vec4* out) {
-  const Vec3 direction(args.floats[0], args.floats[1], args.floats[2]);
-  const Vec3 v = args.v(0);
-  const float length = glm::length(v);
+  const Vec3 direction = safe_normalize(Vec3(args.floats[0], args.floats[1], args.floats[2]));
   out[0] = value(direction);
-  out[1] = splat(length > 0.0f ? glm::dot(direction, v / length) : 0.0f);
+  out[1] = splat(glm::dot(direction, safe_normalize(args.v(0))));
 }
 
 bool evaluate_texture(uint32_t op, const OpArgs& args, Vec4* out) {

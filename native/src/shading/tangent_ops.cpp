@@ -45,8 +45,8 @@ Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 
 Vec3 tangent(const ResourceArgs& args, const ShadeContext& c) {
   Vec3 direction;
   if (args.mode == GRADUS_TANGENT_UV) {
-    const Vec3 local(uv_tangent(c, args.name));
-    direction = c.instance ? Mat3(c.instance->to_world) * local : local;
+    // By the matrix of normals, as in Cycles, which turns it on an object of uneven scale.
+    direction = normal_to_world(c, Vec3(uv_tangent(c, args.name)));
   } else {
     const Vec3 g = generated(c) - 0.5f;
     const Vec3 around[3] = {Vec3(0.0f, -g.z, g.y), Vec3(-g.z, 0.0f, g.x), Vec3(-g.y, g.x, 0.0f)};

@@ -5,7 +5,7 @@
 namespace gradus {
 
 inline constexpr int kWavelengths = 21;
-inline constexpr float kWavelengthStep = 20.0f;  // nm
+inline constexpr float kFirstWavelength = 380.0f, kWavelengthStep = 20.0f;  // nm
 
 // clang-format off
 // Above the atmosphere, W/(m² nm).
