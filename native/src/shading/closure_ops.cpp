@@ -22,11 +22,8 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
   const Vec3 normal = facing_normal(c, args.v(4));
   Lobe* lobe = add_lobe(result, LobeType::GgxReflection, LightPass::Glossy, args.weight * non_negative(args.v(0)), normal);
   if (!lobe) return;
-  const float roughness = saturate(args.f(1)), alpha = roughness * roughness;
-  const float anisotropy = std::clamp(args.f(2), -0.99f, 0.99f);
-  lobe->alpha_x = anisotropy < 0.0f ? alpha / (1.0f + anisotropy) : alpha * (1.0f - anisotropy);
-  lobe->alpha_y = anisotropy < 0.0f ? alpha * (1.0f + anisotropy) : alpha / (1.0f - anisotropy);
-  if (anisotropy != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
+  set_glossy_roughness(lobe, args.f(1), args.f(2));
+  if (args.f(2) != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
   lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
   lobe->f0 = non_negative(args.v(0));
 }
@@ -108,6 +105,12 @@ void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic) {
   const float aspect = std::sqrt(1.0f - 0.9f * saturate(anisotropic));
   lobe->alpha_x = alpha / aspect;
   lobe->alpha_y = alpha * aspect;
+}
+
+void set_glossy_roughness(Lobe* lobe, float roughness, float anisotropy) {
+  const float alpha = saturate(roughness) * saturate(roughness), a = std::clamp(anisotropy, -0.99f, 0.99f);
+  lobe->alpha_x = a < 0.0f ? alpha / (1.0f + a) : alpha * (1.0f - a);
+  lobe->alpha_y = a < 0.0f ? alpha * (1.0f + a) : alpha / (1.0f - a);
 }
 
 void add_finite(const Rgb& value, Rgb* sum) {

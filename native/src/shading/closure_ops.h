@@ -29,6 +29,8 @@ Vec3 facing_normal(const ShadeContext& context, const Vec3& normal);
 Vec3 outward_normal(const ShadeContext& context, const Vec3& normal);
 // Widths of a reflection lobe from roughness and Principled's anisotropy (0…1).
 void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic);
+// The same for the Glossy BSDF, whose anisotropy runs from -1 to 1.
+void set_glossy_roughness(Lobe* lobe, float roughness, float anisotropy);
 // Tangent (zero: the default one), turned by `turns` around the normal.
 Vec3 turned_tangent(const ShadeContext& context, const Vec3& tangent, const Vec3& normal, float turns);
 // A new lobe with the given weight; nullptr: too weak.

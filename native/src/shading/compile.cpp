@@ -33,6 +33,20 @@ int roughness_input(uint32_t op) {
   }
 }
 
+// Input of Principled's kind of anisotropy; -1: the closure has none.
+int anisotropy_input(uint32_t op) {
+  switch (op) {
+    case GRADUS_OP_METALLIC:
+      return 3;
+    case GRADUS_OP_PRINCIPLED:
+      return 7;
+    case GRADUS_OP_PRINCIPLED_3:
+      return 6;
+    default:
+      return -1;
+  }
+}
+
 class Analysis {
  public:
   Analysis(const Program& program, MaterialData* m) : p_(program), m_(*m) {}
@@ -46,24 +60,38 @@ class Analysis {
   Vec4 input(const Instruction& i, int k, float unknown) const {
     return operand_or(p_, p_.operands[i.first_operand + static_cast<uint32_t>(k)], Vec4(unknown));
   }
-  void sharpen(float roughness) { m_.min_alpha = std::min(m_.min_alpha, roughness * roughness); }
+  void sharpen(float alpha) { m_.min_alpha = std::min(m_.min_alpha, alpha); }
+  void sharpen_by_coat(const Instruction& i) {
+    const float roughness = saturate(input(i, 11, 0.0f).x);
+    if (input(i, 10, 1.0f).x > 0.0f) sharpen(roughness * roughness);
+  }
+
+  // Of a reflection lobe along its narrower axis; what is not known is as sharp as it can be.
+  float narrowest_alpha(const Instruction& i, int rough) const {
+    const float roughness = input(i, rough, 0.0f).x;
+    Lobe lobe;
+    if (i.op == GRADUS_OP_GLOSSY)
+      set_glossy_roughness(&lobe, roughness, input(i, 2, 1.0f).x);
+    else
+      set_principled_roughness(&lobe, roughness, anisotropy_input(i.op) >= 0 ? input(i, anisotropy_input(i.op), 1.0f).x : 0.0f);
+    return std::min(lobe.alpha_x, lobe.alpha_y);
+  }
 
   void closure(const Instruction& i) {
     m_.has_holdout = m_.has_holdout || i.op == GRADUS_OP_HOLDOUT;
     if (!is_lobe_op(i.op)) return;
     m_.has_bsdf = true;
     const int rough = roughness_input(i.op);
-    // Anisotropy narrows one axis to a third at most.
-    if (rough >= 0) sharpen(input(i, rough, 0.0f).x * (i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_GLASS ? 1.0f : 0.5f));
+    if (rough >= 0) sharpen(narrowest_alpha(i, rough));
     const bool glass = i.op == GRADUS_OP_GLASS || i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_TRANSLUCENT;
     bool transmits = glass;
     if (i.op == GRADUS_OP_PRINCIPLED) {
       transmits = input(i, 9, 1.0f).x > 0.0f;
-      if (input(i, 10, 1.0f).x > 0.0f) sharpen(input(i, 11, 0.0f).x);
+      sharpen_by_coat(i);
     }
     if (i.op == GRADUS_OP_PRINCIPLED_3) {
       transmits = input(i, 13, 1.0f).x > 0.0f;
-      if (input(i, 10, 1.0f).x > 0.0f) sharpen(input(i, 11, 0.0f).x);
+      sharpen_by_coat(i);
     }
     m_.may_transmit = m_.may_transmit || transmits;
   }

@@ -223,6 +223,28 @@ TEST(NodeProgram, RoughnessIsKnownWhereConstant) {
   EXPECT_TRUE(smooth.compile(smooth.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.1f)}))->min_alpha < 0.1f);
 }
 
+// What anisotropy makes of a rough lobe was bounded by Principled's, where Glossy's goes further; and roughness below 0 is none.
+TEST(NodeProgram, NoLobeIsSharperThanItsMaterialSays) {
+  const struct {
+    uint32_t op;
+    std::vector<In> inputs;
+  } cases[] = {
+      {GRADUS_OP_GLOSSY, {In(1.0f), In(0.8f), In(0.9f)}},
+      {GRADUS_OP_GLOSSY, {In(1.0f), In(0.8f), In(-0.95f)}},
+      {GRADUS_OP_GLOSSY, {In(1.0f), In(-0.8f), In(0.0f)}},
+      {GRADUS_OP_GLOSSY, {In(1.0f), In(0.5f), In(0.0f)}},
+      {GRADUS_OP_METALLIC, {In(0.9f), In(1.0f), In(0.7f), In(1.0f)}},
+      {GRADUS_OP_GLASS, {In(1.0f), In(0.6f), In(1.5f)}},
+  };
+  for (const auto& item : cases) {
+    ProgramBuilder b;
+    const auto material = b.compile(b.add(item.op, item.inputs));
+    ShadeResult r = run(material->surface);
+    ASSERT_EQ(r.closures.count(), 1);
+    EXPECT_EQ(material->min_alpha, std::min(r.closures.lobe(0).alpha_x, r.closures.lobe(0).alpha_y));
+  }
+}
+
 TEST(NodeProgram, NoSurfaceIsBlack) {
   const auto m = ProgramBuilder().compile(-1);
   EXPECT_TRUE(m->surface.empty() && !m->emits && !m->has_bsdf);
