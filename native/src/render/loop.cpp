@@ -86,6 +86,8 @@ GradientMap RenderLoop::choose_gradients() {
   const auto integrator = input_.factory(integrator_context(settings), plan_.integrator);
   arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_); });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  // A pilot that was cut short has found nothing out.
+  if (stop_.load(std::memory_order_relaxed)) throw cancelled();
   return map;
 }
 

@@ -188,6 +188,29 @@ nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr
   return nlohmann::json::parse(render->stats_json());
 }
 
+// Nothing that it had seen made the pilot leave gradients out, and the frame it was to go on from did not fit: a wrong argument.
+TEST(Pilot, ACancelMeanwhileIsACancel) {
+  GradusSettings s = small_settings(64, 48, 4);
+  s.integrator = GRADUS_INTEGRATOR_AUTO;
+  const auto noisy = [](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(32); };
+  const auto first = start(s, noisy);
+  first->wait(-1.0);
+  ASSERT_TRUE(first->frame()->gradients);
+  std::atomic<bool> is_cancelled{false};
+  const auto waits = [&](const IntegratorContext& context, uint32_t integrator) {
+    while (!is_cancelled) std::this_thread::yield();
+    return noisy(context, integrator);
+  };
+  s.samples = 8;
+  const auto second = start(s, waits, first->frame());
+  second->cancel();
+  is_cancelled = true;
+  second->wait(-1.0);
+  std::string text;
+  EXPECT_EQ(second->outcome(&text), GRADUS_ERROR_CANCELLED) << text;
+  EXPECT_EQ(read(*second, GRADUS_PASS_COMBINED, {0, 0, 64, 48})[0], 0.0f);
+}
+
 TEST(Pilot, AutoDecidesAndSaysWhy) {
   std::shared_ptr<const Frame> frame;
   const nlohmann::json some = stats_of(128, GRADUS_INTEGRATOR_AUTO, &frame);
