@@ -66,6 +66,7 @@ struct Counters {
 // row by row; empty where no such render can go on from the frame.
 struct SharedSamples {
   uint32_t mean = 0;             // samples of a pixel, on average over those that went on
+  uint32_t uncounted = 0;        // the first of each pixel, taken by a render that was not adaptive: what they have cost is not known
   std::vector<uint64_t> rays;    // that the samples of a cell have cost
   std::vector<uint8_t> stopped;  // 1: takes no more
 };

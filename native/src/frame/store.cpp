@@ -63,10 +63,13 @@ SampleRanges ranges_from_json(const json& j) {
   return SampleRanges(std::move(list));
 }
 
-json shared_to_json(const SharedSamples& shared) { return {{"mean", shared.mean}, {"rays", shared.rays}, {"stopped", shared.stopped}}; }
+json shared_to_json(const SharedSamples& shared) {
+  return {{"mean", shared.mean}, {"uncounted", shared.uncounted}, {"rays", shared.rays}, {"stopped", shared.stopped}};
+}
 
 SharedSamples shared_from_json(const json& j, const Region& region) {
-  SharedSamples shared{j.at("mean"), j.at("rays").get<std::vector<uint64_t>>(), j.at("stopped").get<std::vector<uint8_t>>()};
+  SharedSamples shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
+                       j.at("stopped").get<std::vector<uint8_t>>()};
   const size_t cells = make_cells(region).size();
   if (shared.rays.size() != cells || shared.stopped.size() != cells) throw damaged("its cells are wrong");
   return shared;

@@ -20,9 +20,9 @@ AdaptiveSampling::AdaptiveSampling(const Frame& frame, float threshold, uint32_t
     const size_t i = frame.index(cell.x0, cell.y0);
     taken_.push_back(frame.count[0][i] + frame.count[1][i]);
   }
-  uncounted_ = taken_;
-  if (frame.shared.rays.empty()) return;
-  uncounted_.assign(grid_.cells.size(), 0);
+  const bool goes_on = !frame.shared.rays.empty();
+  uncounted_ = goes_on ? frame.shared.uncounted : taken_.front();
+  if (!goes_on) return;
   rays_ = frame.shared.rays;
   stopped_ = frame.shared.stopped;
 }
@@ -55,7 +55,7 @@ double AdaptiveSampling::smooth_spread(size_t cell) const {
 
 // 1 where none were counted: before the first batch of a render that goes on from samples that were not taken for it.
 double AdaptiveSampling::rays_per_sample(size_t cell) const {
-  const double samples = double(grid_.cells[cell].area()) * (taken_[cell] - uncounted_[cell]);
+  const double samples = double(grid_.cells[cell].area()) * (taken_[cell] - uncounted_);
   return rays_[cell] > 0 ? double(rays_[cell]) / samples : 1.0;
 }
 

@@ -34,7 +34,7 @@ class AdaptiveSampling {
   // Samples of the pixels that have most.
   uint32_t most_taken() const;
   // What the next render needs to go on, after batches of `mean` samples altogether.
-  SharedSamples state(uint32_t mean) const { return {mean, rays_, stopped_}; }
+  SharedSamples state(uint32_t mean) const { return {mean, uncounted_, rays_, stopped_}; }
 
  private:
   size_t index(int32_t x, int32_t y) const;
@@ -46,7 +46,8 @@ class AdaptiveSampling {
   float threshold_;
   uint32_t first_check_;
   CellGrid grid_;
-  std::vector<uint32_t> uncounted_, taken_;  // samples: those whose rays are not known, and all
+  uint32_t uncounted_ = 0;       // samples of each pixel whose rays are not known
+  std::vector<uint32_t> taken_;  // samples of each cell's pixels
   std::vector<uint64_t> rays_;
   std::vector<double> spread_;  // relative deviation of one sample
   std::vector<uint8_t> stopped_;

@@ -132,6 +132,30 @@ TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
   EXPECT_LT(mean_count(*whole, 0, 16), 80.0) << "stopped";
 }
 
+// What samples had cost that were not taken adaptively counted as nothing once the render had ended and gone on again.
+TEST(L3_Resume, SamplesOfUnknownCostStayUnknown) {
+  GradusSettings settings = adaptive_settings(16, 0.0f);
+  settings.integrator = GRADUS_INTEGRATOR_PATH;
+  const auto costly_below = fake_factory([](FakeIntegrator* fake) {
+    fake->quiet_until = kQuiet;
+    fake->rays_below = 40;
+  });
+  const auto part = [&](uint32_t samples, std::shared_ptr<const Frame> from) {
+    settings.samples = samples;
+    const auto render = start(settings, costly_below, std::move(from));
+    render->wait(-1.0);
+    return render->frame();
+  };
+  const auto plain = part(16, nullptr);
+  settings.noise_threshold = 0.001f;
+  const std::string path = testing::TempDir() + "/adaptive_after_plain.exr";
+  save_frame(*part(48, plain), path);
+  const auto halfway = load_frame(path);
+  std::remove(path.c_str());
+  EXPECT_EQ(halfway->shared.uncounted, 16u);
+  EXPECT_TRUE(same_samples(*part(80, plain), *part(80, halfway)));
+}
+
 // A lower threshold starts cells again that had stopped at a higher one; without one their counts would differ for nothing.
 TEST(L3_Resume, ALowerThresholdGoesOnWhereAHigherOneHadStopped) {
   const auto settings = [](uint32_t samples, float threshold) {
