@@ -2,18 +2,13 @@
 #pragma once
 
 #include "gradus/gradus.h"
+#include "scene/mesh.h"
 
 namespace gradus::api {
 
 template <class T>
 void set_size(T& s) {
   s.struct_size = sizeof(T);
-}
-
-inline uint64_t elements_of(const GradusMesh& m, uint32_t domain) {
-  if (domain == GRADUS_DOMAIN_POINT) return m.vertex_count;
-  if (domain == GRADUS_DOMAIN_CORNER) return m.corner_count;
-  return m.triangle_faces ? m.face_count : m.triangle_count;
 }
 
 template <class Archive>
@@ -35,7 +30,7 @@ void visit(Archive& a, GradusMesh& m) {
   a.array(m.triangle_corners, uint64_t{3} * m.triangle_count);
   a.array(m.triangle_faces, m.triangle_count);
   a.array(m.face_materials, m.face_count);
-  a.array(m.normals, 3 * elements_of(m, m.normal_domain));
+  a.array(m.normals, 3 * domain_size(m, m.normal_domain));
   a.array(m.generated_points, uint64_t{3} * m.vertex_count);
   uint32_t has_default_uv = m.default_uv != nullptr;
   a.value(has_default_uv);
@@ -44,7 +39,7 @@ void visit(Archive& a, GradusMesh& m) {
   a.structs(m.attributes, m.attribute_count);
   for (uint32_t i = 0; i < m.attribute_count; ++i) {
     auto& attribute = const_cast<GradusAttribute&>(m.attributes[i]);
-    a.array(attribute.data, elements_of(m, attribute.domain) * attribute.channels);
+    a.array(attribute.data, uint64_t{domain_size(m, attribute.domain)} * attribute.channels);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "api/scene_args.h"
 
 #include "api/arrays.h"
+#include "scene/mesh.h"
 
 namespace gradus::api {
 namespace {
@@ -20,17 +21,6 @@ void check_texts(const char* const* texts, size_t count, const char* name) {
 // [first, first + count) lies in an array of `size`, whatever overflows.
 void check_range(uint64_t first, uint64_t count, uint64_t size, const std::string& name) {
   if (first > size || count > size - first) throw invalid_argument(name + " reaches beyond its array of " + std::to_string(size));
-}
-
-size_t elements_of(const GradusMesh& mesh, uint32_t domain) {
-  switch (domain) {
-    case GRADUS_DOMAIN_POINT:
-      return mesh.vertex_count;
-    case GRADUS_DOMAIN_FACE:
-      return mesh.triangle_faces ? mesh.face_count : mesh.triangle_count;
-    default:
-      return mesh.corner_count;
-  }
 }
 
 void check_tile(const GradusImageTile& tile) {
@@ -61,14 +51,14 @@ MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
   check_array(mesh.face_materials, mesh.face_count, "mesh.face_materials", 1, Presence::Optional);
   check_enum(mesh.normal_domain, 3, "mesh.normal_domain");
   const bool optional = mesh.normal_domain != GRADUS_DOMAIN_CORNER;  // FACE: flat; POINT: made here
-  check_array(mesh.normals, elements_of(mesh, mesh.normal_domain), "mesh.normals", 3, optional ? Presence::Optional : Presence::Required);
+  check_array(mesh.normals, domain_size(mesh, mesh.normal_domain), "mesh.normals", 3, optional ? Presence::Optional : Presence::Required);
   check_array(mesh.generated_points, mesh.vertex_count, "mesh.generated_points", 3, Presence::Optional);
   attributes = read_struct_array(mesh.attributes, mesh.attribute_count, "mesh.attributes");
   for (GradusAttribute& attribute : attributes) {
     attribute.name = text_or_empty(attribute.name);
     check_enum(attribute.domain, 3, "attribute.domain");
     if (attribute.channels < 1 || attribute.channels > 4) throw invalid_argument("attribute.channels is not 1 to 4");
-    check_array(attribute.data, elements_of(mesh, attribute.domain), "attribute.data", attribute.channels);
+    check_array(attribute.data, domain_size(mesh, attribute.domain), "attribute.data", attribute.channels);
   }
   mesh.attributes = attributes.data();
 }

@@ -126,10 +126,8 @@ void check_alpha(float alpha) {
 void check_settings(const GradusSettings& settings) {
   for (const Option& option : options()) {
     const double value = get_option(settings, option);
-    if (!(value >= option.minimum && value <= option.maximum) && std::strcmp(option.name, "samples") == 0 && value == 0) {
-      throw invalid_argument("0 samples: there is nothing to render");
-    }
-    // A maximum given in double may lie just beside its float.
+    if (value == 0 && std::strcmp(option.name, "samples") == 0) throw invalid_argument("0 samples: there is nothing to render");
+    // The float of a minimum may lie just below it.
     if (option.type == GRADUS_OPTION_FLOAT && std::abs(value - option.minimum) <= 1e-6 * std::abs(option.minimum)) continue;
     check_range(option, value);
   }

@@ -37,8 +37,7 @@ GroupChoice EmitterTable::choose_group(const Receiver& receiver, const LightTree
   if (suns.empty() && world.black()) return {tree.empty() ? 0.0 : 1.0, 0.0, 0.0};
   if (suns.empty() && tree.empty()) return {0.0, 0.0, 1.0};
   const double in_tree = cut.irradiance();
-  double in_suns = 0.0;
-  for (size_t i = 0; i < suns.size(); ++i) in_suns += sun_importance(sun_irradiance[i], lamps[suns[i]], receiver);
+  const double in_suns = irradiance_of_suns(receiver);
   const double in_world = world.irradiance(receiver);
   const double sum = in_tree + in_suns + in_world;
   const int groups = (in_tree > 0.0) + (in_suns > 0.0) + (in_world > 0.0);
@@ -46,10 +45,25 @@ GroupChoice EmitterTable::choose_group(const Receiver& receiver, const LightTree
   return {defended(in_tree, sum, groups), defended(in_suns, sum, groups), defended(in_world, sum, groups)};
 }
 
-double EmitterTable::sun_probability(size_t sun, const Receiver& receiver) const {
+double EmitterTable::irradiance_of_suns(const Receiver& receiver) const {
   double sum = 0.0;
   for (size_t i = 0; i < suns.size(); ++i) sum += sun_importance(sun_irradiance[i], lamps[suns[i]], receiver);
+  return sum;
+}
+
+double EmitterTable::sun_probability(size_t sun, const Receiver& receiver) const {
+  const double sum = irradiance_of_suns(receiver);
   return sum > 0.0 ? sun_importance(sun_irradiance[sun], lamps[suns[sun]], receiver) / sum : 0.0;
+}
+
+uint32_t EmitterTable::sample_sun(const Receiver& receiver, double u, double* probability) const {
+  const double sum = irradiance_of_suns(receiver);
+  double below = 0.0;
+  for (size_t i = 0;; ++i) {
+    *probability = sum > 0.0 ? sun_importance(sun_irradiance[i], lamps[suns[i]], receiver) / sum : 0.0;
+    below += *probability;
+    if (u < below || i + 1 == suns.size()) return suns[i];
+  }
 }
 
 uint32_t EmitterTable::find_triangle(uint32_t instance, uint32_t triangle) const {

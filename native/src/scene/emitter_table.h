@@ -53,12 +53,15 @@ struct EmitterTable {
   const EmitterChoice& choose(const Receiver& receiver, EmitterChoice* room) const;
   // Of one sun among the suns.
   double sun_probability(size_t sun, const Receiver& receiver) const;
+  // Index in `lamps` of the sun that is chosen by u in [0, 1), with that probability.
+  uint32_t sample_sun(const Receiver& receiver, double u, double* probability) const;
   // Index in `triangles`, UINT32_MAX if it is not sampled as a light.
   uint32_t find_triangle(uint32_t instance, uint32_t triangle) const;
 
  private:
   // cut: through the tree, for this receiver.
   GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
+  double irradiance_of_suns(const Receiver& receiver) const;
 };
 
 // The snapshot is complete but for its emitters. lamps_with_extent is left to the caller. world: what the commit before left, which this

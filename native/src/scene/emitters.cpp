@@ -75,16 +75,8 @@ void sample_light_of_tree(const Snapshot& snapshot, uint32_t light, const Receiv
 }
 
 void sample_suns(const Snapshot& snapshot, const Receiver& receiver, double choice, const Vec2& u, EmitterPoint* point, Finding* finding) {
-  const EmitterTable& table = *snapshot.emitters;
-  size_t sun = 0;
-  double below = 0.0, probability;
-  for (;; ++sun) {
-    probability = table.sun_probability(sun, receiver);
-    below += probability;
-    if (choice < below || sun + 1 == table.suns.size()) break;
-  }
-  sample_lamp_at(snapshot, table.suns[sun], receiver, u, point, finding);
-  finding->probability = probability;
+  const uint32_t sun = snapshot.emitters->sample_sun(receiver, choice, &finding->probability);
+  sample_lamp_at(snapshot, sun, receiver, u, point, finding);
 }
 
 void sample_world(const Snapshot& snapshot, const Receiver& receiver, const Vec2& u, EmitterPoint* point) {

@@ -50,6 +50,13 @@ struct MeshData {
   uint32_t material_slot(uint32_t triangle) const { return face_materials.empty() ? 0 : face_materials[face(triangle)]; }
 };
 
+// Elements of a domain of the mesh as given.
+inline size_t domain_size(const GradusMesh& m, uint32_t domain) {
+  if (domain == GRADUS_DOMAIN_POINT) return m.vertex_count;
+  if (domain == GRADUS_DOMAIN_CORNER) return m.corner_count;
+  return m.triangle_faces ? m.face_count : m.triangle_count;
+}
+
 // Copies and checks. Throws Error INVALID_ARGUMENT that names the mesh for counts and indices that contradict each other.
 std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc);
 

@@ -46,12 +46,6 @@ void check_counts(const GradusMesh& m, const Check& check) {
   check.that(m.attribute_count == 0 || m.attributes, "attributes missing");
 }
 
-size_t domain_size(const GradusMesh& m, uint32_t domain) {
-  if (domain == GRADUS_DOMAIN_POINT) return m.vertex_count;
-  if (domain == GRADUS_DOMAIN_CORNER) return m.corner_count;
-  return m.triangle_faces ? m.face_count : m.triangle_count;
-}
-
 void copy_keys(const GradusMesh& m, const Check& check, MeshData* out) {
   out->key_times.assign(m.key_count, 0.0f);
   for (uint32_t k = 0; m.key_times && k < m.key_count; ++k) {
