@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "color/color.h"
 #include "frame/image_exr.h"
@@ -14,44 +15,79 @@ namespace gradus::regression {
 
 namespace {
 
-const float* block_of(const std::vector<float>& means, uint32_t x, uint32_t y) {
-  return means.data() + 3 * (size_t(y / kBlock) * (kWidth / kBlock) + x / kBlock);
+namespace fs = std::filesystem;
+
+const fs::path kFolder = fs::path(GRADUS_BINARY_DIR) / "pictures";
+
+fs::path remembered(const std::string& bits) { return kFolder / "stored" / (bits + ".exr"); }
+
+void save(const fs::path& path, const std::vector<float>& rgba) {
+  fs::create_directories(path.parent_path());
+  save_image(path, int(kWidth), int(kHeight), {{"", 4, rgba}});
 }
 
-void save_strip(const std::string& path, const std::vector<float>& reference, const std::vector<float>& rgba) {
-  const std::vector<float> blocks = block_means(rgba);
+std::vector<float> without_alpha(const std::vector<float>& rgba) {
+  std::vector<float> rgb;
+  for (size_t i = 0; i < rgba.size(); ++i) {
+    if (i % 4 != 3) rgb.push_back(rgba[i]);
+  }
+  return rgb;
+}
+
+// Block means as a picture of squares.
+std::vector<float> squares(const std::vector<float>& means) {
+  std::vector<float> rgb(size_t(kWidth) * kHeight * 3);
+  for (uint32_t i = 0; i < rgb.size(); ++i) {
+    const uint32_t x = i / 3 % kWidth, y = i / 3 / kWidth;
+    rgb[i] = means[3 * (y / kBlock * (kWidth / kBlock) + x / kBlock) + i % 3];
+  }
+  return rgb;
+}
+
+double relative_error(const std::vector<float>& image, const std::vector<float>& reference) {
+  double sum = 0.0;
+  for (size_t i = 0; i < reference.size(); i += 3) {
+    const double gray = (double(reference[i]) + reference[i + 1] + reference[i + 2]) / 3.0;
+    for (size_t c = 0; c < 3; ++c) sum += std::pow(double(image[i + c]) - reference[i + c], 2) / (1e-3 + gray * gray);
+  }
+  return sum / double(reference.size());
+}
+
+std::vector<float> difference(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<float> result(a.size());
+  for (size_t i = 0; i < a.size(); ++i) result[i] = 16.0f * std::fabs(a[i] - b[i]);
+  return result;
+}
+
+void save_beside_each_other(const fs::path& path, const std::vector<std::vector<float>>& images) {
+  const uint32_t width = kWidth * uint32_t(images.size());
   const auto color = [&](float u, float v) {
-    const uint32_t column = uint32_t(u * 3 * kWidth), x = column % kWidth, y = uint32_t(v * kHeight);
-    const float *stored = block_of(reference, x, y), *found = block_of(blocks, x, y), *pixel = rgba.data() + 4 * (size_t(y) * kWidth + x);
-    Vec4 result(1.0f);
-    for (int c = 0; c < 3; ++c) {
-      const float values[] = {stored[c], pixel[c], 16.0f * std::fabs(found[c] - stored[c])};
-      result[c] = linear_to_srgb(std::max(0.0f, values[column / kWidth]));
-    }
-    return result;
+    const uint32_t column = uint32_t(u * float(width));
+    const float* rgb = images[column / kWidth].data() + 3 * (size_t(v * float(kHeight)) * kWidth + column % kWidth);
+    const auto encoded = [](float linear) { return linear_to_srgb(std::max(0.0f, linear)); };
+    return Vec4(encoded(rgb[0]), encoded(rgb[1]), encoded(rgb[2]), 1.0f);
   };
-  const testing::FileBytes png = testing::make_png(3 * kWidth, kHeight, color);
+  const testing::FileBytes png = testing::make_png(width, kHeight, color);
   std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
 }
 
 }  // namespace
 
-double relative_error(const std::vector<float>& reference, const std::vector<float>& blocks) {
-  double sum = 0.0;
-  for (size_t i = 0; i < reference.size(); i += 3) {
-    const double gray = (double(reference[i]) + reference[i + 1] + reference[i + 2]) / 3.0;
-    for (size_t c = 0; c < 3; ++c) sum += std::pow(double(blocks[i + c]) - reference[i + c], 2) / (1e-3 + gray * gray);
-  }
-  return sum / double(reference.size());
+void remember(const std::string& bits, const std::vector<float>& rgba) {
+  if (!fs::exists(remembered(bits))) save(remembered(bits), rgba);
 }
 
-std::string keep(const std::string& name, const std::vector<float>& reference, const std::vector<float>& rgba) {
-  std::string path = GRADUS_BINARY_DIR "/pictures/";
-  std::filesystem::create_directories(path);
-  for (const char letter : name) path += letter == ' ' ? '_' : letter;
-  save_image(path + ".exr", int(kWidth), int(kHeight), {{"", 4, rgba}});
-  save_strip(path + ".png", reference, rgba);
-  return path + ".png";
+std::string keep(const std::string& name, const std::string& bits, const std::vector<float>& means, const std::vector<float>& rgba) {
+  const bool by_pixels = fs::exists(remembered(bits));
+  const std::vector<float> picture = without_alpha(rgba), compared = by_pixels ? picture : squares(block_means(rgba));
+  const std::vector<float> reference = by_pixels ? load_rgb(remembered(bits), "").rgb : squares(means);
+  fs::path path = kFolder / name;
+  save(path.replace_extension(".exr"), rgba);
+  save_beside_each_other(path.replace_extension(".png"), {reference, picture, difference(compared, reference)});
+  std::ostringstream text;
+  text << name << ": relMSE of " << (by_pixels ? "pixels " : "blocks ") << relative_error(compared, reference)
+       << "; reference, picture and difference x 16 in '" << path.string() << "'";
+  return text.str();
 }
 
 }  // namespace gradus::regression

@@ -1,4 +1,4 @@
-// What is kept of a picture that differs, to be looked at.
+// What is kept in the build folder of a picture that differs, to be looked at.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace gradus::regression {
 
-// Mean squared difference of block means relative to those of the reference.
-double relative_error(const std::vector<float>& reference, const std::vector<float>& blocks);
+// Pixels are not stored, only their block means. Those of a picture with the stored bits are remembered here, for the day it changes.
+void remember(const std::string& bits, const std::vector<float>& rgba);
 
-// Writes to the build folder: the picture as EXR, and as PNG beside each other the reference (block means, for its pixels are not stored),
-// the picture, and 16 times the difference of their block means. Returns the path of the PNG.
-std::string keep(const std::string& name, const std::vector<float>& reference, const std::vector<float>& rgba);
+// Writes the picture as EXR, and as PNG beside each other the reference, the picture, and 16 times their difference. The reference is the
+// remembered picture of these bits, else the block means, which are then compared with the picture's. Returns what differs and where it is.
+std::string keep(const std::string& name, const std::string& bits, const std::vector<float>& means, const std::vector<float>& rgba);
 
 }  // namespace gradus::regression
