@@ -22,9 +22,10 @@ ShiftedDirection copy_reflection(const HalfVectorFrame& base, const Vec3& wi, co
   }
   const Vec3 h = sum / length;
   const Vec3 shifted = rotate_between(base.normal, offset.normal, h);
-  const float cos_base = glm::dot(h, wi);
+  // h halves the angle between unit vectors. Its dot product with wi has the error of h, which at grazing angles is large.
+  const float cos_base = 0.5f * length;
   const float cos_shifted = glm::dot(shifted, offset.wo);
-  if (!(cos_shifted > 0.0f) || !(cos_base > 0.0f)) {
+  if (!(cos_shifted > 0.0f)) {
     return failed(ShiftFailure::Side);  // the way back would give -h
   }
   return {glm::normalize(2.0f * cos_shifted * shifted - offset.wo), cos_shifted / cos_base, ShiftFailure::None};

@@ -53,12 +53,15 @@ DVec3 rotate(const DVec3& from, const DVec3& to, const DVec3& v) {
   return v * c + glm::cross(k, v) * s + k * (glm::dot(k, v) * (1.0 - c));
 }
 
-// The half-vector copy from its definition, in double.
+// The half-vector copy from its definition, in double. False: the offset cannot scatter so.
 bool copy_in_double(const HalfVectorFrame& base, const HalfVectorFrame& offset, bool transmitted, const DVec3& wi, DVec3* out) {
   const DVec3 wo = to_double(base.wo);
   const DVec3 wo2 = to_double(offset.wo);
   const DVec3 h = glm::normalize(transmitted ? wo + double(base.eta) * wi : wo + wi);
   const DVec3 m = rotate(glm::normalize(to_double(base.normal)), glm::normalize(to_double(offset.normal)), h);
+  if (!(glm::dot(m, wo2) * glm::dot(h, wo) > 0.0)) {
+    return false;
+  }
   if (!transmitted) {
     *out = 2.0 * glm::dot(m, wo2) * m - wo2;
     return true;
@@ -112,35 +115,34 @@ bool make_case(Random* random, bool transmitted, Case* c) {
   return glm::length(c->wi) > 0.5f;
 }
 
+// Whether parts of a whole are all but a thousandth of it.
+void expect_nearly_all(int part, int whole, const char* what) { EXPECT_GE(part, 0.999 * whole) << what; }
+
 void check_half_vector(bool transmitted) {
   Random random(11);
-  int done = 0;
-  int jacobian_ok = 0;
-  int inverse_ok = 0;
-  int product_ok = 0;
-  while (done < kShifts) {
+  int shifted = 0, verdicts_ok = 0, jacobians_ok = 0, ways_back = 0, products_ok = 0;
+  for (int i = 0; i < kShifts; ++i) {
     Case c;
-    if (!make_case(&random, transmitted, &c)) {
-      continue;
+    while (!make_case(&random, transmitted, &c)) {
     }
     const ShiftedDirection there = copy_half_vector(c.base, c.wi, c.offset, transmitted);
-    if (there.failure != ShiftFailure::None) {
-      continue;
-    }
     const auto map = [&](const DVec3& wi, DVec3* out) { return copy_in_double(c.base, c.offset, transmitted, wi, out); };
-    const double numeric = numeric_jacobian(map, to_double(c.wi));
-    if (numeric < 0.0) {
+    const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative where the copy is impossible
+    verdicts_ok += (there.failure == ShiftFailure::None) == (numeric > 0.0) ? 1 : 0;
+    if (there.failure != ShiftFailure::None || !(numeric > 0.0)) {
       continue;
     }
-    ++done;
-    jacobian_ok += std::fabs(there.jacobian - numeric) <= 1e-2 * numeric ? 1 : 0;
+    ++shifted;
+    jacobians_ok += std::fabs(there.jacobian - numeric) <= 1e-2 * numeric ? 1 : 0;
     const ShiftedDirection back = copy_half_vector(c.offset, there.wi, c.base, transmitted);
-    inverse_ok += back.failure == ShiftFailure::None && glm::length(back.wi - c.wi) < 1e-4f ? 1 : 0;
-    product_ok += std::fabs(there.jacobian * back.jacobian - 1.0f) < 1e-3f ? 1 : 0;
+    ways_back += back.failure == ShiftFailure::None && glm::length(back.wi - c.wi) < 1e-4f ? 1 : 0;
+    products_ok += std::fabs(there.jacobian * back.jacobian - 1.0f) < 1e-4f ? 1 : 0;
   }
-  EXPECT_GE(jacobian_ok, 0.999 * done);
-  EXPECT_GE(inverse_ok, 0.999 * done);
-  EXPECT_GE(product_ok, 0.999 * done);
+  EXPECT_GE(shifted, 0.9 * kShifts);
+  expect_nearly_all(verdicts_ok, kShifts, "whether there is a copy");
+  expect_nearly_all(jacobians_ok, shifted, "Jacobians");
+  expect_nearly_all(ways_back, shifted, "the way back");
+  expect_nearly_all(products_ok, shifted, "Jacobians there and back");
 }
 
 TEST(B4_Shift, ReflectionHalfVector) { check_half_vector(false); }
@@ -218,7 +220,7 @@ TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
     ++shifted;
     const ShiftedDirection back = copy_half_vector(from_y, there.wi, from_x, transmitted);
     const float jacobian = reconnect(x, y, z, normal).jacobian * there.jacobian * reconnect(y, x, z, normal).jacobian * back.jacobian;
-    const bool home = back.failure == ShiftFailure::None && glm::length(back.wi - wi) < 1e-3f && std::fabs(jacobian - 1.0f) < 1e-2f;
+    const bool home = back.failure == ShiftFailure::None && glm::length(back.wi - wi) < 1e-4f && std::fabs(jacobian - 1.0f) < 1e-4f;
     back_home += home ? 1 : 0;
   }
   EXPECT_GE(shifted, 0.99 * kShifts);
@@ -306,8 +308,8 @@ TEST(B4_Shift, SmallestRotationIsUndoneByItsInverse) {
     const Vec3 a = random.direction();
     const Vec3 b = i % 10 == 0 ? -a : random.direction();
     const Vec3 v = random.direction();
-    EXPECT_LT(glm::length(rotate_between(a, b, a) - b), 2e-3f);
-    EXPECT_LT(glm::length(rotate_between(b, a, rotate_between(a, b, v)) - v), 2e-3f);
+    EXPECT_LT(glm::length(rotate_between(a, b, a) - b), 5e-4f);
+    EXPECT_LT(glm::length(rotate_between(b, a, rotate_between(a, b, v)) - v), 5e-4f);
   }
 }
 
