@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reconstruct/noise_left.h"
+#include "reconstruct/rows.h"
 
 namespace gradus {
 namespace {
@@ -69,30 +70,32 @@ struct CellSums {
   double squared_error(bool weighted) const { return weighted ? std::max(l2 - apart, kLeastLeft * l2) : own; }
 };
 
+CellNoise noise_of_cell(const Frame& frame, const NoiseImages& images, bool weighted, const Region& cell) {
+  const double exposure = double(frame.settings.film_exposure) * frame.settings.film_exposure;
+  CellSums sums;
+  for (int32_t y = cell.y0; y < cell.y1; ++y) {
+    for (int32_t x = cell.x0; x < cell.x1; ++x) {
+      const size_t i = frame.index(x, y) * size_t(frame.channels);
+      const double g = gray(&images.image[i]), s = exposure * g * g + kEpsilon, own = exposure * mean_square(&images.noise[i]);
+      sums.own += own;
+      sums.signal += s;
+      sums.relative += own / s;
+      if (!weighted) continue;
+      sums.l2 += exposure * mean_square(&images.l2_noise[i]);
+      sums.apart += exposure * mean_squared_distance(&images.image[i], &images.l2_image[i]);
+    }
+  }
+  return {std::sqrt(sums.squared_error(weighted) / sums.signal), std::sqrt(sums.relative / double(cell.area()))};
+}
+
 }  // namespace
 
 std::vector<CellNoise> estimate_noise(const Frame& frame, const std::vector<Region>& cells, uint32_t reconstruction, float alpha,
                                       const CancelTest& cancel) {
   const NoiseImages images = noise_images(frame, reconstruction, alpha, cancel);
-  const double exposure = double(frame.settings.film_exposure) * frame.settings.film_exposure;
   const bool weighted = is_weighted(reconstruction);
-  std::vector<CellNoise> result;
-  for (const Region& cell : cells) {
-    CellSums sums;
-    for (int32_t y = cell.y0; y < cell.y1; ++y) {
-      for (int32_t x = cell.x0; x < cell.x1; ++x) {
-        const size_t i = frame.index(x, y) * size_t(frame.channels);
-        const double g = gray(&images.image[i]), s = exposure * g * g + kEpsilon, own = exposure * mean_square(&images.noise[i]);
-        sums.own += own;
-        sums.signal += s;
-        sums.relative += own / s;
-        if (!weighted) continue;
-        sums.l2 += exposure * mean_square(&images.l2_noise[i]);
-        sums.apart += exposure * mean_squared_distance(&images.image[i], &images.l2_image[i]);
-      }
-    }
-    result.push_back({std::sqrt(sums.squared_error(weighted) / sums.signal), std::sqrt(sums.relative / double(cell.area()))});
-  }
+  std::vector<CellNoise> result(cells.size());
+  for_rows(int(cells.size()), [&](int i) { result[size_t(i)] = noise_of_cell(frame, images, weighted, cells[size_t(i)]); });
   return result;
 }
 
