@@ -1,7 +1,10 @@
 #include "scene/material_source.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/hash.h"
+#include "gradus/gradus_nodes.h"
 
 namespace gradus {
 
@@ -69,6 +72,11 @@ MaterialSource::MaterialSource(const GradusMaterial& d) : desc_(d), name_(d.name
   for (const uint32_t v : {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
     hash.value(v);
   content_hash_ = hash.result();
+}
+
+bool MaterialSource::looks_at_images() const {
+  return std::any_of(nodes_.begin(), nodes_.end(),
+                     [](const GradusNode& n) { return n.op == GRADUS_OP_IMAGE || n.op == GRADUS_OP_ENVIRONMENT; });
 }
 
 GradusMaterial MaterialSource::view() const {

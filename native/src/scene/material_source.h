@@ -17,6 +17,8 @@ class MaterialSource {
   // Pointers into this object; valid as long as it.
   GradusMaterial view() const;
   uint64_t content_hash() const { return content_hash_; }
+  // What it compiles to depends on images, too.
+  bool looks_at_images() const;
   const std::string& name() const { return name_; }
 
  private:
