@@ -83,7 +83,7 @@ TEST_P(B4_EmitterCopy, JacobianAndWayBack) {
     const double numeric = solid_angle_of_area(see(offset.position, moved, point.normal, facing)) /
                            solid_angle_of_area(see(base.position, here, point.normal, facing));
     const double forward = copy_jacobian(point, here, moved), backward = copy_jacobian(point, moved, here);
-    jacobian_ok += std::fabs(forward - numeric) <= 1e-2 * numeric ? 1 : 0;
+    jacobian_ok += std::fabs(forward - numeric) <= 1e-4 * numeric ? 1 : 0;
     product_ok += std::fabs(forward * backward - 1.0) < 1e-4 ? 1 : 0;
     same_point += glm::length(here.direction - there.direction) < 1e-4f ? 1 : 0;
   }

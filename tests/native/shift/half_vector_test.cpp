@@ -133,7 +133,7 @@ void check_half_vector(bool transmitted) {
       continue;
     }
     ++shifted;
-    jacobians_ok += std::fabs(there.jacobian - numeric) <= 1e-2 * numeric ? 1 : 0;
+    jacobians_ok += std::fabs(there.jacobian - numeric) <= 1e-4 * numeric ? 1 : 0;
     const ShiftedDirection back = copy_half_vector(c.offset, there.wi, c.base, transmitted);
     ways_back += back.failure == ShiftFailure::None && glm::length(back.wi - c.wi) < 1e-4f ? 1 : 0;
     products_ok += std::fabs(there.jacobian * back.jacobian - 1.0f) < 1e-4f ? 1 : 0;
@@ -189,7 +189,7 @@ TEST(B4_Shift, Reconnection) {
       return true;
     };
     const double numeric = numeric_jacobian(map, glm::normalize(to_double(target) - to_double(base)));
-    ok += std::fabs(there.jacobian - numeric) <= 1e-2 * numeric ? 1 : 0;
+    ok += std::fabs(there.jacobian - numeric) <= 1e-4 * numeric ? 1 : 0;
     const Reconnection back = reconnect(offset, base, target, normal);
     inverse_ok += std::fabs(there.jacobian * back.jacobian - 1.0f) < 1e-4f ? 1 : 0;
   }

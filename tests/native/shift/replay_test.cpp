@@ -93,7 +93,7 @@ TEST(B4_Replay, JacobianIsTheRatioOfDensities) {
       }
       ++done;
       const double ratio = to / from * double(there.pdf) / double(event->pdf);
-      right += std::fabs(ratio - double(there.ratio)) <= 1e-2 * ratio ? 1 : 0;
+      right += std::fabs(ratio - double(there.ratio)) <= 1e-3 * ratio ? 1 : 0;
     }
     EXPECT_GE(done, 0.9 * kReplays);
     EXPECT_GE(right, 0.999 * done);
