@@ -106,7 +106,7 @@ TEST(A2_WhiteFurnace, TabulatedAlbedo) {
       const Closures closures = finished(test.lobe, wo);
       const Rgb measured = measured_albedo(closures, wo, kSamples, 3);
       const Rgb table = closures.albedo(wo);
-      EXPECT_LE(max_component(glm::abs(measured - table)), 0.012f)
+      EXPECT_LE(max_component(glm::abs(measured - table)), 0.010f)
           << test.name << " cosine " << cosine << " measured " << measured.x << " table " << table.x;
     }
   }

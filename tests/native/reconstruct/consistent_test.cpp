@@ -27,7 +27,7 @@ class Consistent : public ::testing::TestWithParam<GradusReconstruction> {
 TEST_P(Consistent, B1_KeepsAnImageWithItsOwnGradients) {
   for (const auto& [w, h] : kSizes) {
     const std::vector<float> image = smooth_image(w, h, 3);
-    EXPECT_LT(max_difference(solve(exact(w, h, image)), image), 2e-5) << w << "x" << h;
+    EXPECT_LT(max_difference(solve(exact(w, h, image)), image), 1e-5) << w << "x" << h;
   }
 }
 

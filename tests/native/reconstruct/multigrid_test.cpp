@@ -4,6 +4,7 @@
 #include "reconstruct/conjugate_gradient.h"
 #include "reconstruct/l1_weights.h"
 #include "reconstruct/test_images.h"
+#include "reconstruct/weighted_least_squares.h"
 
 namespace gradus {
 namespace {
@@ -122,6 +123,24 @@ TEST(B2_Multigrid, WeightsWithoutOrderTakeFewSteps) {
   CgFields fields(w, h, 1);
   const CgReport report = conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, 200, never);
   EXPECT_LE(report.steps, 40);
+  EXPECT_TRUE(report.reached);
+  EXPECT_LE(report.residual, 1e-4f);
+}
+
+// A solve that ends at its limit says so, and how far it came.
+TEST(B2_Multigrid, TheLimitOfStepsIsReported) {
+  constexpr int w = 320, h = 180;
+  Multigrid multigrid(w, h, 1);
+  fill(&multigrid.matrix());
+  multigrid.update();
+  const Field b = random_field(w, h, 1, 2);
+  Field x(w, h, 1);
+  CgFields fields(w, h, 1);
+  SolveReport total;
+  add_solve(conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, 2, never), &total);
+  EXPECT_EQ(total.inner_steps, 2);
+  EXPECT_TRUE(total.hit_cap);
+  EXPECT_GT(total.residual, 1e-4f);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ inline double rms_difference(const std::vector<float>& a, const std::vector<floa
   return std::sqrt(sum / double(a.size()));
 }
 
-inline constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 3}, {33, 17}, {128, 96}};
+inline constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 3}, {33, 17}, {128, 96}, {512, 512}};
 
 inline bool never() { return false; }
 

@@ -13,11 +13,13 @@ std::vector<float> solve(const GradientImages& images, SolveReport* report) {
   return reconstruct(images, GRADUS_RECONSTRUCTION_WEIGHTED, 0.0f, never, report);
 }
 
+// It stops where the worst row is within a hundredth of its noise, not at a residual, which counts what is bright (CgGoal): here at up to
+// 1.1e-3, where L1 goes on to 1e-4.
 TEST(B2_Solver, WeightedReportsItsResidual) {
   for (const auto& [w, h] : kSizes) {
     SolveReport report;
     solve(noisy_images(w, h), &report);
-    EXPECT_LE(report.residual, 1e-2f) << w << "x" << h;
+    EXPECT_LE(report.residual, 2e-3f) << w << "x" << h;
     EXPECT_FALSE(report.hit_cap);
   }
 }

@@ -105,7 +105,7 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
       continue;
     }
     const EmitterView again = view_emitter(*snapshot, met->point, receiver);
-    different += std::fabs(again.pdf - view.pdf) > 1e-3f * view.pdf;
+    different += std::fabs(again.pdf - view.pdf) > 1e-4f * view.pdf;
     if (view.distance != kInfinity) displaced += std::fabs(met->distance - view.distance) > 1e-3f * view.distance + 1e-4f;
   }
   EXPECT_GT(compared, 20000);
