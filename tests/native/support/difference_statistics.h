@@ -1,6 +1,7 @@
 // Whether sampled differences are those of the image: in the mean over renders with different seeds.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/solver.h"
+#include "support/statistics.h"
 
 namespace gradus::test {
 
@@ -35,21 +37,26 @@ class DifferenceStatistics {
     total_squares_ += total * total;
     ++count_;
   }
-  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), and t of all of them together.
+  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), t of each (A5's rule), and of all of them
+  // together.
   void check(const char* what, int least = 50) const {
     double sum_t2 = 0.0;
     int used = 0;
+    std::vector<double> p_values;
     for (size_t i = 0; i < sum_.size(); ++i) {
       const double mean = sum_[i] / count_;
       const double variance = (squares_[i] - count_ * mean * mean) / (count_ - 1) / count_;
       if (variance > 1e-12) {  // else certain, but for rounding
         sum_t2 += mean * mean / variance;
+        p_values.push_back(student_p(mean / std::sqrt(variance), count_ - 1));
         ++used;
       }
     }
     ASSERT_GT(used, least) << what;
     const double expected = double(count_ - 1) / double(count_ - 3);
     EXPECT_LT(sum_t2 / used, 1.6 * expected) << what;
+    const auto off = std::count_if(p_values.begin(), p_values.end(), [&](double p) { return p < sidak(p_values.size()); });
+    EXPECT_LE(double(off), 0.0025 * used) << what;
     // Differences share pixels and jitter, so the total's variance is that of whole renders.
     const double total = total_ / count_;
     const double total_variance = (total_squares_ - count_ * total * total) / (count_ - 1) / count_;
