@@ -40,9 +40,7 @@ VALGRIND = (
     "--leak-check=full",
     f"--suppressions={ROOT / 'tests/support/valgrind.supp'}",
 )
-VALGRIND_TESTS = (
-    "L6_*:Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.LightAddsUp*/World:All/Passes.LightAddsUp*/RoughGlass"
-)
+VALGRIND_TESTS = "L6_*:Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.LightAddsUp*/World:All/Passes.LightAddsUp*/RoughGlass"
 
 
 @dataclass

@@ -1,11 +1,16 @@
-// G1, G3, G6 and G10 of the C API: wrong handles, the error slot, calls out of order, handles that come and go.
+// G1, G3, G4, G6 and G10 of the C API: wrong handles, the error slot, calls out of order, handles that come and go.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <mutex>
 #include <random>
+#include <regex>
+#include <set>
+#include <sstream>
 #include <thread>
 
 #include "api/error_slot.h"
@@ -272,6 +277,31 @@ TEST(G4_Exceptions, EveryKindBecomesACode) {
   EXPECT_EQ(api::guard([] { throw cancelled(); }), GRADUS_ERROR_CANCELLED);
   EXPECT_EQ(api::guard([] { throw 7; }), GRADUS_ERROR_UNKNOWN);
   gradus_error(nullptr);
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// Nothing can be made to throw in every entry point; but the whole of each is within the guard.
+TEST(G4_Exceptions, EveryEntryPointIsGuarded) {
+  const std::filesystem::path native = GRADUS_SOURCE_DIR "/native";
+  std::set<std::string> declared, guarded;
+  const auto collect = [](const std::string& text, const std::regex& pattern, std::set<std::string>* names) {
+    for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) names->insert((*match)[1]);
+  };
+  const std::regex declaration(R"(GradusError (gradus_\w+)\()"),
+      definition(R"(\nGradusError (gradus_\w+)\([^{;]*\{\s*return (?:api::guard|with_scene)\()");
+  collect(text_of(native / "include/gradus/gradus.h"), declaration, &declared);
+  for (const auto& file : std::filesystem::directory_iterator(native / "src/api")) collect(text_of(file.path()), definition, &guarded);
+  EXPECT_GT(declared.size(), 30u);
+  EXPECT_TRUE(
+      std::regex_search(text_of(native / "src/api/scene.cpp"), std::regex(R"(\nGradusError with_scene\([^{;]*\{\s*return guard\()")));
+  guarded.insert("gradus_error");  // reads what the guard has kept
+  EXPECT_EQ(declared, guarded);
 }
 
 TEST(G6_Order, RendersOutliveTheirSceneAndDevice) {
