@@ -13,6 +13,7 @@ import document  # noqa: E402
 import metrics  # noqa: E402
 import modes  # noqa: E402
 import seeds  # noqa: E402
+import suite  # noqa: E402
 
 RANDOM = np.random.default_rng(1)
 REFERENCE = 0.2 + RANDOM.random((24, 32, 3))
@@ -94,3 +95,16 @@ def test_both_forms_of_the_report_say_the_same() -> None:
     page = document.to_html("Title", blocks, "", "")
     assert '<td>1</td><td><a href="there.md">there</a></td>' in page
     assert "<li>one <b>bold</b></li><li>two <code>a&lt;b</code></li>" in page
+
+
+@pytest.mark.parametrize(
+    ("code", "output", "found"),
+    [
+        (0, "[  PASSED  ] 3 tests.", (3, 0)),
+        (1, "[  PASSED  ] 2 tests.\n[  FAILED  ] 1 test, listed below:", (2, 1)),
+        (-11, "[ RUN      ] A3.Crashes", (0, 1)),
+        (0, "[  PASSED  ] 0 tests.", (0, 1)),
+    ],
+)
+def test_a_suite_that_crashed_or_is_empty_is_not_green(code: int, output: str, found: tuple[int, int]) -> None:
+    assert suite.outcome(code, output) == found
