@@ -186,6 +186,36 @@ def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.type
     assert np.quantile(difference, 0.95) / np.abs(expected).mean() < 0.02
 
 
+@pytest.mark.parametrize("kind", ["AREA", "POINT", "SPOT"])
+@pytest.mark.parametrize(("node", "output"), [("NewGeometry", "Parametric"), ("TexCoord", "Normal")])
+def test_a9_lamps_have_coordinates_of_their_own(node: str, output: str, kind: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """What pictures of lamps and projections hang on: they were those of the world, or none at all."""
+    if kind != "AREA" and output == "Parametric" and VERSION < (4, 0, 0):
+        pytest.skip("Cycles had another order of them")
+    bpy.ops.mesh.primitive_plane_add(size=4.0)
+    data = bpy.data.lights.new("Lamp", kind)
+    data.energy, data.use_nodes = 200.0, True
+    if kind != "AREA":
+        data.shadow_soft_size = 0.1
+    graph = Graph(data)
+    shown = graph("VectorMath", "Vector", {"Vector": graph(node, output)}, operation="MULTIPLY_ADD")
+    for item, constant in zip(shown.node.inputs[1:3], (0.5, 0.6), strict=True):
+        item.default_value = (constant,) * 3
+    emission = next(item for item in graph.tree.nodes if item.bl_idname == "ShaderNodeEmission")
+    graph.tree.links.new(shown, emission.inputs["Color"])
+    lamp = bpy.data.objects.new("Lamp", data)
+    lamp.location, lamp.rotation_euler = (0.4, -0.3, 1.5), (0.3, 0.2, 0.1)
+    scene.collection.objects.link(lamp)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 4.0, (0.0, 0.0, 9.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    images.prepare(scene)
+    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    assert np.abs(expected).mean() > 0.05
+    assert np.abs(expected.mean(axis=(0, 1)) / found.mean(axis=(0, 1)) - 1.0).max() < 0.03
+
+
 @pytest.mark.parametrize(("node", "output"), TEXTURE_MEANS)
 def test_the_mean_that_stands_in_for_a_texture_is_that_of_cycles(node: str, output: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
     """Over a large and slanted slice."""

@@ -133,11 +133,23 @@ const Rgb* constant_emission(const Snapshot& snapshot, const EmitterPoint& point
   return material.emission_is_constant ? &material.constant_emission : nullptr;
 }
 
-// Coordinates over an area lamp, 0..1; elsewhere 0.
-Vec2 lamp_uv(const Lamp& lamp, const EmitterPoint& point) {
-  if (lamp.half_width <= 0.0f || lamp.half_height <= 0.0f) return Vec2(0.0f);
-  const Vec3 d = point.position - lamp.position;
-  return 0.5f + 0.5f * Vec2(glm::dot(d, lamp.axis_x) / lamp.half_width, glm::dot(d, lamp.axis_y) / lamp.half_height);
+// 0..1 over a sphere of directions.
+Vec2 spherical(const Vec3& d) {
+  const float u = d.x == 0.0f && d.y == 0.0f ? 0.0f : 0.5f * (1.0f - std::atan2(d.x, d.y) * kInvPi);
+  return {u, 1.0f - std::acos(std::clamp(d.z, -1.0f, 1.0f)) * kInvPi};
+}
+
+// Coordinates as Cycles has them: 0..1 over an area lamp, over the directions around a point, over the square that a spot's cone touches.
+Vec2 lamp_uv(const Lamp& lamp, const EmitterPoint& point, const LampPoint& at) {
+  if (lamp.half_width > 0.0f && lamp.half_height > 0.0f) {
+    const Vec3 d = point.position - lamp.position;
+    return 0.5f + 0.5f * Vec2(glm::dot(d, lamp.axis_x) / lamp.half_width, glm::dot(d, lamp.axis_y) / lamp.half_height);
+  }
+  if (lamp.at_infinity()) return Vec2(0.0f);
+  if (!lamp.is_spot) return spherical(at.normal * at.axes);
+  const Vec3 d = at.wo * at.axes;
+  const float tangent = std::sqrt(std::max(0.0f, 1.0f - lamp.cos_cone * lamp.cos_cone)) / lamp.cos_cone;
+  return d.z < 0.0f && tangent > 0.0f ? 0.5f + 0.5f * Vec2(d) / (-d.z * tangent) : Vec2(0.5f);
 }
 
 Rgb lamp_emission(const Snapshot& snapshot, const Lamp& lamp, const EmitterPoint& point, const EmitterView& view) {
@@ -146,7 +158,8 @@ Rgb lamp_emission(const Snapshot& snapshot, const Lamp& lamp, const EmitterPoint
   at.position = point.position;
   at.normal = point.normal == Vec3(0.0f) ? -view.direction : point.normal;
   at.wo = -view.direction;
-  at.uv = lamp_uv(lamp, point);
+  at.axes = Mat3(lamp.axis_x, lamp.axis_y, -lamp.shine);
+  at.uv = lamp_uv(lamp, point, at);
   return shade_lamp(snapshot, lamp.material, at, light_ray(view.distance));
 }
 

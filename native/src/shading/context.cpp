@@ -41,6 +41,7 @@ ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, cons
   c.normal = c.geometric_normal = point.normal;
   c.wo = point.wo;
   c.uv = point.uv;
+  c.lamp_axes = &point.axes;
   c.ray = ray;
   return c;
 }
@@ -65,6 +66,7 @@ ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3
 }
 
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
+  if (c.lamp_axes) return glm::transpose(*c.lamp_axes) * normal;
   // The inverse of the inverse transpose.
   return c.instance ? safe_normalize(glm::transpose(Mat3(c.instance->to_world)) * normal) : normal;
 }

@@ -21,7 +21,8 @@ struct ShadeContext {
   Vec3 normal = Vec3(0, 0, 1);            // shading normal, turned as the geometric normal is
   Vec3 geometric_normal = Vec3(0, 0, 1);  // on the side of wo
   Vec3 wo = Vec3(0, 0, 1);
-  Vec2 uv = Vec2(0.0f);  // of lamps
+  Vec2 uv = Vec2(0.0f);             // of lamps
+  const Mat3* lamp_axes = nullptr;  // nullptr: no lamp
   RayState ray;
   bool backfacing = false;
   bool is_background = false;

@@ -65,6 +65,7 @@ struct LampPoint {
   Vec3 normal = Vec3(0, 0, 1);
   Vec3 wo = Vec3(0, 0, 1);  // towards the receiver
   Vec2 uv = Vec2(0.0f);
+  Mat3 axes{1.0f};  // of the lamp, without scale
 };
 Rgb shade_lamp(const Snapshot& snapshot, uint32_t material, const LampPoint& point, const RayState& ray);
 
