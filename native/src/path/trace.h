@@ -10,9 +10,9 @@
 
 namespace gradus {
 
-// Reused from sample to sample: closures are large.
+// Reused from sample to sample: closures are large. Of the vertices two are the ends of a segment, and one the observer may keep.
 struct PathScratch {
-  Vertex vertices[2];
+  Vertex vertices[3];
   Segment segment;
   LightSample light;
   ScatterEvent event;
@@ -37,6 +37,7 @@ struct NoObserver {
   void light(const Vertex&, const LightSample&, ScatterClass, const Contribution&) {}
   void scatter(const Vertex&, const VertexSample&, const ScatterEvent&) {}
   void absorbed(const Vertex&, const VertexSample&) {}
+  const Vertex* kept() const { return nullptr; }  // that must not be overwritten yet
 };
 
 template <class Observer>
@@ -96,12 +97,18 @@ class PathTracer {
         see_end(sampler, RaySource{from, &s_.event});
         return;
       }
-      Vertex* vertex = from == &s_.vertices[0] ? &s_.vertices[1] : &s_.vertices[0];
+      Vertex* vertex = unused(from);
       ++counters_.rays_bounce;
       extend(sampler, &next_hit_, vertex);
       goes_on = step(sampler, RaySource{from, &s_.event}, vertex);
       from = vertex;
     }
+  }
+
+  Vertex* unused(const Vertex* from) const {
+    Vertex* v = s_.vertices;
+    while (v == from || v == observer_.kept()) ++v;
+    return v;
   }
 
   // The path's last ray, of which nobody wants to know more than the light that it finds.

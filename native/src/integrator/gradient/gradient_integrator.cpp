@@ -17,10 +17,10 @@ struct Worker {
         offsets(context, counters, &vertices),
         tracer(context, &scratch, &recorder, counters, &offsets),
         plain(context, &plain_scratch, &recorder, counters, &nobody) {
-    for (int i = 0; i < 2; ++i) scratch.vertices[i].shade.tape = &tapes[i];
+    for (size_t i = 0; i < std::size(tapes); ++i) scratch.vertices[i].shade.tape = &tapes[i];
   }
   PathScratch scratch;
-  ClosureTape tapes[2];  // of the base's vertices, which offsets see again
+  ClosureTape tapes[3];  // of the base's vertices, which offsets see again
   PassRecorder recorder;
   CameraVertices vertices;
   OffsetPaths offsets;

@@ -73,6 +73,7 @@ Radiance OffsetPaths::see_once(OffsetPath* o) const {
 }
 
 void OffsetPaths::seen() {
+  sees_kept_ = false;
   if (open_ == 0) {
     return;
   }

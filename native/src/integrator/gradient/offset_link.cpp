@@ -7,8 +7,7 @@ namespace gradus {
 
 // Everything but visibility.
 ShiftFailure OffsetPaths::try_link(OffsetPath* o, const Vertex& vertex, ShiftedEvent* event) const {
-  const Reconnection connection =
-      reconnect(base_from_->point.position, o->here->point.position, vertex.point.position, vertex.point.geometric_normal);
+  const Reconnection connection = reconnect(base_position_, o->here->point.position, vertex.point.position, vertex.point.geometric_normal);
   if (connection.failure != ShiftFailure::None) {
     return connection.failure;
   }
@@ -120,14 +119,14 @@ bool OffsetPaths::arrives(OffsetPath* o, const Vertex& vertex) {
 }
 
 bool OffsetPaths::shares(const Vec3& y, const Vertex& z, ScatterClass next) const {
-  return shares_sharp_vertex(base_from_->point.position, y, z.point.position, context_.scene.curvature(z.point.hit),
+  return shares_sharp_vertex(base_position_, y, z.point.position, context_.scene.curvature(z.point.hit),
                              next == ScatterClass::Transmission);
 }
 
 // The event at z, seen from the base's vertex or from y, has a lobe that looks alike from both.
 bool OffsetPaths::shares_direction(const Vec3& y, const Vertex& z, const ScatterEvent& event) const {
   const float width = event.sample.dirac ? 0.0f : class_width(z.shade.closures, event.scatter_class);
-  return looks_alike(base_from_->point.position, y, z.point.position, width);
+  return looks_alike(base_position_, y, z.point.position, width);
 }
 
 // Class D before class R or T: the offset shares its base's vertex, and where the lobe is wide the direction, too; or it goes on by a ray
@@ -187,6 +186,10 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
   }
   if (!reconnects(event.scatter_class)) {
     reach_sharp(vertex, event);
+    return;
+  }
+  if (may_wait()) {
+    wait(vertex, event);
     return;
   }
   link_all(vertex);

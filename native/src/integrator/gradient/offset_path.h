@@ -25,6 +25,7 @@ enum class OffsetStage : uint8_t {
   Pending,  // the base left in class D: stands where it was until it is known what the next vertex is used for
   Linked,   // shares the base's vertices from here on, but on the first segment has a density of its own
   Deeper,   // shares all from here on, but has passed more transparent surfaces, whose limit may stop it alone
+  Waiting,  // will be Linked at a vertex behind which the base has found nothing yet (offset_wait.cpp)
   // Settled: what the base finds from here on is paired with the same times a throughput, by one ratio (Suffix).
   Shared,  // the first segment lies behind it
   Parted,  // throughput 0: the two have no vertex in common any more, each goes on by itself

@@ -55,6 +55,9 @@ void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const Pixe
 }
 
 void OffsetPaths::collect(const Contribution& c, const Rgb& weight) {
+  if (kept_ != nullptr) {
+    resume();
+  }
   const Rgb tail = suffix_.weight * weight * c.tail;
   if (clamps_) {
     for (int k = 0; k < kOffsets; ++k) {
@@ -146,6 +149,7 @@ void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& le
   film_ = film;
   lens_ = lens;
   open_ = 0;
+  kept_ = nullptr;
   suffix_ = Suffix{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
@@ -158,22 +162,30 @@ void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& le
   }
 }
 
-void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
-  if (open_ == 0) {
-    return;
-  }
+void OffsetPaths::note_arrival(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
   base_segment_ = &segment;
   base_state_ = state;
   base_in_hole_ = source.vertex == nullptr && segment.end == SegmentEnd::Surface && is_hole(context_, vertex);
   if (source.vertex != nullptr) {
     base_event_ = *source.event;
     base_from_ = source.vertex;
+    base_position_ = source.vertex->point.position;
   }
   seen_ = Radiance(0.0f);
   for (OffsetPath& o : offsets_) {
     o.light.known = false;
     o.fresh = false;
   }
+}
+
+void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
+  if (kept_ != nullptr) {
+    latest_ = {source, &state, &segment, &vertex};
+  }
+  if (open_ == 0) {
+    return;
+  }
+  note_arrival(source, state, segment, vertex);
   if (source.vertex == nullptr) {
     trace_camera(state);
   } else if (!reconnects(source.event->scatter_class)) {

@@ -33,6 +33,7 @@ class OffsetPaths {
   void survived(float probability, const Vertex& vertex);
   void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   void scatter(const Vertex& vertex, const VertexSample& u, const ScatterEvent& event);
+  const Vertex* kept() const { return kept_; }
   void absorbed(const Vertex& vertex, const VertexSample& u) { part_by_class(vertex, u); }
 
  private:
@@ -45,6 +46,7 @@ class OffsetPaths {
   void tell_settled();
   // A path that shares a segment passes so many of its surfaces, as the base did.
   bool passes(const OffsetPath& offset, int crossed) const;
+  void note_arrival(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex);
   void settle(OffsetPath* offset, OffsetStage stage);
   void join(OffsetPath* offset);
   void fail(OffsetPath* offset, ShiftFailure cause);
@@ -89,6 +91,11 @@ class OffsetPaths {
   bool shares_direction(const Vec3& y, const Vertex& z, const ScatterEvent& event) const;
   ShiftedEvent linked_event(OffsetPath* offset, const Vertex& vertex, const ScatterEvent& event) const;
 
+  // Reconnection put off (offset_wait.cpp).
+  bool may_wait() const;
+  void wait(const Vertex& vertex, const ScatterEvent& event);
+  void resume();
+
   // Emitters (offset_emission.cpp, offset_light.cpp).
   Radiance see(OffsetPath* offset) const;
   Radiance see_once(OffsetPath* offset) const;
@@ -111,7 +118,7 @@ class OffsetPaths {
   std::array<PairCount, kOffsets> pairs_{};
   std::array<Radiance, kOffsets> gradient_{};
   std::array<OffsetPath, kOffsets> offsets_;
-  int open_ = 0;  // offsets that are neither absent nor settled
+  int open_ = 0;  // offsets that are neither absent nor waiting nor settled
   Suffix suffix_;
   bool clamps_ = false;  // contributions are clamped one by one
   // What the base's current segment shows.
@@ -120,8 +127,19 @@ class OffsetPaths {
   const Segment* base_segment_ = nullptr;
   bool base_in_hole_ = false;
   const Vertex* base_from_ = nullptr;
+  Vec3 base_position_ = Vec3(0.0f);
   ScatterEvent base_event_;
   PathState base_state_;
+  // While offsets wait: for what, and where the base has arrived since.
+  const Vertex* kept_ = nullptr;
+  ScatterEvent kept_event_;
+  struct {
+    RaySource source;
+    const PathState* state = nullptr;
+    const Segment* segment = nullptr;
+    const Vertex* vertex = nullptr;
+  } latest_;
+  bool sees_kept_ = false;  // the base's segment begins at the kept vertex, and is not done with
   // Light and BSDF sampling see the same integrand, so that all four strategies can be weighed together.
   bool joint_ = false;
   // Traces what parted offsets find.

@@ -158,7 +158,7 @@ void OffsetPaths::copy_direction(OffsetPath* o, const ScatterEvent& next) {
 // other end.
 bool OffsetPaths::replays(const Vec3& y, const Vertex& z) const {
   const bool rough = z.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
-  return rough && is_short_edge(base_from_->point.position, y, z.point.position);
+  return rough && is_short_edge(base_position_, y, z.point.position);
 }
 
 void OffsetPaths::replay_short_edges(const Vertex& vertex) {
