@@ -60,6 +60,11 @@ Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
   }
 }
 
+Rgb reflected_once(const Lobe& lobe, float cosine) {
+  const bool known = lobe.known.cosine == cosine && lobe.known.ior == lobe.ior;
+  return known ? lobe.known.reflected : single_reflection(lobe, mean_alpha(lobe), cosine);
+}
+
 // Of the transmission side. Schlick-type glass: the dielectric share, scaled by what its own Fresnel term leaves.
 Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
   const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
@@ -111,7 +116,7 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
     case LobeType::Sheen:
       return {lobe.weight * sheen_albedo(lobe, cosine), Rgb(0.0f)};
     case LobeType::GgxReflection:
-      return {scale * single_reflection(lobe, mean_alpha(lobe), cosine), Rgb(0.0f)};
+      return {scale * reflected_once(lobe, cosine), Rgb(0.0f)};
     case LobeType::GgxRefraction:
       return {Rgb(0.0f), scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
     case LobeType::GgxGlass:
@@ -123,15 +128,18 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
 
 // Layers take what Cycles takes: the albedo as if no energy were lost between facets, and below an IOR of 1 that of its inverse, as
 // its tables end there.
-Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo) {
-  Lobe prepared = lobe;
-  prepare_lobe(&prepared, glm::dot(lobe.normal, wo) < 0.0f ? -lobe.normal : lobe.normal, wo);
+Rgb lobe_albedo(Lobe* lobe, const Vec3& wo) {
+  Lobe prepared = *lobe;
+  prepare_lobe(&prepared, glm::dot(lobe->normal, wo) < 0.0f ? -lobe->normal : lobe->normal, wo);
+  const float cosine = glm::dot(prepared.normal, wo);
   float kept = 1.0f;
   if (prepared.type == LobeType::GgxReflection) {
     prepared.ior = prepared.fresnel == FresnelType::Schlick ? std::max(prepared.ior, 1.0f / prepared.ior) : prepared.ior;
-    kept = prepared.multiscatter ? 1.0f : ggx_moments(mean_alpha(prepared), glm::dot(prepared.normal, wo)).one;
+    kept = prepared.multiscatter ? 1.0f : ggx_moments(mean_alpha(prepared), cosine).one;
+    const float seen = std::min(std::abs(cosine), 1.0f);
+    prepared.known = lobe->known = {seen, prepared.ior, single_reflection(prepared, mean_alpha(prepared), seen)};
   }
-  const LobeAlbedo albedo = two_sided_albedo(prepared, glm::dot(prepared.normal, wo));
+  const LobeAlbedo albedo = two_sided_albedo(prepared, cosine);
   return (albedo.reflected + albedo.transmitted) / std::max(kept, 0.05f);
 }
 

@@ -91,14 +91,30 @@ GlassAlbedo compute_glass(float alpha, float cosine, float eta) {
   return {sum.reflected * scale, sum.transmitted * scale, sum.crossing * scale};
 }
 
+// Up to four functions of alpha and cosine in one register; all are interpolated at once.
+using Values = float __attribute__((vector_size(16)));
+using Plane = std::array<Values, size_t(kAlphas) * kCosines>;
+
+Values mix(const Values& a, const Values& b, float t) { return a + (b - a) * t; }
+
+Values interpolate(const Plane& plane, const Cell& a, const Cell& c) {
+  const Values* low = plane.data() + size_t(a.index) * kCosines + size_t(c.index);
+  const Values* high = low + kCosines;
+  return mix(mix(low[0], low[1], c.fraction), mix(high[0], high[1], c.fraction), a.fraction);
+}
+
+Cell alpha_cell(float alpha) { return locate(std::sqrt(std::max(0.0f, alpha)), kAlphas); }
+Cell cosine_cell(float cosine) { return locate(std::sqrt(std::max(0.0f, cosine)), kCosines); }
+
 struct MomentTable {
-  std::array<GgxMoments, size_t(kAlphas) * kCosines> values;
+  Plane values;  // of GgxMoments, in order
   std::array<float, kAlphas> mean;
 
   MomentTable() {
     for (int a = 0; a < kAlphas; a++) {
       for (int c = 0; c < kCosines; c++) {
-        values[size_t(a) * kCosines + size_t(c)] = compute_moments(axis_value(a, kAlphas), axis_value(c, kCosines));
+        const GgxMoments m = compute_moments(axis_value(a, kAlphas), axis_value(c, kCosines));
+        values[size_t(a) * kCosines + size_t(c)] = Values{m.one, m.schlick, m.f82, 0.0f};
       }
       mean[static_cast<size_t>(a)] = mean_of_row(a);
     }
@@ -111,7 +127,7 @@ struct MomentTable {
       const float x = (static_cast<float>(i) + 0.5f) / kSteps;
       const Cell cell = locate(x, kCosines);
       const size_t k = size_t(a) * kCosines + size_t(cell.index);
-      sum += (values[k].one + (values[k + 1].one - values[k].one) * cell.fraction) * 4.0f * x * x * x;
+      sum += mix(values[k], values[k + 1], cell.fraction)[0] * 4.0f * x * x * x;
     }
     return sum / kSteps;
   }
@@ -127,27 +143,26 @@ float eta_at(int i) {
   return (1.0f + root) / (1.0f - root);
 }
 
-// Of one η: reflected, transmitted, crossing, mixed as one vector.
-using GlassPlane = std::array<Vec4, size_t(kAlphas) * kCosines>;
-
-GlassPlane make_glass_plane(float eta) {
-  GlassPlane plane;
+// Of one η: GlassAlbedo's values, in order.
+Plane make_glass_plane(float eta) {
+  Plane plane;
   for (int a = 0; a < kAlphas; a++) {
     for (int c = 0; c < kCosines; c++) {
       const GlassAlbedo g = compute_glass(axis_value(a, kAlphas), axis_value(c, kCosines), eta);
-      plane[size_t(a) * kCosines + size_t(c)] = Vec4(g.reflected, g.transmitted, g.crossing, 0.0f);
+      plane[size_t(a) * kCosines + size_t(c)] = Values{g.reflected, g.transmitted, g.crossing, 0.0f};
     }
   }
   return plane;
 }
 
-// Made when it is asked for: a scene has few indices, and all of them take half a second.
+// Made when it is asked for: a scene has few indices, and all of them take half a second. Place i on the axis of η above 1, or of its
+// inverses: the critical angle makes them different functions.
 class LazyGlassPlane {
  public:
-  const GlassPlane& get(float eta) {
+  const Plane& get(int i, bool inverse) {
     if (!made_.load(std::memory_order_acquire)) {
       std::call_once(once_, [&] {
-        plane_ = make_glass_plane(eta);
+        plane_ = make_glass_plane(inverse ? 1.0f / eta_at(i) : eta_at(i));
         made_.store(true, std::memory_order_release);
       });
     }
@@ -157,52 +172,31 @@ class LazyGlassPlane {
  private:
   std::atomic<bool> made_{false};
   std::once_flag once_;
-  GlassPlane plane_;
+  Plane plane_{};
 };
-
-// Place i on the axis of η above 1, or of its inverses: the critical angle makes them different functions.
-const GlassPlane& glass_plane(int i, bool inverse) {
-  static std::array<std::array<LazyGlassPlane, kIors>, 2> planes;
-  return planes[inverse ? 1 : 0][size_t(i)].get(inverse ? 1.0f / eta_at(i) : eta_at(i));
-}
-
-template <typename T, typename Mix>
-T bilinear(const T* row0, const T* row1, const Cell& a, const Cell& c, Mix mix) {
-  return mix(mix(row0[c.index], row0[c.index + 1], c.fraction), mix(row1[c.index], row1[c.index + 1], c.fraction), a.fraction);
-}
-
-GgxMoments mix_moments(const GgxMoments& a, const GgxMoments& b, float t) {
-  return {a.one + (b.one - a.one) * t, a.schlick + (b.schlick - a.schlick) * t, a.f82 + (b.f82 - a.f82) * t};
-}
-Vec4 mix_glass(const Vec4& a, const Vec4& b, float t) { return a + (b - a) * t; }
 
 }  // namespace
 
 GgxMoments ggx_moments(float alpha, float cosine) {
-  const MomentTable& table = moment_table();
-  const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
-  const Cell c = locate(std::sqrt(std::max(0.0f, cosine)), kCosines);
-  const GgxMoments* row = table.values.data() + size_t(a.index) * kCosines;
-  return bilinear(row, row + kCosines, a, c, mix_moments);
+  const Values m = interpolate(moment_table().values, alpha_cell(alpha), cosine_cell(cosine));
+  return {m[0], m[1], m[2]};
 }
 
 float ggx_mean_albedo(float alpha) {
-  const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
+  const Cell a = alpha_cell(alpha);
   const auto& mean = moment_table().mean;
   const size_t i = static_cast<size_t>(a.index);
   return mean[i] + (mean[i + 1] - mean[i]) * a.fraction;
 }
 
 GlassAlbedo glass_albedo(float alpha, float cosine, float eta) {
+  static constinit std::array<std::array<LazyGlassPlane, kIors>, 2> planes;
+  const bool inverse = eta < 1.0f;
   const Cell i = locate(std::sqrt(std::abs((eta - 1.0f) / (eta + 1.0f))), kIors);
-  const Cell a = locate(std::sqrt(std::max(0.0f, alpha)), kAlphas);
-  const Cell c = locate(std::sqrt(std::max(0.0f, cosine)), kCosines);
-  const auto plane = [&](int k) {
-    const Vec4* row = glass_plane(k, eta < 1.0f).data() + size_t(a.index) * kCosines;
-    return bilinear(row, row + kCosines, a, c, mix_glass);
-  };
-  const Vec4 mixed = mix_glass(plane(i.index), plane(i.index + 1), i.fraction);
-  return {mixed.x, mixed.y, mixed.z};
+  const Cell a = alpha_cell(alpha), c = cosine_cell(cosine);
+  const auto at = [&](int k) { return interpolate(planes[inverse][size_t(k)].get(k, inverse), a, c); };
+  const Values g = mix(at(i.index), at(i.index + 1), i.fraction);
+  return {g[0], g[1], g[2]};
 }
 
 }  // namespace gradus

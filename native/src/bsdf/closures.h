@@ -33,6 +33,13 @@ enum class LobeType : uint8_t {
 
 enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
 
+// What single scattering reflects of light from one direction, without weight.
+struct KnownAlbedo {
+  float cosine = -1.0f;  // under which it is seen; -1: not known
+  float ior = 1.0f;
+  Rgb reflected = Rgb(0.0f);
+};
+
 // One lobe. Frame: normal, and tangent where anisotropic.
 //
 // Which fields count:
@@ -62,6 +69,7 @@ struct Lobe {
   Rgb transmission_tint = Rgb(1.0f);                   // glass lobes
   float sample_weight = 0.0f;                          // filled by Closures::finish()
   Rgb energy = Rgb(1.0f);                              // multiple scattering, filled by finish()
+  KnownAlbedo known;                                   // what lobe_albedo() found: finish() mostly asks for the same
   ScatterClass scatter_class = ScatterClass::Diffuse;  // reflection side; for GgxGlass the transmission side is T, unless rough (D)
 };
 
@@ -89,8 +97,8 @@ struct BsdfSample {
 };
 
 // Directional albedo of one lobe by itself, weight included, before finish(): for layering, so without what single scattering loses. wo
-// is inside where normal·wo < 0.
-Rgb lobe_albedo(const Lobe& lobe, const Vec3& wo);
+// is inside where normal·wo < 0. All that the lobe looks like must be set; its `known` is filled.
+Rgb lobe_albedo(Lobe* lobe, const Vec3& wo);
 
 inline constexpr int kMaxLobes = 12;
 

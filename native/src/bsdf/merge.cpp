@@ -22,7 +22,7 @@ float squared_distance(const Lobe& a, const Lobe& b) {
 // Albedo as seen along the normal.
 Rgb head_on_albedo(Lobe lobe) {
   lobe.normal = Vec3(0, 0, 1);
-  return lobe_albedo(lobe, lobe.normal);
+  return lobe_albedo(&lobe, lobe.normal);
 }
 
 }  // namespace
@@ -35,6 +35,7 @@ float merge_cost(const Lobe& a, const Lobe& b) {
 Lobe merged(const Lobe& a, const Lobe& b) {
   const float wa = mean_component(a.weight), wb = mean_component(b.weight);
   Lobe lobe = wa >= wb ? a : b;
+  lobe.known = KnownAlbedo{};
   lobe.weight = a.weight + b.weight;
   const float share = wb / (wa + wb);
   const Rgb shares = b.weight / glm::max(lobe.weight, 1e-30f);

@@ -1,4 +1,6 @@
 // Principled BSDF of Blender 4.0 and later: layers, each scaled by what those above let through (Blender manual, "Principled BSDF").
+#include <optional>
+
 #include "shading/closure_ops.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
@@ -59,42 +61,41 @@ class Layers {
  private:
   bool multiscatter() const { return (args_.mode & GRADUS_DISTRIBUTION_MULTIPLE) != 0; }
 
-  // Fills a reflection lobe; the layers below get the rest of its albedo.
-  void put_layer(const Lobe& lobe) {
-    const Rgb albedo = lobe_albedo(lobe, c_.wo);
-    if (!(args_.mode & kEmissionOnly)) *result_->closures.add() = lobe;
-    weight_ = layered(weight_, albedo);
+  // A lobe to be filled where it stays: copies of what has just been written stall. It is a spare one where emission alone is wanted.
+  Lobe* new_layer(LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal) {
+    Lobe* lobe = args_.mode & kEmissionOnly ? &spare_.emplace() : result_->closures.add();
+    lobe->type = type;
+    lobe->pass = pass;
+    lobe->weight = weight;
+    lobe->normal = normal;
+    return lobe;
   }
+
+  // The layers below a reflection lobe get the rest of its albedo.
+  void put_layer(Lobe* lobe) { weight_ = layered(weight_, lobe_albedo(lobe, c_.wo)); }
 
   void sheen() {
     const float amount = std::max(args_.f(kSheenWeight), 0.0f);
     const Rgb tinted = weight_ * amount * glm::max(args_.v(kSheenTint), Vec3(0.0f));
     if (!(max_component(tinted) > kWeightCutoff)) return;
-    Lobe lobe;
-    lobe.type = LobeType::Sheen;
-    lobe.pass = LightPass::Diffuse;
-    lobe.weight = tinted;
     const Vec3 coat_normal = facing_normal(c_, args_.v(kCoatNormal));
     const float coated = saturate(args_.f(kCoatWeight));
-    lobe.normal = facing_normal(c_, glm::mix(normal_, coat_normal, coated));
-    lobe.alpha_x = saturate(args_.f(kSheenRoughness));
+    const Vec3 normal = facing_normal(c_, glm::mix(normal_, coat_normal, coated));
+    Lobe* lobe = new_layer(LobeType::Sheen, LightPass::Diffuse, tinted, normal);
+    lobe->alpha_x = saturate(args_.f(kSheenRoughness));
     put_layer(lobe);
   }
 
   void coat() {
     const float amount = std::max(args_.f(kCoatWeight), 0.0f);
     if (!(amount * max_component(weight_) > kWeightCutoff)) return;
-    Lobe lobe;
-    lobe.type = LobeType::GgxReflection;
-    lobe.pass = LightPass::Glossy;
-    lobe.fresnel = FresnelType::Dielectric;
-    lobe.weight = weight_ * amount;
-    lobe.normal = facing_normal(c_, args_.v(kCoatNormal));
-    lobe.ior = std::max(args_.f(kCoatIor), 1.0f);
+    Lobe* lobe = new_layer(LobeType::GgxReflection, LightPass::Glossy, weight_ * amount, facing_normal(c_, args_.v(kCoatNormal)));
+    lobe->fresnel = FresnelType::Dielectric;
+    lobe->ior = std::max(args_.f(kCoatIor), 1.0f);
     const float roughness = saturate(args_.f(kCoatRoughness));
-    lobe.alpha_x = lobe.alpha_y = roughness * roughness;
+    lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     put_layer(lobe);
-    tint_below_coat(lobe, saturate(amount));
+    tint_below_coat(*lobe, saturate(amount));
   }
 
   // Beer's law: the tint is what a perpendicular crossing keeps, the path inside is longer by 1/cos.
@@ -142,15 +143,11 @@ class Layers {
       ior = ior < 1.0f ? 1.0f / adjusted : adjusted;
     }
     if (ior == 1.0f || !(max_component(weight_) > kWeightCutoff)) return;
-    Lobe lobe;
-    lobe.type = LobeType::GgxReflection;
-    lobe.pass = LightPass::Glossy;
-    lobe.fresnel = FresnelType::Schlick;
-    lobe.weight = weight_;
-    lobe.normal = normal_;
-    lobe.ior = ior;
-    lobe.f0 = f0 * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
-    set_shape(&lobe);
+    Lobe* lobe = new_layer(LobeType::GgxReflection, LightPass::Glossy, weight_, normal_);
+    lobe->fresnel = FresnelType::Schlick;
+    lobe->ior = ior;
+    lobe->f0 = f0 * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
+    set_shape(lobe);
     put_layer(lobe);
   }
 
@@ -174,6 +171,7 @@ class Layers {
   const ClosureArgs& args_;
   const ShadeContext& c_;
   ShadeResult* result_;
+  std::optional<Lobe> spare_;
   Rgb weight_;
   Vec3 normal_;
 };

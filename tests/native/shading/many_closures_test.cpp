@@ -121,7 +121,8 @@ TEST(ManyClosures, CurvesOfFresnelThatDoNotMixKeepTheirAlbedo) {
   metal.weight = Rgb(0.4f);
   metal.fresnel = FresnelType::PrincipledMetal;
   metal.f0 = Rgb(0.5f);
-  const Rgb after = lobe_albedo(merged(coat, metal), Vec3(0, 0, 1));
+  Lobe both = merged(coat, metal);
+  const Rgb after = lobe_albedo(&both, Vec3(0, 0, 1));
   EXPECT_NEAR(after.x, before.x, 0.01f);
 }
 
