@@ -238,6 +238,7 @@ class Instances(Struct):
         ("colors", POINTER(c_float)),
         ("generated", POINTER(c_float)),
         ("uvs", POINTER(c_float)),
+        ("shadow_terminator_offsets", POINTER(c_float)),
         ("material_first", POINTER(c_uint32)),
         ("material_count", POINTER(c_uint32)),
         ("materials_size", c_size_t),

@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from . import compat, frame_store, native, options, output, passes, pixels, settings, stats, store
+from . import compat, cycles_settings, frame_store, native, options, output, passes, pixels, settings, stats, store
 from .export import Cancelled as ExportCancelled
 from .failure import Failure
 from .native import Error, GradusError, Phase
@@ -116,6 +116,7 @@ class Job:
         if self.is_preview:
             limit_preview(self.settings, host_value("preview_samples", self.scene, self.overrides))
         self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
+        self.warn(cycles_settings.warnings(self.scene, {name for name, _ in self.overrides.native}))
         self.export(self.views[0])
 
     def export(self, view: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
+from gradus.export import shadow_terminator
 from support import recording
 
 CAMERA, GLOSSY, HOLDOUT = 1, 4, 64
@@ -129,6 +130,17 @@ def test_object_facts(scene: bpy.types.Scene) -> None:
     recorded, _ = recording.export(scene)
     assert list(recorded.instances["pass_index"]) == [7]
     assert np.allclose(recorded.instances["colors"][0], (0.1, 0.2, 0.3, 0.4))
+
+
+def test_shadow_terminator_offsets(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    for name, offset in (("Default", None), ("Off", 0.0), ("Wide", 0.5)):
+        obj = recording.add(recording.grid(1), name)
+        if offset is not None:
+            setattr(shadow_terminator.owner(obj), shadow_terminator.GEOMETRY_OFFSET, offset)
+    recorded, _ = recording.export(scene)
+    found = dict(zip(recorded.instances["names"], recorded.instances["shadow_terminator_offset"], strict=True))
+    assert found == pytest.approx({"Default": 0.1, "Off": 0.0, "Wide": 0.5})
 
 
 def test_coordinates_of_the_instancer(scene: bpy.types.Scene) -> None:

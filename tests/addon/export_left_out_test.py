@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 import pytest
+from gradus.export import shadow_terminator
 from support import recording
 
 
@@ -20,6 +21,13 @@ def plane(scene: bpy.types.Scene) -> bpy.types.Object:
 def test_nothing_is_left_out_of_an_ordinary_scene(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     recording.add(bpy.data.lights.new("Lamp", "POINT"), "Lamp").is_shadow_catcher = True  # Blender's default for lamps
     assert warnings(scene) == []
+
+
+def test_a_shading_offset_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    owner = shadow_terminator.owner(plane)
+    name = next(name for name in shadow_terminator.SHADING_OFFSETS if hasattr(owner, name))
+    setattr(owner, name, 0.25)
+    assert warnings(scene) == ["Object 'Plane': the shading offset of its shadow terminator is left out"]
 
 
 def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:

@@ -25,6 +25,12 @@ def test_f7_a_folder_that_cannot_be_created_is_called_so() -> None:
         output.require_space("/proc/nope/c_0001.exr", 1)
 
 
+def test_f7_a_folder_that_cannot_be_written_is_noticed_before_rendering(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(output.os, "access", lambda path, mode: not mode & output.os.W_OK)  # root may write everywhere
+    with pytest.raises(Failure, match="cannot be written to"):
+        output.require_space(str(tmp_path / "a.exr"), 1)
+
+
 def test_f7_the_frame_before(tmp_path: Path) -> None:
     render = SimpleNamespace(frame_path=lambda frame: str(tmp_path / f"{frame}.png"), is_movie_format=False, use_multiview=False)
     files = output.FrameFiles()

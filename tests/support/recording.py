@@ -116,6 +116,7 @@ class Recording:
             "colors": values(record.colors, count, 4),
             "generated": values(record.generated, count, 3),
             "uvs": values(record.uvs, count, 2),
+            "shadow_terminator_offset": values(record.shadow_terminator_offsets, count),
             "materials": [list(materials[first[i] : first[i] + counts[i]]) if counts[i] else [] for i in range(count)],
             "names": [record.names[record.name_index[i]].decode() for i in range(count)],
         }

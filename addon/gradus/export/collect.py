@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from . import left_out
+from . import left_out, shadow_terminator
 from .arrays import read
 from .object_random import name_hash
 from .visibility import ALL_RAYS, visibility
@@ -33,6 +33,7 @@ class Entry:
     random_id: int
     pass_index: int
     color: tuple[float, ...]
+    shadow_terminator_offset: float
     generated: tuple[float, ...] = (0.0, 0.0, 0.0)
     uv: tuple[float, ...] = (0.0, 0.0)
     materials: tuple[Any, ...] = ()
@@ -74,6 +75,7 @@ class _Facts:
     name: str
     pass_index: int
     color: tuple[float, ...]
+    shadow_terminator_offset: float
 
 
 class _Parts:
@@ -94,7 +96,8 @@ class _Parts:
             # Originals: a new depsgraph, as each frame of an animation may have, has other evaluated addresses.
             key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
             bits = visibility(obj, parent, self._view_layer)
-            found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color))
+            terminator = shadow_terminator.geometry_offset(obj)
+            found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color), terminator)
             self._warnings.extend(left_out.of_object(owner, self._view_layer))
             if parent is not None:
                 self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
@@ -163,7 +166,19 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, parts: _Parts) -
         random_id = instance.random_id & 0xFFFFFFFF
     else:
         key, random_id = facts.key, name_hash(facts.name)
-    entry = Entry(index, key, owner, data, place, facts.name, facts.visibility, random_id, facts.pass_index, facts.color)
+    entry = Entry(
+        index,
+        key,
+        owner,
+        data,
+        place,
+        facts.name,
+        facts.visibility,
+        random_id,
+        facts.pass_index,
+        facts.color,
+        facts.shadow_terminator_offset,
+    )
     if copies:
         entry.generated = tuple(instance.orco)
         entry.uv = tuple(instance.uv)

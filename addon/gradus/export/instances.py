@@ -73,6 +73,7 @@ def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]
         "colors": _flat(entries, "color", 4),
         "generated": _flat(entries, "generated", 3),
         "uvs": _flat(entries, "uv", 2),
+        "shadow_terminator_offsets": array("f", [entry.shadow_terminator_offset for entry in entries]),
         "name_index": array("I", [names.setdefault(entry.name, len(names)) for entry in entries]),
         "meshes": arrays.mesh_keys,
         "ids": arrays.ids,

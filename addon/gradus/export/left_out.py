@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from . import shadow_terminator
+
 _KINDS = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
 KINDS = frozenset(_KINDS)
 """Types of objects that are not rendered."""
@@ -20,6 +22,8 @@ def of_object(obj: Any, view_layer: Any) -> Iterator[str]:
         yield f"Object '{obj.name}': hair particles are not rendered yet"
     if obj.is_shadow_catcher and obj.type != "LIGHT":  # lamps are by default: they light the shadows that are caught
         yield f"Object '{obj.name}' is a shadow catcher and is rendered as an ordinary surface"
+    if obj.type != "LIGHT" and shadow_terminator.has_shading_offset(obj):
+        yield f"Object '{obj.name}': the shading offset of its shadow terminator is left out"
     linking = getattr(obj, "light_linking", None)  # from 4.0 on
     if linking is not None and (linking.receiver_collection is not None or linking.blocker_collection is not None):
         yield f"Object '{obj.name}': light linking is left out, it shines on everything"

@@ -1,4 +1,4 @@
-"""Objects: which rays see them. The stock panel Visibility leaves this to the engine."""
+"""Objects: which rays see them (the stock panel Visibility leaves this to the engine), and their shadow terminator."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ..export import shadow_terminator
 from ..export.visibility import RAY_SWITCHES
 from .base import EnginePanel
 
@@ -32,4 +33,18 @@ class GRADUS_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
             layout.prop(obj, "is_holdout")
 
 
-CLASSES = (GRADUS_OBJECT_PT_ray_visibility,)
+class GRADUS_OBJECT_PT_shadow_terminator(EnginePanel, bpy.types.Panel):
+    bl_label = "Shadow Terminator"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        obj = context.object
+        return super().poll(context) and obj is not None and obj.type in SURFACES and shadow_terminator.owner(obj) is not None
+
+    def draw(self, context: Any) -> None:
+        self.columns().prop(shadow_terminator.owner(context.object), shadow_terminator.GEOMETRY_OFFSET, text="Geometry Offset")
+
+
+CLASSES = (GRADUS_OBJECT_PT_ray_visibility, GRADUS_OBJECT_PT_shadow_terminator)

@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from .. import store
+from .. import cycles_settings, store
 from .base import RenderPanel
 from .presets import GRADUS_PT_presets
 
@@ -71,6 +71,20 @@ class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
         column = layout.column(align=True, heading="Clamping")
         column.prop(settings, "clamp_direct")
         column.prop(settings, "clamp_indirect")
+        if cycles_settings.values(context.scene):
+            layout.operator("gradus.copy_from_cycles")
+
+
+class GRADUS_OT_copy_from_cycles(bpy.types.Operator):
+    """Set the limits of bounces, the exposure and the pixel filter to those that this scene has for Cycles"""
+
+    bl_idname = "gradus.copy_from_cycles"
+    bl_label = "Copy from Cycles"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    def execute(self, context: Any) -> set[str]:
+        cycles_settings.copy(context.scene)
+        return {"FINISHED"}
 
 
 class GRADUS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
@@ -142,6 +156,7 @@ def plan_lines(summary: dict[str, Any]) -> list[str]:
 
 
 CLASSES = (
+    GRADUS_OT_copy_from_cycles,
     GRADUS_RENDER_PT_sampling,
     GRADUS_RENDER_PT_method,
     GRADUS_RENDER_PT_advanced,

@@ -32,6 +32,7 @@ EXCLUDED = {
     "DATA_PT_volume_render": "volumes are not rendered yet",
     "DATA_PT_lightprobe": "light probes are EEVEE's",
     "RENDER_PT_eevee_performance": "EEVEE's",
+    "OBJECT_PT_shadow_terminator": "has a shading offset, too; ours has what we render",
 }
 """Panel -> why it does not show."""
 

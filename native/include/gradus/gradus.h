@@ -157,6 +157,7 @@ typedef struct GradusInstances {
   const float* colors;               /* 4 each, Object Info > Color */
   const float* generated;            /* 3 each: coordinates on the instancer */
   const float* uvs;                  /* 2 each: UV on the instancer */
+  const float* shadow_terminator_offsets; /* cosine below which lights' shadow rays leave faces with smooth normals from above; NULL = 0 */
   const uint32_t* material_first;    /* first entry of the instance in `materials`; NULL = no materials */
   const uint32_t* material_count;
   size_t materials_size;

@@ -131,6 +131,7 @@ void visit(Archive& a, GradusInstances& in) {
   a.array(in.colors, uint64_t{4} * in.count);
   a.array(in.generated, uint64_t{3} * in.count);
   a.array(in.uvs, uint64_t{2} * in.count);
+  a.array(in.shadow_terminator_offsets, in.count);
   a.array(in.material_first, in.count);
   a.array(in.material_count, in.count);
   a.array(in.materials, in.materials_size);

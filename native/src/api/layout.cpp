@@ -21,7 +21,7 @@ GRADUS_FIELDS(Mesh, struct_size, key_count, key_times, vertex_count, positions, 
   triangle_corners, triangle_faces, face_count, face_materials, normal_domain, attribute_count, normals, attributes, default_uv,
   generated_location, generated_size, generated_points, name)
 GRADUS_FIELDS(Instances, struct_size, reserved, count, meshes, ids, matrices, matrices_previous, matrices_next, visibility, random_ids,
-  pass_indices, colors, generated, uvs, material_first, material_count, materials_size, materials, name_index, name_count, names)
+  pass_indices, colors, generated, uvs, shadow_terminator_offsets, material_first, material_count, materials_size, materials, name_index, name_count, names)
 GRADUS_FIELDS(Light, struct_size, type, flags, visibility, matrix, strength, radius, angle, size, spread, cone, blend,
   sun_radiance_per_irradiance, material, max_bounces, pass_index, name)
 GRADUS_FIELDS(Camera, struct_size, type, matrix, matrix_previous, matrix_next, window, window_previous, window_next, clip_start,

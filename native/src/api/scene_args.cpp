@@ -112,6 +112,7 @@ GradusInstances read_instances(const GradusInstances* from) {
   optional(in.colors, "instances.colors", 4);
   optional(in.generated, "instances.generated", 3);
   optional(in.uvs, "instances.uvs", 2);
+  optional(in.shadow_terminator_offsets, "instances.shadow_terminator_offsets");
   optional(in.material_first, "instances.material_first");
   optional(in.name_index, "instances.name_index");
   check_array(in.materials, in.materials_size, "instances.materials");

@@ -136,8 +136,10 @@ class Closures {
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
   // The same, and apart the lobes that make diffuse bounces, or those that do not.
   KindEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const;
-  // The same, split by Blender's light passes (contract 6.5): value of each pass; sums to evaluate().value.
-  std::array<Rgb, 3> evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
+  // The same where the side of wi is not for the geometric normal to say.
+  BsdfEval evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
+  // Its value, split by Blender's light passes (contract 6.5).
+  std::array<Rgb, 3> evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
   // u: direction; u_lobe: choice of the lobe. False: absorbed.
   bool sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample* out) const;
   // One given lobe alone: what a shift needs to replay a Dirac event with the same lobe. False if the lobe cannot do it.
@@ -172,10 +174,10 @@ class Closures {
   void normalise();
   bool is_one_lambert() const;
   void finish_lambert();
-  // Value and density (times the entry's probability) of one smooth entry; zero on the wrong side of the geometric surface.
+  // Value and density (times the entry's probability) of one smooth entry; zero where its normal sees wi on the other side.
   BsdfEval evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const;
   template <class Add>
-  void for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, Add&& add) const;
+  void for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted, Add&& add) const;
   bool crosses(const Vec3& wi) const;
 
   std::array<Lobe, kMaxLobes> lobes_;

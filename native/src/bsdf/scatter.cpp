@@ -66,31 +66,32 @@ inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_
   return eval;
 }
 
-// Calls add(lobe, transmitted, BsdfEval) for the smooth entries of a class.
+// Calls add(lobe, BsdfEval) for the smooth entries of a class.
 template <class Add>
-[[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, Add&& add) const {
+[[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted, Add&& add) const {
   const size_t k = static_cast<size_t>(c);
-  const bool transmitted = crosses(wi);
   for (int i = 0; i < entry_count_[k]; i++) {
     const Entry& entry = entries_[k][static_cast<size_t>(i)];
     if (!entry.dirac) {
-      add(lobes_[entry.lobe], transmitted, evaluate_entry(entry, wo, wi, transmitted));
+      add(lobes_[entry.lobe], evaluate_entry(entry, wo, wi, transmitted));
     }
   }
 }
 
-BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
+BsdfEval Closures::evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const {
   BsdfEval sum;
-  for_smooth(c, wo, wi, [&](const Lobe&, bool, const BsdfEval& part) {
+  for_smooth(c, wo, wi, transmitted, [&](const Lobe&, const BsdfEval& part) {
     sum.value += part.value;
     sum.pdf += part.pdf;
   });
   return sum;
 }
 
+BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const { return evaluate_side(c, wo, wi, crosses(wi)); }
+
 KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const {
   KindEval sum;
-  for_smooth(c, wo, wi, [&](const Lobe& lobe, bool, const BsdfEval& part) {
+  for_smooth(c, wo, wi, crosses(wi), [&](const Lobe& lobe, const BsdfEval& part) {
     sum.all.value += part.value;
     sum.all.pdf += part.pdf;
     if (is_diffuse(lobe) == diffuse) {
@@ -101,9 +102,9 @@ KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool
   return sum;
 }
 
-std::array<Rgb, 3> Closures::evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
+std::array<Rgb, 3> Closures::evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const {
   std::array<Rgb, 3> sum{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
-  for_smooth(c, wo, wi, [&](const Lobe& lobe, bool transmitted, const BsdfEval& part) { sum[pass_of(lobe, transmitted)] += part.value; });
+  for_smooth(c, wo, wi, transmitted, [&](const Lobe& lobe, const BsdfEval& part) { sum[pass_of(lobe, transmitted)] += part.value; });
   return sum;
 }
 
@@ -156,7 +157,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   out->wi = renormalise(frame.to_world(local));
   out->diffuse = is_diffuse(source);
   BsdfEval all, kind;
-  for_smooth(c, wo, out->wi, [&](const Lobe& lobe, bool, const BsdfEval& part) {
+  for_smooth(c, wo, out->wi, crosses(out->wi), [&](const Lobe& lobe, const BsdfEval& part) {
     all.value += part.value;
     all.pdf += part.pdf;
     if (is_diffuse(lobe) == out->diffuse) {

@@ -1,5 +1,7 @@
 #include "path/light.h"
 
+#include "scene/shadow_terminator.h"
+
 namespace gradus {
 
 namespace {
@@ -24,8 +26,8 @@ bool sample_light(const PathContext& context, const VertexSample& u, const Verte
 std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light,
                                  const RayState& ray) {
   const EmitterView& view = light.view;
-  const bool transmitted = glm::dot(vertex.facing_normal(), view.direction) < 0.0f;
-  std::array<Rgb, 3> parts = vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction);
+  const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
+  std::array<Rgb, 3> parts = vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction, transmitted);
   for (int i = 0; i < 3; ++i) {
     const auto pass = static_cast<LightPass>(i);
     if (is_black(parts[i])) continue;
@@ -50,9 +52,11 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterCl
     return lit;
   }
   const EmitterView& view = light.view;
-  const BsdfEval eval = closures.evaluate(c, vertex.wo, view.direction);
+  const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
+  const BsdfEval eval = closures.evaluate_side(c, vertex.wo, view.direction, transmitted);
+  const bool found_by_rays = light.point.found_by_rays && transmitted == (glm::dot(vertex.facing_normal(), view.direction) < 0.0f);
   lit.value = eval.value * view.radiance;
-  lit.pdf_bsdf = light.point.found_by_rays ? probability * eval.pdf : 0.0f;
+  lit.pdf_bsdf = found_by_rays ? probability * eval.pdf : 0.0f;
   if (view.by_kind || (view.visibility & kAllBounces) != kAllBounces) {
     const std::array<Rgb, 3> parts = light_by_pass(context, vertex, c, light, ray);
     lit.value = parts[0] + parts[1] + parts[2];
@@ -65,7 +69,7 @@ Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, co
   if (!view.casts_shadow) {
     return Rgb(1.0f);
   }
-  const Ray ray = shadow_ray(from, point, view);
+  const Ray ray = ray_to_emitter(shadow_origin(context.scene, from, view.direction), from, point, view);
   if (!context.scene.features.has_transparent_shadows) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }

@@ -106,7 +106,7 @@ void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent
     share_ = whole(closures.lobe(event.sample.lobe).pass);
     return;
   }
-  std::array<Rgb, 3> parts = closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi);
+  std::array<Rgb, 3> parts = closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi, event.sample.transmitted);
   for (int pass = 0; pass < 3 && event.by_kind; ++pass) {
     if ((static_cast<LightPass>(pass) == LightPass::Diffuse) != event.sample.diffuse) parts[pass] = Rgb(0.0f);
   }

@@ -14,12 +14,17 @@ struct Vertex {
   mutable EmitterChoice choice;  // a memo: whoever looks for lights from here leaves it to the next
 
   // Geometric normal on the side of wo.
-  Vec3 facing_normal() const { return glm::dot(point.geometric_normal, wo) < 0.0f ? -point.geometric_normal : point.geometric_normal; }
+  Vec3 facing_normal() const { return facing(point.geometric_normal); }
+  // What divides the light samples that are reflected from those that are transmitted (shadow_terminator.h).
+  Vec3 light_normal() const { return facing(point.shadow_terminator_offset > 0.0f ? point.shading_normal : point.geometric_normal); }
+
+ private:
+  Vec3 facing(const Vec3& normal) const { return glm::dot(point.geometric_normal, wo) < 0.0f ? -normal : normal; }
 };
 
 // What light sampling may know about a vertex.
 inline Receiver receiver_of(const Vertex& vertex) {
-  Receiver receiver{vertex.point.position, vertex.facing_normal(), false, &vertex.choice};
+  Receiver receiver{vertex.point.position, vertex.light_normal(), false, &vertex.choice};
   const Closures& closures = vertex.shade.closures;
   for (int i = 0; i < closures.count(); ++i) {
     const LobeType type = closures.lobe(i).type;

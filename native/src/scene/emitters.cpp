@@ -275,8 +275,7 @@ EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction) {
   return point;
 }
 
-Ray shadow_ray(const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view) {
-  const Vec3 start = offset_origin(from, view.direction);
+Ray ray_to_emitter(const Vec3& start, const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view) {
   if (to.at_infinity()) return Ray{start, 0.0f, view.direction, kInfinity};
   Vec3 target = from.position + view.direction * view.distance;
   if (to.kind == EmitterKind::Triangle) {

@@ -71,8 +71,8 @@ EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, co
 Rgb emitter_radiance(const Snapshot& snapshot, const EmitterPoint& point, const EmitterView& view, const RayState& ray);
 // The density of view_emitter() alone: for weights, where the radiance is known or not needed.
 float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
-// The segment from a surface to an emitter, both ends moved off their surfaces by what rounding may do.
-Ray shadow_ray(const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view);
+// The segment from a surface to an emitter, both ends off their surfaces; start: of the ray, beside `from`.
+Ray ray_to_emitter(const Vec3& start, const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view);
 // The emitter point of a surface that a ray hit (kind None if it is not sampled as a light).
 EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& point);
 // The emitter point of a ray that left the scene.

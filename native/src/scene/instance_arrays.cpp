@@ -53,6 +53,7 @@ InstanceArrays copy_instances(const GradusInstances& d) {
   a.colors = copy<Vec4>(d.colors, d.count);
   a.generated = copy<Vec3>(d.generated, d.count);
   a.uvs = copy<Vec2>(d.uvs, d.count);
+  a.shadow_terminator_offsets = copy<float>(d.shadow_terminator_offsets, d.count);
   a.material_first = copy<uint32_t>(d.material_first, d.count);
   if (d.material_first) a.material_count = copy<uint32_t>(d.material_count, d.count);
   a.materials = copy<uint64_t>(d.materials, d.materials_size);
@@ -78,6 +79,7 @@ void InstanceArrays::hash(ContentHash* hash) const {
   hash->array(colors);
   hash->array(generated);
   hash->array(uvs);
+  hash->array(shadow_terminator_offsets);
   hash->array(material_first);
   hash->array(material_count);
   hash->array(materials);

@@ -22,6 +22,7 @@ struct InstanceArrays {
   std::vector<Vec4> colors;
   std::vector<Vec3> generated;
   std::vector<Vec2> uvs;
+  std::vector<float> shadow_terminator_offsets;
   std::vector<uint32_t> material_first, material_count;  // empty: no materials
   std::vector<uint64_t> materials;
   std::vector<uint32_t> name_index;

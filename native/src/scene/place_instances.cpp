@@ -102,6 +102,7 @@ void set_values(const InstanceArrays& a, size_t i, InstanceData* out) {
   if (!a.colors.empty()) out->color = a.colors[i];
   if (!a.generated.empty()) out->generated = a.generated[i];
   if (!a.uvs.empty()) out->uv = a.uvs[i];
+  if (!a.shadow_terminator_offsets.empty()) out->shadow_terminator_offset = a.shadow_terminator_offsets[i];
 }
 
 }  // namespace

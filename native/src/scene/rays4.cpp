@@ -24,13 +24,6 @@ Lanes step_away(const Lanes& v, const Lanes& up) {
   return up == 0.0f ? v : (Lanes)away;
 }
 
-Lanes3 offset_origins(const Points4& points, const Lanes3& direction) {
-  const Bits sign = (Bits)dot(points.normal, direction) & kSign;
-  const Lanes3 offset = points.normal * (Lanes)((Bits)points.error | sign);
-  const Lanes3 p = points.position + offset;
-  return {step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z)};
-}
-
 Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& direction) {
   const Lanes3 line = end - start;
   const Lanes length = _mm_sqrt_ps(dot(line, line));
@@ -42,6 +35,13 @@ Points4 gather(const SurfacePoint& p) { return {same(p.position), same(p.geometr
 
 }  // namespace
 
+Lanes3 offset_origins(const Points4& points, const Lanes3& direction) {
+  const Bits sign = (Bits)dot(points.normal, direction) & kSign;
+  const Lanes3 offset = points.normal * (Lanes)((Bits)points.error | sign);
+  const Lanes3 p = points.position + offset;
+  return {step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z)};
+}
+
 Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d) {
   return {lanes(a.position, b.position, c.position, d.position),
           lanes(a.geometric_normal, b.geometric_normal, c.geometric_normal, d.geometric_normal), Lanes{a.error, b.error, c.error, d.error}};
@@ -51,8 +51,7 @@ Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfaceP
   return rays_between(offset_origins(from, direction), offset_origins(gather(to), -direction), direction);
 }
 
-Rays4 shadow_rays(const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to) {
-  const Lanes3 start = offset_origins(from, direction);
+Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to) {
   if (to.at_infinity()) return {start, direction, same(kInfinity)};
   if (to.kind == EmitterKind::Triangle) {
     const Points4 end{same(to.position), same(to.normal), same(to.error)};

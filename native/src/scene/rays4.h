@@ -19,6 +19,12 @@ inline Lanes3 lanes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
   return {Lanes{a.x, b.x, c.x, d.x}, Lanes{a.y, b.y, c.y, d.y}, Lanes{a.z, b.z, c.z, d.z}};
 }
 
+inline void set_lane(int k, const Vec3& v, Lanes3* out) {
+  out->x[k] = v.x;
+  out->y[k] = v.y;
+  out->z[k] = v.z;
+}
+
 // From t = 0; empty where t_max < 0.
 struct Rays4 {
   Lanes3 origin, direction;
@@ -34,7 +40,9 @@ Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint&
 
 // The rays between surface points, both ends off their surfaces; direction: from `from` to `to`.
 Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfacePoint& to);
-// Those of shadow_ray(); direction and distance: of the emitter's point, as seen from each.
-Rays4 shadow_rays(const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to);
+// offset_origin() of each.
+Lanes3 offset_origins(const Points4& points, const Lanes3& direction);
+// Those of ray_to_emitter(); direction and distance: of the emitter's point, as seen from each.
+Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to);
 
 }  // namespace gradus

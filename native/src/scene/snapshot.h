@@ -36,6 +36,7 @@ struct InstanceData {
   uint32_t random_id = 0;
   int32_t pass_index = 0;
   Vec4 color{1.0f};
+  float shadow_terminator_offset = 0.0f;  // cosine, see shadow_terminator.h
   Vec3 generated{0.0f};
   Vec2 uv{0.0f};
   std::vector<uint32_t> materials;                            // by slot: index in Snapshot::materials

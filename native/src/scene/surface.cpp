@@ -19,10 +19,13 @@ Vec3 magnitudes(const Mat4& m, const Vec3& v) {
 }
 
 // Linear in the barycentrics; where the mesh is flat or its normals are broken, the geometric normal.
-Vec3 shading_normal(const InstanceData& instance, const Hit& hit, const Vec3& geometric) {
+void set_shading_normal(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
   std::array<Vec3, 3> n;
-  if (!triangle_normals(*instance.mesh, hit.triangle, &n)) return geometric;
-  return safe_unit(instance.normal_to_world * interpolate(n, hit.barycentric), geometric);
+  const bool smooth = triangle_normals(*instance.mesh, hit.triangle, &n);
+  const Vec3& geometric = point->geometric_normal;
+  point->shading_normal =
+      smooth ? keep_above(safe_unit(instance.normal_to_world * interpolate(n, hit.barycentric), geometric), geometric) : geometric;
+  point->shadow_terminator_offset = smooth ? instance.shadow_terminator_offset : 0.0f;
 }
 
 // Blender shows the last slot where a face names one that does not exist.
@@ -81,7 +84,7 @@ void Snapshot::place(const Hit& hit, SurfacePoint* point) const {
     place_flat(instance, hit, point);
   else
     place_instanced(instance, hit, point);
-  point->shading_normal = shading_normal(instance, hit, point->geometric_normal);
+  set_shading_normal(instance, hit, point);
 }
 
 void Snapshot::prefetch(const Hit& hit) const {

@@ -20,9 +20,17 @@ struct SurfacePoint {
   Vec3 geometric_normal = Vec3(0, 0, 1);  // unit; the side from which the corners run counter-clockwise (mirrored instances included)
   Vec3 shading_normal = Vec3(0, 0, 1);    // unit; interpolated; not flipped towards the viewer
   float error = 0.0f;                     // bound on the rounding error along the geometric normal, for offset_origin()
+  float shadow_terminator_offset = 0.0f;  // of the instance (shadow_terminator.h); 0 where the face is flat
   Hit hit;
   uint32_t material = 0;  // index in the snapshot
 };
+
+// `normal` on the side of geometric_normal (both unit): one from the other side is mirrored at the surface. Coarse or stretched meshes and
+// strong bumps have normals that lie a little below it; turned round they would face the wrong way, and be taken for a back side.
+inline Vec3 keep_above(const Vec3& normal, const Vec3& geometric_normal) {
+  const float height = glm::dot(normal, geometric_normal);
+  return height < 0.0f ? normal - 2.0f * height * geometric_normal : normal;
+}
 
 // An origin on the side of `direction` from which a ray cannot hit the surface of `point` again.
 Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction);

@@ -86,7 +86,7 @@ void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
 
 Vec3 facing_normal(const ShadeContext& c, const Vec3& normal) {
   const Vec3 n = safe_normalize(normal);
-  return n == Vec3(0.0f) ? c.normal : n;
+  return n == Vec3(0.0f) ? c.normal : keep_above(n, c.geometric_normal);
 }
 
 Vec3 outward_normal(const ShadeContext& c, const Vec3& normal) {

@@ -166,12 +166,12 @@ TEST(A4_Densities, ByPassSumsToValue) {
   const Vec3 above = tilted_direction(0.5f, 4.0f);
   const Vec3 below = tilted_direction(-0.7f, 4.1f);
   for (const Vec3& wi : {above, below}) {
-    const auto parts = closures.evaluate_by_pass(ScatterClass::Diffuse, wo, wi);
+    const auto parts = closures.evaluate_by_pass(ScatterClass::Diffuse, wo, wi, wi.z < 0.0f);
     const Rgb whole = closures.evaluate(ScatterClass::Diffuse, wo, wi).value;
     EXPECT_NEAR(parts[0].x + parts[1].x + parts[2].x, whole.x, 1e-6f);
   }
-  EXPECT_GT(closures.evaluate_by_pass(ScatterClass::Diffuse, wo, above)[1].x, 0.0f);
-  EXPECT_GT(closures.evaluate_by_pass(ScatterClass::Diffuse, wo, below)[2].x, 0.0f);
+  EXPECT_GT(closures.evaluate_by_pass(ScatterClass::Diffuse, wo, above, above.z < 0.0f)[1].x, 0.0f);
+  EXPECT_GT(closures.evaluate_by_pass(ScatterClass::Diffuse, wo, below, below.z < 0.0f)[2].x, 0.0f);
 }
 
 // Offsets take the base's view of such a vertex for their own.

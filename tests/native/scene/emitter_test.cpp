@@ -133,7 +133,7 @@ TEST(A4_LightDensity, TriangleMetByRay) {
     SurfacePoint from;
     from.position = receiver.position;
     from.geometric_normal = receiver.normal;
-    EXPECT_FALSE(snapshot->occluded(shadow_ray(from, point, view)));
+    EXPECT_FALSE(snapshot->occluded(ray_to_emitter(offset_origin(from, view.direction), from, point, view)));
     ++met;
   }
   EXPECT_GT(met, 500);

@@ -139,7 +139,7 @@ TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
       sample_emitter(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)), &emitter, &view);
       if (emitter.kind == EmitterKind::None || !(view.pdf > 0.0f)) continue;
       ++asked;
-      blocked += snapshot->occluded(shadow_ray(point, emitter, view));
+      blocked += snapshot->occluded(ray_to_emitter(offset_origin(point, view.direction), point, emitter, view));
     }
   }
   EXPECT_GT(asked, 50000);

@@ -70,11 +70,12 @@ TEST_F(Rays4Test, ReachEmittersOfAllKindsAsOneShadowRayDoes) {
       view[i].distance = glm::length(emitter.position - from[i].position);
       view[i].direction = emitter.at_infinity() ? emitter.direction : (emitter.position - from[i].position) / view[i].distance;
     }
-    const Rays4 rays = shadow_rays(gather(from[0], from[1], from[2], from[3]),
-                                   lanes(view[0].direction, view[1].direction, view[2].direction, view[3].direction),
-                                   Lanes{view[0].distance, view[1].distance, view[2].distance, view[3].distance}, emitter);
+    const Points4 points = gather(from[0], from[1], from[2], from[3]);
+    const Lanes3 direction = lanes(view[0].direction, view[1].direction, view[2].direction, view[3].direction);
+    const Lanes distance{view[0].distance, view[1].distance, view[2].distance, view[3].distance};
+    const Rays4 rays = rays_to_emitter(offset_origins(points, direction), points, direction, distance, emitter);
     for (int i = 0; i < 4; ++i) {
-      const Ray one = shadow_ray(from[i], emitter, view[i]);
+      const Ray one = ray_to_emitter(offset_origin(from[i], view[i].direction), from[i], emitter, view[i]);
       if (emitter.at_infinity()) {
         EXPECT_EQ(rays.t_max[i], kInfinity);
         EXPECT_EQ(lane(rays.direction, i), one.direction);

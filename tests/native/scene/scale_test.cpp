@@ -61,7 +61,7 @@ std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
     sample_emitter(*snapshot, receiver, choice, u, &emitter, &view);
     const float cosine = glm::dot(view.direction, receiver.normal);
     if (emitter.kind == EmitterKind::None || cosine <= 0.0f || view.pdf <= 0.0f) continue;
-    if (snapshot->occluded(shadow_ray(point, emitter, view))) continue;
+    if (snapshot->occluded(ray_to_emitter(offset_origin(point, view.direction), point, emitter, view))) continue;
     blocks[size_t(y / 8 * 8 + x / 8)] += double(view.radiance.x * cosine / view.pdf) / (64 * 16);
   }
   return blocks;

@@ -156,6 +156,7 @@ class TestScene {
     first_.push_back(uint32_t(materials_.size()));
     count_.push_back(1);
     materials_.push_back(material);
+    terminators_.push_back(shadow_terminator_offset);
   }
   std::shared_ptr<const Snapshot> commit() {
     GradusInstances instances{};
@@ -168,14 +169,17 @@ class TestScene {
     instances.material_count = count_.data();
     instances.materials = materials_.data();
     instances.materials_size = materials_.size();
+    instances.shadow_terminator_offsets = terminators_.data();
     scene.set_instances(instances);
     scene.commit(nullptr, nullptr);
     return scene.snapshot();
   }
 
   Scene scene;
+  float shadow_terminator_offset = 0.0f;  // of the instances that follow
 
  private:
+  std::vector<float> terminators_;
   std::vector<uint64_t> meshes_, materials_;
   std::vector<Mat4> matrices_;
   std::vector<uint32_t> visibility_, first_, count_;

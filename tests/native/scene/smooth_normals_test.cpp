@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 #include "gradus/gradus.h"
+#include "scene/mesh.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -52,6 +54,34 @@ TEST(SmoothNormals, WeightedByAngle) {
   const auto mesh = make_mesh(desc);
   const Vec3 expected = glm::normalize(2.0f * Vec3(0, 0, 1) + Vec3(1, 0, 0));
   EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
+}
+
+// Stretching turns facets and normals apart: where a normal came to lie below its facet it was turned round, so that the facet took its
+// light from the wrong side, and glass was left instead of entered.
+TEST(SmoothNormals, NormalsBelowStretchedFacets) {
+  test::PathScene scene;
+  const Vec3 axis = glm::normalize(Vec3(1, 2, 3));  // of a coarse ball that is pressed flat
+  for (int i = 0; i < 3; ++i) scene.place[i] -= Vec4(0.875f * axis[i] * axis, 0.0f);
+  scene.ball(Vec3(0.0f), 1.0f, scene.material(test::matte(Rgb(0.5f))), 4, true);
+  scene.camera(Vec3(0, 0, 4), Vec3(0.0f), 1.0f);
+  const auto snapshot = scene.context(test::test_settings(4, 4)).snapshot;
+  int below = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const float z = 1.0f - (2.0f * float(i) + 1.0f) / 1000.0f, around = 2.399963f * float(i);
+    const Vec3 out = Mat3(scene.place) * Vec3(std::sqrt(1.0f - z * z) * std::cos(around), std::sqrt(1.0f - z * z) * std::sin(around), z);
+    Hit hit;
+    ASSERT_TRUE(snapshot->intersect(Ray{3.0f * out, 0.0f, -glm::normalize(out), kInfinity}, GRADUS_VISIBLE_ALL, &hit));
+    const SurfacePoint point = snapshot->surface_point(hit);
+    std::array<Vec3, 3> n;
+    ASSERT_TRUE(triangle_normals(*snapshot->instances[0].mesh, hit.triangle, &n));
+    const Vec3 smooth = glm::normalize(snapshot->instances[0].normal_to_world * interpolate(n, hit.barycentric));
+    below += glm::dot(smooth, point.geometric_normal) < 0.0f;
+    EXPECT_GE(glm::dot(point.shading_normal, point.geometric_normal), 0.0f);
+    // Mirrored at the facet: what lies along it stays.
+    const Vec3 along = smooth - point.geometric_normal * glm::dot(smooth, point.geometric_normal);
+    EXPECT_NEAR(glm::dot(point.shading_normal, along), glm::dot(along, along), 1e-5f);
+  }
+  EXPECT_GT(below, 0);
 }
 
 // A ball's curvature is one over its radius, whatever its scale; a quad has none.

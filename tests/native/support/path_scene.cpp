@@ -288,8 +288,8 @@ void add_lamps_with_extent(PathScene* scene, uint32_t flags, float roughness) {
 }  // namespace
 
 const char* name_of(Scenario scenario) {
-  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",       "GlossyFloor", "RoughMetal", "Mirror",
-                                      "Glass",       "RoughGlass",  "Transparent", "LampsSeen",   "LampsUnseen"};
+  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",       "GlossyFloor", "RoughMetal",  "Mirror",
+                                      "Glass",       "RoughGlass",  "Transparent", "LampsSeen",   "LampsUnseen", "Facets"};
   return names[static_cast<int>(scenario)];
 }
 
@@ -324,6 +324,18 @@ void build(Scenario scenario, PathScene* scene) {
       add_ceiling_light(scene, 8.0f, 0.6f);
       scene->light(point_lamp(Vec3(-0.4f, 0.3f, 0.3f), 0.0f, 0.2f));
       break;
+    case Scenario::Facets: {  // many directions near the terminator, for lights that both techniques find, one, or the other
+      scene->scene.shadow_terminator_offset = 0.4f;
+      add_lamps_with_extent(scene, 0, 0.6f);
+      scene->ball(Vec3(0.5f, -0.6f, 0.4f), 0.35f, scene->material(matte(Rgb(0.6f))), 4, true);
+      Surface leaf = matte(Rgb(0.5f));
+      leaf.glass = 0.3f;
+      leaf.glass_roughness = 0.6f;
+      scene->ball(Vec3(-0.5f, -0.5f, 0.3f), 0.35f, scene->material(leaf), 4, true);
+      add_ceiling_light(scene, 4.0f, 0.4f);
+      scene->light(make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(0.5f)));
+      break;
+    }
     case Scenario::RoughMetal:
       add_ceiling_light(scene, 8.0f, 0.6f);
       scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(glossy(0.5f)), 10, true);

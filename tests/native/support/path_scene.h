@@ -83,6 +83,7 @@ enum class Scenario {
   Transparent,
   LampsSeen,
   LampsUnseen,
+  Facets,
   Count
 };
 const char* name_of(Scenario scenario);

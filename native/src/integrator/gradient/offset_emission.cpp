@@ -4,7 +4,8 @@
 // contribution is C = f/(p_n + p_b) whichever found it. Where both techniques take the same shift (class D: the emitter point is copied)
 // and see the same integrand, a gradient sample is weighed against all four strategies, {light, BSDF} × {base, offset} (thesis 5.4.2):
 //   (r·C' − C) / (m_p + m_q·r)  with  r = |T'|·(p_n(y) + p_b(y)) / (p_n(x) + p_b(x)).
-// Elsewhere (sharp classes: BSDF samples copy the half-vector, light samples the emitter point; shadows that are not what rays see) each
+// Elsewhere (sharp classes: BSDF samples copy the half-vector, light samples the emitter point; shadows that are not what rays see, as by
+// the terminator of faceted meshes at either end) each
 // technique is paired with itself: r = |T'|·p_t(y)/p_t(x), with the same C and C'. Both are unbiased.
 //
 // Where base and offset both traced a ray of their own (from the camera, or after a copied event), what the two rays show is one function
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "integrator/gradient/offset_paths.h"
+#include "scene/shadow_terminator.h"
 
 namespace gradus {
 
@@ -98,8 +100,8 @@ void OffsetPaths::seen() {
 }
 
 // From class D: the emitter point is copied. base, offset: as seen from the two vertices; probability: of the base's decisions up to it.
-void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,
-                               float probability) {
+void OffsetPaths::copy_emitter(int k, const RaySource& source, const Contribution& c, const EmitterPoint& point, const EmitterView& base,
+                               const EmitterView& offset, float probability) {
   OffsetPath& o = offsets_[k];
   const ShiftedEvent event = event_towards(base_event_, *o.here, offset.direction, copy_jacobian(point, base, offset));
   if (event.failure != ShiftFailure::None || is_black(offset.radiance)) {
@@ -109,27 +111,30 @@ void OffsetPaths::copy_emitter(int k, const Contribution& c, const EmitterPoint&
   }
   ++counters_.rays_shift_shadow;
   uint16_t transparent_depth = o.state.ray.state.transparent_depth;
-  const Rgb through = segment_transmittance(context_, shadow_ray(o.here->point, point, offset), base_state_.ray, &transparent_depth);
+  const Ray ray = ray_to_emitter(offset_origin(o.here->point, offset.direction), o.here->point, point, offset);
+  const Rgb through = segment_transmittance(context_, ray, base_state_.ray, &transparent_depth);
   if (is_black(through)) {
     ++counters_.fail_occluded;
     alone(k, c);
     return;
   }
   const Rgb value = o.state.throughput * event.factor * offset.radiance * through * (bsdf_weight(offset.pdf, event.pdf) / probability);
-  pair(k, c, value, o.ratio * event.ratio * (joint(base, o) ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
+  const bool all = joint(base, o) && leaves_facet(source.vertex->point, base.direction) && leaves_facet(o.here->point, offset.direction);
+  pair(k, c, value, o.ratio * event.ratio * (all ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
 }
 
 // An emitter that the shared path found; weight: of the segment up to it. Straight after the first shared vertex the offset scattered with
 // a density of its own, so its weight against light sampling, whose density both share, is its own too.
-void OffsetPaths::found_linked(int k, const Contribution& c, const Rgb& weight, bool joint) {
+void OffsetPaths::found_linked(int k, const RaySource& source, const Contribution& c, const Rgb& weight, bool joint) {
   const OffsetPath& o = offsets_[k];
-  joint = joint && reconnects(base_event_.scatter_class);  // light samples of sharp classes know nothing of shared directions
   if (o.stage == OffsetStage::Deeper || !(c.pdf_light > 0.0f)) {
     pair(k, c, o.state.throughput * weight * c.tail, o.ratio);
     return;
   }
   const Rgb value = o.state.throughput * weight * c.light * bsdf_weight(c.pdf_light, o.shared_pdf);
-  pair(k, c, value, o.ratio * (joint ? all_techniques(c, c.pdf_light, o.shared_pdf) : 1.0f));
+  // Light samples of sharp classes know nothing of shared directions.
+  const bool all = joint && reconnects(base_event_.scatter_class) && leaves_facet(source.vertex->point, base_state_.ray.ray.direction);
+  pair(k, c, value, o.ratio * (all ? all_techniques(c, c.pdf_light, o.shared_pdf) : 1.0f));
 }
 
 void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
@@ -149,10 +154,10 @@ void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const Lam
     if (is_beside(o.stage) && !passes(o, lamp.crossed)) {
       alone(k, c);
     } else if (is_beside(o.stage)) {
-      found_linked(k, c, lamp.weight, joint(base, o));
+      found_linked(k, source, c, lamp.weight, joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
-      copy_emitter(k, c, lamp.point, base, view, lamp.probability);
+      copy_emitter(k, source, c, lamp.point, base, view, lamp.probability);
     }
   }
 }
@@ -173,7 +178,7 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
       continue;
     }
     if (is_beside(o.stage)) {
-      found_linked(k, c, Rgb(1.0f), joint(base, o));
+      found_linked(k, source, c, Rgb(1.0f), joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       // The same direction, so the same radiance.
       EmitterView view = base;
@@ -181,7 +186,7 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
       view.pdf = light_pdf(context_, RaySource{o.here, source.event}, sampled);
       EmitterPoint point = sampled;
       point.kind = EmitterKind::World;  // also where light sampling leaves it out
-      copy_emitter(k, c, point, base, view, base_segment_->probability);
+      copy_emitter(k, source, c, point, base, view, base_segment_->probability);
     }
   }
 }
@@ -200,7 +205,7 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
       continue;
     }
     if (is_beside(o.stage)) {
-      found_linked(k, c, Rgb(1.0f), joint_ && !o.mixed);  // as for light samples there
+      found_linked(k, source, c, Rgb(1.0f), joint_ && !o.mixed);  // as for light samples there
     } else if (o.stage == OffsetStage::Pending) {
       const Rgb emission = o.link.open ? linked_emission(o, vertex) : Rgb(0.0f);
       if (is_black(emission)) {
@@ -209,7 +214,9 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
       }
       const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, point);
       const Rgb value = o.link.throughput * emission * bsdf_weight(pdf_light, o.link.pdf);
-      pair(k, c, value, o.link.ratio * (joint_ && !o.mixed ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
+      const bool all = joint_ && !o.mixed && leaves_facet(source.vertex->point, base_state_.ray.ray.direction) &&
+                       leaves_facet(o.here->point, glm::normalize(vertex.point.position - o.here->point.position));
+      pair(k, c, value, o.link.ratio * (all ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
     }
   }
 }

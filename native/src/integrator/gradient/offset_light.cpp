@@ -1,5 +1,6 @@
 // Light samples of the base, for its offsets. The weights are explained in offset_emission.cpp.
 #include "integrator/gradient/offset_paths.h"
+#include "scene/shadow_terminator.h"
 
 namespace gradus {
 
@@ -51,7 +52,14 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
     const EmitterView& d = offsets_[3].light.view;
     const Lanes3 direction = lanes(a.direction, b.direction, c.direction, d.direction);
     const Lanes distance{a.distance, b.distance, c.distance, d.distance};
-    context_.scene.occluded4(shadow_rays(own_points(), direction, distance, sample.point), wanted, blocked);
+    const Points4 points = own_points();
+    Lanes3 start = offset_origins(points, direction);
+    for (int k = 0; k < kOffsets; ++k) {
+      const OffsetPath& o = offsets_[k];
+      if (wanted[k] && !leaves_facet(o.here->point, o.light.view.direction))
+        set_lane(k, shadow_origin(context_.scene, o.here->point, o.light.view.direction), &start);
+    }
+    context_.scene.occluded4(rays_to_emitter(start, points, direction, distance, sample.point), wanted, blocked);
   }
   for (int k = 0; k < kOffsets; ++k) {
     if (wanted[k]) {
@@ -63,11 +71,12 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
   }
 }
 
-void OffsetPaths::light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+void OffsetPaths::light_own(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
   OffsetPath& o = offsets_[k];
   const EmitterView& view = o.light.view;
   const LitClass& lit = o.light.lit;
-  const bool all = joint(view, o) && reconnects(scatter_class) && sample.point.found_by_rays;
+  const bool all = joint(view, o) && reconnects(scatter_class) && sample.point.found_by_rays &&
+                   leaves_facet(vertex.point, sample.view.direction) && leaves_facet(o.here->point, view.direction);
   const float pdf = all ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
   if (is_black(lit.value) || is_black(o.light.transmittance) || !(pdf > 0.0f)) {
@@ -107,7 +116,8 @@ void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& s
     alone(k, c);
     return;
   }
-  const bool all = joint(sample.view, o) && reconnects(scatter_class) && sample.point.found_by_rays;
+  const bool all =
+      joint(sample.view, o) && reconnects(scatter_class) && sample.point.found_by_rays && leaves_facet(vertex.point, sample.view.direction);
   const float ratio = all ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
   pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), link_ratio * ratio);
 }
@@ -124,7 +134,7 @@ void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, Scatter
     if (o.stage == OffsetStage::Pending) {
       light_linked(k, vertex, sample, scatter_class, c);
     } else if (o.stage == OffsetStage::Traced) {
-      light_own(k, sample, scatter_class, c);
+      light_own(k, vertex, sample, scatter_class, c);
     } else if (o.stage == OffsetStage::Deeper) {
       if (is_lit(vertex, sample, o.state.ray.state.transparent_depth)) {
         pair(k, c, o.state.throughput * c.tail, o.ratio);

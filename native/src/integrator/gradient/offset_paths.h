@@ -100,12 +100,12 @@ class OffsetPaths {
   Radiance see(OffsetPath* offset) const;
   Radiance see_once(OffsetPath* offset) const;
   void light_all(const LightSample& sample, ScatterClass scatter_class);
-  void light_own(int k, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
+  void light_own(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
   bool is_lit(const Vertex& vertex, const LightSample& sample, uint32_t transparent_depth) const;
   void light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c);
-  void found_linked(int k, const Contribution& c, const Rgb& weight, bool joint);
-  void copy_emitter(int k, const Contribution& c, const EmitterPoint& point, const EmitterView& base, const EmitterView& offset,
-                    float probability);
+  void found_linked(int k, const RaySource& source, const Contribution& c, const Rgb& weight, bool joint);
+  void copy_emitter(int k, const RaySource& source, const Contribution& c, const EmitterPoint& point, const EmitterView& base,
+                    const EmitterView& offset, float probability);
   bool joint(const EmitterView& view, const OffsetPath& offset) const;
 
   const PathContext& context_;

@@ -1,0 +1,45 @@
+#include "scene/shadow_terminator.h"
+
+#include "scene/mesh.h"
+#include "scene/plane.h"
+
+namespace gradus {
+
+namespace {
+
+// Height of the bulge over a facet at barycentrics w, for corners p and their unit normals n, all seen from the outside of the bulge. Half
+// of a parabola through the corners, or the envelope of their tangent planes where that is higher; 0 where the surface is hollow.
+float bulge(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& n, const Vec3& w) {
+  const Vec3 point = p[0] * w.x + p[1] * w.y + p[2] * w.z;
+  const auto bend = [&](int i, int j) { return glm::dot(n[j] - n[i], p[j] - p[i]); };
+  const float parabola = bend(0, 1) * w.x * w.y + bend(1, 2) * w.y * w.z + bend(2, 0) * w.z * w.x;
+  float envelope = kInfinity;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &next = p[(i + 1) % 3], &last = p[(i + 2) % 3];
+    const float lifted = std::max({glm::dot(next - p[i], n[i]), glm::dot(last - p[i], n[i]), 0.0f});
+    envelope = std::min(envelope, std::max(glm::dot(p[i] - point, n[i]) + lifted, 0.0f));
+  }
+  return std::max(envelope, 0.5f * parabola);
+}
+
+}  // namespace
+
+Vec3 shadow_origin(const Snapshot& scene, const SurfacePoint& point, const Vec3& direction) {
+  const float share = terminator_share(point, direction);
+  if (share == 0.0f) return offset_origin(point, direction);
+  const InstanceData& instance = scene.instances[point.hit.instance];
+  std::array<Vec3, 3> normals;
+  if (!triangle_normals(*instance.mesh, point.hit.triangle, &normals)) return offset_origin(point, direction);
+  // The side of the smooth surface on which the light lies; from within, the bulge points inwards.
+  const Vec3 outside = std::copysign(1.0f, glm::dot(point.shading_normal, direction)) * point.geometric_normal;
+  const Vec3 smooth = instance.normal_to_world * interpolate(normals, point.hit.barycentric);
+  const float side = std::copysign(1.0f, glm::dot(smooth, outside));
+  for (Vec3& n : normals) n = side * safe_unit(n, Vec3(0.0f));
+  const Vec2 b = point.hit.barycentric;
+  const float height = share * bulge(triangle_positions(*instance.mesh, point.hit.triangle), normals, Vec3(1.0f - b.x - b.y, b.x, b.y));
+  SurfacePoint lifted = point;
+  if (height < kInfinity) lifted.position += Mat3(instance.to_world) * (height * interpolate(normals, b));
+  return offset_origin(lifted, outside);
+}
+
+}  // namespace gradus

@@ -1,0 +1,41 @@
+"""Scenes made for Cycles: their limits of bounces, exposure and filter are named and can be taken over."""
+
+from __future__ import annotations
+
+import bpy
+import pytest
+from gradus import cycles_settings
+
+
+@pytest.fixture
+def cycles(scene: bpy.types.Scene) -> bpy.types.Scene:
+    if not hasattr(scene, "cycles"):
+        pytest.skip("Cycles is switched off in this host")
+    return scene
+
+
+def test_the_defaults_are_those_of_cycles(cycles: bpy.types.Scene) -> None:
+    assert cycles_settings.warnings(cycles, set()) == []
+
+
+def test_cycles_bounce_limits_were_ignored_without_a_word(cycles: bpy.types.Scene) -> None:
+    cycles.cycles.diffuse_bounces, cycles.cycles.film_exposure = 1, 2.5
+    [text] = cycles_settings.warnings(cycles, set())
+    assert "diffuse_bounces 4 (Cycles: 1)" in text and "film_exposure 1 (Cycles: 2.5)" in text
+    assert "diffuse_bounces" not in cycles_settings.warnings(cycles, {"diffuse_bounces"})[0]  # the command line sets it
+
+
+def test_what_the_user_has_set_is_no_oversight(cycles: bpy.types.Scene) -> None:
+    cycles.cycles.glossy_bounces = 7
+    cycles.gradus.glossy_bounces = 3
+    assert cycles_settings.warnings(cycles, set()) == []
+
+
+def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:
+    cycles.cycles.max_bounces, cycles.cycles.transparent_max_bounces = 5, 64
+    cycles.cycles.pixel_filter_type, cycles.cycles.filter_width = "GAUSSIAN", 2.0
+    with bpy.context.temp_override(scene=cycles):
+        bpy.ops.gradus.copy_from_cycles()
+    ours = cycles.gradus
+    assert (ours.max_bounces, ours.transparent_max_bounces, ours.pixel_filter, ours.filter_width) == (5, 64, "GAUSSIAN", 2.0)
+    assert cycles_settings.warnings(cycles, set()) == []
