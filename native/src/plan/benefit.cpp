@@ -17,8 +17,9 @@ constexpr double kUneven = 0.1;
 // have 1 to 5 times the share that L2 leaves by roots, 1.8 in the median of twelve scenes (docs/method.md).
 constexpr double kOutliers = 1.35;
 
-// CPU time of an offset's rays over that of a base path's, shading included: least squares over twelve scenes, within 10 % on eleven.
-constexpr double kShiftRay = 0.48, kShiftShadowRay = 0.88;
+// CPU time of the offsets over that of base paths: for themselves, and for each of their rays per ray of the base, shading included. Least
+// squares over twelve scenes, within 10 % on eleven.
+constexpr double kOffsetPaths = 0.36, kShiftRay = 0.50, kShiftShadowRay = 0.55;
 
 // Of squared brightness, as in the stopping rule: below it noise is not seen.
 constexpr double kDark = 1e-3;
@@ -28,11 +29,16 @@ constexpr double kWorthParting = 0.75;
 
 double squared(double x) { return x * x; }
 
+// What L2 leaves of the noise, by roots of deviations, at the best of the weights: with all correlation between pixels and differences.
+double l2_share(const PilotSums& sums) {
+  return squared(squared(*std::min_element(sums.l2_roots.begin(), sums.l2_roots.end()) / sums.pixel_root));
+}
+
 // All but the error.
 Benefit known_benefit(const PilotSums& sums) {
   Benefit benefit;
   if (sums.plain_rays > 0.0) {
-    benefit.cost += (kShiftRay * sums.shift_rays + kShiftShadowRay * sums.shift_shadow_rays) / sums.plain_rays;
+    benefit.cost += kOffsetPaths + (kShiftRay * sums.shift_rays + kShiftShadowRay * sums.shift_shadow_rays) / sums.plain_rays;
   }
   if (!(sums.pixels > 0.0)) return benefit;
   benefit.rays = sums.plain_rays / sums.pixels;
@@ -50,7 +56,7 @@ void PilotSums::add(const PilotSums& other, double weight) {
   differences += weight * other.differences;
   difference_deviation += weight * other.difference_deviation;
   pixel_root += weight * other.pixel_root;
-  l2_root += weight * other.l2_root;
+  for (size_t i = 0; i < kPilotAlphas; ++i) l2_roots[i] += weight * other.l2_roots[i];
   plain_rays += weight * other.plain_rays;
   shift_rays += weight * other.shift_rays;
   shift_shadow_rays += weight * other.shift_shadow_rays;
@@ -65,13 +71,14 @@ Benefit estimate_benefit(const PilotSums& sums) {
   Benefit benefit = known_benefit(sums);
   if (!benefit.noisy) return benefit;
   const double pixel = sums.pixel_deviation / sums.pixels, difference = sums.difference_deviation / sums.differences;
-  benefit.error = kUneven + (difference > 0.0 ? reconstructed_variance(squared(pixel / difference)) : 0.0);
+  const double independent = kUneven + (difference > 0.0 ? reconstructed_variance(squared(pixel / difference)) : 0.0);
+  benefit.error = std::max(independent, l2_share(sums));
   return benefit;
 }
 
 Benefit estimate_benefit_for_l2(const PilotSums& sums) {
   Benefit benefit = known_benefit(sums);
-  if (benefit.noisy) benefit.error = kOutliers * squared(squared(sums.l2_root / sums.pixel_root));
+  if (benefit.noisy) benefit.error = kOutliers * l2_share(sums);
   return benefit;
 }
 

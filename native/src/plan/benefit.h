@@ -1,10 +1,15 @@
 // What gradients are worth: how much less error the reconstruction has, against what the differences cost.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace gradus {
+
+// Weights of the pixel at which L2 is looked at.
+inline constexpr std::size_t kPilotAlphas = 3;
 
 // What a few samples have shown, of which each pixel takes two. Deviations: between the two, as the mean of their absolute differences, so
 // that one firefly does not decide.
@@ -12,7 +17,8 @@ struct PilotSums {
   double pixels = 0.0, brightness = 0.0, pixel_deviation = 0.0;
   double differences = 0.0, difference_deviation = 0.0;
   // Roots of deviations, for which outliers count less still: of a pixel, and of what L2 makes of it and its differences (plan/l2_noise.h).
-  double pixel_root = 0.0, l2_root = 0.0;
+  double pixel_root = 0.0;
+  std::array<double, kPilotAlphas> l2_roots{};
   double plain_rays = 0.0, shift_rays = 0.0, shift_shadow_rays = 0.0;
   void add(const PilotSums& other, double weight);
 };
@@ -28,9 +34,9 @@ struct Benefit {
   bool pays() const { return noisy && error * cost < 1.25; }
 };
 
-// For reconstructions that go by the noise of every row.
+// For reconstructions that go by the noise of every row: no better than what L2 leaves at its best weight.
 Benefit estimate_benefit(const PilotSums& sums);
-// For L2.
+// For L2; all l2_roots are those at its weight.
 Benefit estimate_benefit_for_l2(const PilotSums& sums);
 
 // The parts of a picture, of so many pixels each, that are to have differences for error times cost of the picture to be least. (Each part

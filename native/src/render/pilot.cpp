@@ -3,10 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <optional>
 
 #include "base/fpu.h"
 #include "frame/cells.h"
@@ -51,9 +51,17 @@ std::vector<size_t> pixels_of(const Region& square, const Frame& frame, uint32_t
 double deviation(const Radiance& d) { return std::sqrt(mean_product(d, d)); }
 double gray(const Radiance& c) { return (double(c.x) + c.y + c.z) / 3.0; }
 
+using L2Noises = std::array<L2Noise, kPilotAlphas>;
+
+// At its own weight where L2 will run; else at weights among which the best one lies, on all scenes that were looked at.
+L2Noises l2_noises(const GradusSettings& settings, uint32_t reconstruction) {
+  if (reconstruction != GRADUS_RECONSTRUCTION_L2) return {L2Noise(0.2), L2Noise(0.4), L2Noise(0.8)};
+  const L2Noise own(chosen_alpha(reconstruction, settings.reconstruction_alpha));
+  return {own, own, own};
+}
+
 // The pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are alike: √2.
-// l2: where it will run.
-void add_pixel(const Frame& frame, size_t pixel, const std::optional<L2Noise>& l2, PilotSums* sums) {
+void add_pixel(const Frame& frame, size_t pixel, const L2Noises& l2, PilotSums* sums) {
   const ComponentPlanes& planes = frame.components[0];
   const Radiance spread = planes.primal[0][pixel] - planes.primal[1][pixel];
   std::array<Radiance, kOffsets> spreads;
@@ -68,7 +76,7 @@ void add_pixel(const Frame& frame, size_t pixel, const std::optional<L2Noise>& l
   sums->brightness += 0.5 * gray(planes.primal[0][pixel] + planes.primal[1][pixel]);
   sums->pixel_deviation += deviation(spread);
   sums->pixel_root += std::sqrt(deviation(spread));
-  if (l2) sums->l2_root += std::sqrt(std::sqrt(std::max(l2->of(spread, spreads), 0.0)));
+  for (size_t i = 0; i < kPilotAlphas; ++i) sums->l2_roots[i] += std::sqrt(std::sqrt(std::max(l2[i].of(spread, spreads), 0.0)));
 }
 
 // Whole squares but for the frame's border: all that touch the region.
@@ -123,8 +131,7 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   // Squares at the region's border are judged by those beyond, too; L2's by all.
   const CellGrid squares(is_l2 ? full : grown_to_squares(grown(region, 2 * kSquare, full), full), kSquare);
-  std::optional<L2Noise> l2;
-  if (is_l2) l2.emplace(chosen_alpha(reconstruction, settings.reconstruction_alpha));
+  const L2Noises l2 = l2_noises(settings, reconstruction);
   std::vector<PilotSums> sums(squares.cells.size());
   tbb::parallel_for(size_t{0}, sums.size(), [&](size_t i) {
     const FlushDenormals flush;
