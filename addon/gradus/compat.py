@@ -37,6 +37,11 @@ def image_color_spaces() -> set[str]:
     return {image.colorspace_settings.name for image in bpy.data.images}
 
 
+def default_surface_is_principled() -> bool:
+    """Faces without a material are an untouched Principled BSDF; before 5.0 a grey diffuse."""
+    return bpy.app.version >= (5, 0, 0)
+
+
 def fixed_threads(render: Any) -> int:
     """Threads that the scene asks for; 0 = all."""
     return render.threads if render.threads_mode == "FIXED" else 0

@@ -124,7 +124,11 @@ def test_e5_materials(scene: bpy.types.Scene) -> None:
     recording.add(many, "Many")
     recorded, _ = recording.export(scene)
     materials = dict(zip(recorded.instances["names"], recorded.instances["materials"], strict=True))
-    assert materials["None"] == [] and materials["Empty slot"] == [0] and len(materials["Many"]) == 101
+    if bpy.app.version < (5, 0, 0):
+        assert materials["None"] == [] and materials["Empty slot"] == [0]
+    else:
+        assert [recorded.materials[key] for key in materials["None"] + materials["Empty slot"]] == ["Default Surface"] * 2
+    assert len(materials["Many"]) == 101
 
 
 def test_e7_names(scene: bpy.types.Scene) -> None:

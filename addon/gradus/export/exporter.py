@@ -105,7 +105,7 @@ class _Sync:
         ):
             self.warnings.add(text)
         for entry in collected.surfaces:
-            entry.material_keys = tuple(self._materials.key(material) for material in entry.materials)
+            entry.material_keys = self._materials.surface_keys(entry.materials)
         self._set_world()
         self._set_lights(collected)
         mesh_of = self._read_meshes(collected)

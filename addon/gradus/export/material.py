@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .. import native
+from .. import compat, native
 from . import image as images
 from .keys import KeyTable
 from .report import Warnings
@@ -66,10 +66,28 @@ class Materials:
             self._translate(key, block, kind)
         return key
 
+    def surface_keys(self, materials: tuple[Any, ...]) -> tuple[int, ...]:
+        """The keys of a surface's slots. Without slots it is as with an empty one."""
+        if compat.default_surface_is_principled():
+            return tuple(self.key(material) or self._default_surface() for material in materials or (None,))
+        return tuple(self.key(material) for material in materials)
+
+    def _default_surface(self) -> int:
+        place = ("DEFAULT", 0)
+        key = self._done.get(place)
+        if key is None:
+            from .. import nodes
+
+            key = self._done[place] = self._keys.key(place)
+            self._set(key, nodes.default_surface())
+        return key
+
     def _translate(self, key: int, block: Any, kind: str) -> None:
         from .. import nodes  # the translation is large: loaded with the first material
 
-        program = nodes.translate(block, kind, self._resources)
+        self._set(key, nodes.translate(block, kind, self._resources))
+
+    def _set(self, key: int, program: Any) -> None:
         for text in program.warnings:
             self._warnings.add(text)
         self.attribute_names.update(program.attribute_names)

@@ -20,7 +20,8 @@ from . import (  # noqa: F401  (they register themselves)
     textures,
     vectors,
 )
+from .default_surface import default_surface
 from .program import Program
 from .translate import translate
 
-__all__ = ["Program", "translate"]
+__all__ = ["Program", "default_surface", "translate"]

@@ -10,15 +10,19 @@ from .registry import translator
 _RENDERED = frozenset({"GGX", "MULTI_GGX", "SHARP"})
 
 
+MULTIPLE_SCATTERING = 1
+"""Mode of closures, GRADUS_DISTRIBUTION_MULTIPLE."""
+
+
 def distribution_mode(view: NodeView) -> int:
-    """1: energy of multiple scattering. Other distributions (Beckmann, Ashikhmin-Shirley) are rendered as GGX of the same roughness.
+    """MULTIPLE_SCATTERING, or 0. Other distributions (Beckmann, Ashikhmin-Shirley) are rendered as GGX of the same roughness.
 
     Smooth surfaces have none: Beckmann is what glass starts with in Blender 3.4, at a roughness of 0.
     """
     distribution = getattr(view.node, "distribution", "GGX")
     if distribution not in _RENDERED and not roughness(view).is_zero():
         view.warn_replaced("is rendered with the distribution GGX")
-    return 1 if distribution == "MULTI_GGX" else 0
+    return MULTIPLE_SCATTERING if distribution == "MULTI_GGX" else 0
 
 
 def roughness(view: NodeView) -> Value:
