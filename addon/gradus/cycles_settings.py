@@ -36,20 +36,24 @@ def copy(scene: Any) -> None:
         setattr(scene.gradus, name, value)
 
 
-def untouched(scene: Any) -> list[str]:
-    """Settings of ours that nobody has set in this scene, and that Cycles has at another value."""
+def untouched(scene: Any) -> dict[str, Any]:
+    """Those that Cycles has at another value, and that nobody has set for us in this scene."""
     ours = scene.gradus
-    return [name for name, value in values(scene).items() if not ours.is_property_set(name) and getattr(ours, name) != value]
+    return {name: value for name, value in values(scene).items() if not ours.is_property_set(name) and getattr(ours, name) != value}
 
 
 def warnings(scene: Any, given: set[str]) -> list[str]:
     """What a render has to say about it. given: settings that the command line sets."""
-    cycles = values(scene)
-    names = [name for name in untouched(scene) if name not in given]
-    if not names:
-        return []
-    listed = ", ".join(f"{name} {_text(getattr(scene.gradus, name))} (Cycles: {_text(cycles[name])})" for name in names)
-    return [f"Settings are not those that the scene has for Cycles (Light Paths > Copy from Cycles takes them over): {listed}"]
+    listed = ", ".join(
+        f"{name} {_text(getattr(scene.gradus, name))} (Cycles: {_text(value)})"
+        for name, value in untouched(scene).items()
+        if name not in given
+    )
+    return (
+        [f"Settings are not those that the scene has for Cycles (Light Paths > Copy from Cycles takes them over): {listed}"]
+        if listed
+        else []
+    )
 
 
 def _text(value: Any) -> str:

@@ -28,8 +28,8 @@ Vec3 shadow_origin(const Snapshot& scene, const SurfacePoint& point, const Vec3&
   const float share = terminator_share(point, direction);
   if (share == 0.0f) return offset_origin(point, direction);
   const InstanceData& instance = scene.instances[point.hit.instance];
-  std::array<Vec3, 3> normals;
-  if (!triangle_normals(*instance.mesh, point.hit.triangle, &normals)) return offset_origin(point, direction);
+  std::array<Vec3, 3> normals{};
+  triangle_normals(*instance.mesh, point.hit.triangle, &normals);  // it has them: without, the point's offset is 0
   // The side of the smooth surface on which the light lies; from within, the bulge points inwards.
   const Vec3 outside = std::copysign(1.0f, glm::dot(point.shading_normal, direction)) * point.geometric_normal;
   const Vec3 smooth = instance.normal_to_world * interpolate(normals, point.hit.barycentric);

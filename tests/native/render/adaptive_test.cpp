@@ -103,19 +103,24 @@ TEST(L3_Resume, AdaptiveRendersGoOnWithTheSameBits) {
   EXPECT_TRUE(same_samples(*whole, *render_frame(adaptive_settings(64), render_frame(adaptive_settings(16)))));
 }
 
+// Quiet cells cost more than others.
+std::shared_ptr<const Frame> render_costly_below(const GradusSettings& settings, std::shared_ptr<const Frame> from) {
+  const auto render = start(settings, fake_factory([](FakeIntegrator* fake) {
+                              fake->quiet_until = kQuiet;
+                              fake->rays_below = 40;
+                            }),
+                            std::move(from));
+  render->wait(-1.0);
+  return render->frame();
+}
+
 // The cost of cells, and which of them had stopped, was forgotten between the two renders.
 TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
   GradusSettings settings = adaptive_settings(80, 0.05f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  const auto costly_below = fake_factory([](FakeIntegrator* fake) {
-    fake->quiet_until = kQuiet;
-    fake->rays_below = 40;
-  });
   const auto part = [&](uint32_t samples, std::shared_ptr<const Frame> from) {
     settings.samples = samples;
-    const auto render = start(settings, costly_below, std::move(from));
-    render->wait(-1.0);
-    return render->frame();
+    return render_costly_below(settings, std::move(from));
   };
   const auto whole = part(80, nullptr);
   const std::string path = testing::TempDir() + "/adaptive.exr";
@@ -136,15 +141,9 @@ TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
 TEST(L3_Resume, SamplesOfUnknownCostStayUnknown) {
   GradusSettings settings = adaptive_settings(16, 0.0f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  const auto costly_below = fake_factory([](FakeIntegrator* fake) {
-    fake->quiet_until = kQuiet;
-    fake->rays_below = 40;
-  });
   const auto part = [&](uint32_t samples, std::shared_ptr<const Frame> from) {
     settings.samples = samples;
-    const auto render = start(settings, costly_below, std::move(from));
-    render->wait(-1.0);
-    return render->frame();
+    return render_costly_below(settings, std::move(from));
   };
   const auto plain = part(16, nullptr);
   settings.noise_threshold = 0.001f;

@@ -5,8 +5,8 @@
 // and see the same integrand, a gradient sample is weighed against all four strategies, {light, BSDF} × {base, offset} (thesis 5.4.2):
 //   (r·C' − C) / (m_p + m_q·r)  with  r = |T'|·(p_n(y) + p_b(y)) / (p_n(x) + p_b(x)).
 // Elsewhere (sharp classes: BSDF samples copy the half-vector, light samples the emitter point; shadows that are not what rays see, as by
-// the terminator of faceted meshes at either end) each
-// technique is paired with itself: r = |T'|·p_t(y)/p_t(x), with the same C and C'. Both are unbiased.
+// the terminator of faceted meshes at either end) each technique is paired with itself: r = |T'|·p_t(y)/p_t(x), with the same C and C'.
+// Both are unbiased.
 //
 // Where base and offset both traced a ray of their own (from the camera, or after a copied event), what the two rays show is one function
 // of the ray, and the pair needs no condition: it is formed by seen() also where one of the two shows nothing. So the edges of visible
@@ -36,6 +36,10 @@ float copy_jacobian(const EmitterPoint& point, const EmitterView& base, const Em
 // Where the classes of the two vertices differ, BSDF samples share the random number of the class, which light samples do not have.
 bool OffsetPaths::joint(const EmitterView& view, const OffsetPath& offset) const {
   return joint_ && !offset.mixed && view.casts_shadow && (view.visibility & kAllBounces) == kAllBounces;
+}
+
+bool OffsetPaths::both_leave_facets(const Vertex& base, const Vec3& base_direction, const OffsetPath& offset, const Vec3& direction) {
+  return leaves_facet(base.point, base_direction) && leaves_facet(offset.here->point, direction);
 }
 
 // What the offset's own segment shows; alpha is 1 − what the camera sees through. Brings its throughput to the end of the segment.
@@ -119,7 +123,7 @@ void OffsetPaths::copy_emitter(int k, const RaySource& source, const Contributio
     return;
   }
   const Rgb value = o.state.throughput * event.factor * offset.radiance * through * (bsdf_weight(offset.pdf, event.pdf) / probability);
-  const bool all = joint(base, o) && leaves_facet(source.vertex->point, base.direction) && leaves_facet(o.here->point, offset.direction);
+  const bool all = joint(base, o) && both_leave_facets(*source.vertex, base.direction, o, offset.direction);
   pair(k, c, value, o.ratio * event.ratio * (all ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
 }
 
@@ -214,8 +218,9 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
       }
       const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, point);
       const Rgb value = o.link.throughput * emission * bsdf_weight(pdf_light, o.link.pdf);
-      const bool all = joint_ && !o.mixed && leaves_facet(source.vertex->point, base_state_.ray.ray.direction) &&
-                       leaves_facet(o.here->point, glm::normalize(vertex.point.position - o.here->point.position));
+      const bool all = joint_ && !o.mixed &&
+                       both_leave_facets(*source.vertex, base_state_.ray.ray.direction, o,
+                                         glm::normalize(vertex.point.position - o.here->point.position));
       pair(k, c, value, o.link.ratio * (all ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
     }
   }

@@ -76,7 +76,7 @@ void OffsetPaths::light_own(int k, const Vertex& vertex, const LightSample& samp
   const EmitterView& view = o.light.view;
   const LitClass& lit = o.light.lit;
   const bool all = joint(view, o) && reconnects(scatter_class) && sample.point.found_by_rays &&
-                   leaves_facet(vertex.point, sample.view.direction) && leaves_facet(o.here->point, view.direction);
+                   both_leave_facets(vertex, sample.view.direction, o, view.direction);
   const float pdf = all ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
   if (is_black(lit.value) || is_black(o.light.transmittance) || !(pdf > 0.0f)) {

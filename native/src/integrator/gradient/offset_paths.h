@@ -107,6 +107,8 @@ class OffsetPaths {
   void copy_emitter(int k, const RaySource& source, const Contribution& c, const EmitterPoint& point, const EmitterView& base,
                     const EmitterView& offset, float probability);
   bool joint(const EmitterView& view, const OffsetPath& offset) const;
+  // Towards an emitter, in its direction from each.
+  static bool both_leave_facets(const Vertex& base, const Vec3& base_direction, const OffsetPath& offset, const Vec3& direction);
 
   const PathContext& context_;
   Counters& counters_;
