@@ -8,7 +8,7 @@
 #include "common.h"
 #include "frame/image_exr.h"
 #include "frame/store.h"
-#include "render/options.h"
+#include "settings/options.h"
 
 namespace gradus::tool {
 namespace {

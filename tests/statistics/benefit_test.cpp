@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "render/clock.h"
+#include "base/clock.h"
 #include "render/combine.h"
-#include "render/options.h"
 #include "render/render.h"
+#include "settings/options.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 

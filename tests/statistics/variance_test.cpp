@@ -5,8 +5,8 @@
 
 #include "reconstruct/solver.h"
 #include "render/cell_noise.h"
-#include "render/options.h"
 #include "render/render.h"
+#include "settings/options.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 

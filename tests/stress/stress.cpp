@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "render/combine.h"
-#include "render/options.h"
-#include "render/pass_table.h"
 #include "render/render.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 #include "support/double_image.h"
 
 namespace gradus::stress {

@@ -7,10 +7,10 @@
 #include "base/fpu.h"
 #include "frame/store.h"
 #include "render/combine.h"
-#include "render/options.h"
 #include "render/pass_read.h"
-#include "render/pass_table.h"
 #include "render/resume.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 
 using namespace gradus;
 

@@ -1,9 +1,9 @@
 // gradus_option*, gradus_settings_*, gradus_pass_info
-#include "render/options.h"
+#include "settings/options.h"
 
 #include "api/guard.h"
 #include "api/structs.h"
-#include "render/pass_table.h"
+#include "settings/pass_table.h"
 
 using namespace gradus;
 

@@ -8,7 +8,7 @@
 #include "api/archive_structs.h"
 #include "api/scene_file.h"
 #include "frame/file_writer.h"
-#include "render/options.h"
+#include "settings/options.h"
 
 namespace gradus::api {
 namespace {

@@ -6,7 +6,7 @@
 #include "api/recorder.h"
 #include "api/scene_args.h"
 #include "api/structs.h"
-#include "render/options.h"
+#include "settings/options.h"
 
 using namespace gradus;
 

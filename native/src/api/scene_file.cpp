@@ -8,8 +8,8 @@
 #include "api/archive_structs.h"
 #include "api/recorder.h"
 #include "api/scene_args.h"
-#include "render/options.h"
 #include "scene/scene.h"
+#include "settings/options.h"
 
 namespace gradus::api {
 namespace {

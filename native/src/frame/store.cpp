@@ -1,4 +1,5 @@
 #include "frame/store.h"
+#include "frame/pass_planes.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -11,13 +12,13 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "frame/cells.h"
 #include "frame/exr_stream.h"
 #include "frame/store_planes.h"
-#include "render/clock.h"
-#include "render/options.h"
-#include "render/pass_table.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {

@@ -1,6 +1,6 @@
 #include "frame/store_planes.h"
 
-#include "render/pass_table.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "bsdf/ggx.h"
-#include "render/options.h"
-#include "render/pass_table.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {

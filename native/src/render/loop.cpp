@@ -9,12 +9,13 @@
 #include "base/device.h"
 #include "base/fpu.h"
 #include "frame/cells.h"
+#include "frame/pass_planes.h"
 #include "render/batches.h"
 #include "render/combine.h"
-#include "render/options.h"
 #include "render/pass_read.h"
-#include "render/pass_table.h"
 #include "render/resume.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {

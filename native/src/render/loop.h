@@ -10,11 +10,11 @@
 
 #include <tbb/task_arena.h>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "frame/frame.h"
 #include "plan/plan.h"
 #include "render/adaptive_sampling.h"
-#include "render/clock.h"
 #include "render/pilot.h"
 #include "render/render.h"
 #include "render/stats.h"

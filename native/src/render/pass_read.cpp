@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "render/pass_table.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/device.h"
 #include "base/error.h"
 #include "render/loop.h"
-#include "render/pass_table.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "frame/cells.h"
-#include "render/options.h"
+#include "settings/options.h"
 
 namespace gradus {
 namespace {

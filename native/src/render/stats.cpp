@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "render/clock.h"
-#include "render/options.h"
+#include "base/clock.h"
+#include "settings/options.h"
 
 namespace gradus {
 namespace {

@@ -5,9 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "frame/pass_planes.h"
 #include "gradus/gradus.h"
-#include "render/options.h"
-#include "render/pass_table.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {

@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "frame/pass_planes.h"
 #include "render/pass_read.h"
-#include "render/pass_table.h"
 #include "render/render.h"
+#include "settings/pass_table.h"
 #include "shading/program_builder.h"
 #include "support/path_scene.h"
 

@@ -6,8 +6,8 @@
 
 #include "plan/plan.h"
 #include "render/combine.h"
-#include "render/options.h"
 #include "render/render.h"
+#include "settings/options.h"
 #include "support/path_scene.h"
 
 namespace gradus {

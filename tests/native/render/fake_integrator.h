@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "base/error.h"
-#include "render/options.h"
-#include "render/pass_table.h"
 #include "render/render.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 
 namespace gradus::test {
 

@@ -7,8 +7,8 @@
 #include "plan/l2_noise.h"
 #include "reconstruct/solver.h"
 #include "render/fake_integrator.h"
-#include "render/options.h"
 #include "render/pilot.h"
+#include "settings/options.h"
 
 namespace gradus {
 namespace {

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "gradus/gradus_nodes.h"
-#include "render/options.h"
-#include "render/pass_table.h"
 #include "render/render.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
 #include "shading/program_builder.h"
 #include "support/path_scene.h"
 

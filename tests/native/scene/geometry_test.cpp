@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/clock.h"
+#include "base/clock.h"
 #include "scene/camera.h"
 #include "scene/emitters.h"
 #include "scene/rays4.h"

@@ -1,4 +1,4 @@
-#include "render/options.h"
+#include "settings/options.h"
 
 namespace gradus {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/options.h"
+#include "settings/options.h"
 
 #include <charconv>
 #include <cmath>

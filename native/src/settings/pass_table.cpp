@@ -1,4 +1,4 @@
-#include "render/pass_table.h"
+#include "settings/pass_table.h"
 
 #include <string>
 
@@ -52,8 +52,6 @@ constexpr bool is_in_order() {
 }
 static_assert(is_in_order(), "one row per GradusPass, in order");
 
-bool is_stored(const PassInfo& info) { return info.kind != PassKind::Image && info.kind != PassKind::Derived; }
-
 }  // namespace
 
 const PassInfo& pass_info(uint32_t pass) {
@@ -68,28 +66,18 @@ uint64_t needed_passes(uint64_t passes) {
   return passes;
 }
 
-std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
-  std::vector<PassPlane> planes;
+std::vector<PassInfo> stored_passes(uint64_t passes) {
+  std::vector<PassInfo> stored;
   const uint64_t needed = needed_passes(passes);
   for (const PassInfo& info : kPasses) {
-    if (!wants(needed, info.pass) || !is_stored(info)) continue;
-    PassPlane& plane = planes.emplace_back();
-    plane.pass = info.pass;
-    plane.channels = info.channels;
-    plane.first_sample_only = info.kind == PassKind::First;
-    plane.skips_transparent = info.kind == PassKind::Weighted;
-    plane.values.assign(pixels * info.channels, 0.0f);
-    if (plane.skips_transparent) plane.weight.assign(pixels, 0.0f);
+    if (wants(needed, info.pass) && info.kind != PassKind::Image && info.kind != PassKind::Derived) stored.push_back(info);
   }
-  return planes;
+  return stored;
 }
 
 uint64_t pass_bytes_per_pixel(uint64_t passes) {
   uint64_t floats = 0;
-  const uint64_t needed = needed_passes(passes);
-  for (const PassInfo& info : kPasses) {
-    if (wants(needed, info.pass) && is_stored(info)) floats += info.channels + (info.kind == PassKind::Weighted ? 1 : 0);
-  }
+  for (const PassInfo& info : stored_passes(passes)) floats += info.channels + (info.kind == PassKind::Weighted ? 1 : 0);
   return floats * sizeof(float);
 }
 

@@ -1,11 +1,11 @@
 // THE native table of passes: names, channels, and which stored plane a pass is read from. The integrator fills the planes that
-// make_pass_planes() creates; frames are read through render/pass_read.h.
+// frame/pass_planes.h creates; frames are read through render/pass_read.h.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "frame/frame.h"
+#include "gradus/gradus.h"
 
 namespace gradus {
 
@@ -36,8 +36,8 @@ inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) 
 
 // `passes` plus what they need: the colours that light passes are divided by.
 uint64_t needed_passes(uint64_t passes);
-// The planes that an integrator fills, zeroed, in order of pass number. pixels: of the frame's region.
-std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels);
+// Those of needed_passes() that an integrator fills planes of, in order of pass number.
+std::vector<PassInfo> stored_passes(uint64_t passes);
 // Bytes of these planes per pixel.
 uint64_t pass_bytes_per_pixel(uint64_t passes);
 

@@ -1,4 +1,4 @@
-#include "render/clock.h"
+#include "base/clock.h"
 
 #include <unistd.h>
 
