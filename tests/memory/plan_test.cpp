@@ -25,7 +25,7 @@ GradusSettings settings_of(const Case& c) {
   settings.reconstruction = c.reconstruction;
   settings.film_transparent = c.transparent ? 1 : 0;
   settings.noise_threshold = c.adaptive ? 1e-6f : 0.0f;
-  settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL;
+  settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | feature_passes();
   return settings;
 }
 
@@ -33,7 +33,7 @@ GradusSettings settings_of(const Case& c) {
 TEST_P(PlannedBytes, AreThoseOfTheRendersPeak) {
   const GradusSettings settings = settings_of(GetParam());
   const auto factory = test::fake_factory([](test::FakeIntegrator* fake) { fake->pairs_until = GetParam().gaps ? 350 : INT32_MAX; });
-  const uint64_t planned = planned_bytes(make_plan(settings, *test::empty_snapshot()), settings);
+  const uint64_t planned = planned_bytes(make_plan(settings, *test::empty_snapshot()));
   const int64_t before = live_bytes();
   forget_peak();
   test::start(settings, factory)->wait(-1.0);

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "frame/features.h"
+#include "frame/pass_planes.h"
 #include "reconstruct/solver.h"
 #include "render/cell_noise.h"
 #include "render/render.h"
 #include "settings/options.h"
+#include "settings/pass_table.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
@@ -68,6 +71,40 @@ INSTANTIATE_TEST_SUITE_P(All, A8_Variance,
                          testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::RoughMetal,
                                          Scenario::Glass, Scenario::LampsSeen),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
+
+// Features behind a lens, which alone gives them noise here.
+TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
+  test::PathScene scene;
+  test::build(Scenario::Mirror, &scene);
+  scene.camera_desc.aperture_radius = 0.15f;
+  constexpr uint32_t size = 32;  // four blocks
+  IntegratorContext context = scene.context(sobol_settings(size));
+  const int seeds = test::full_run() ? 64 : 32;
+  test::Moments images[3], variances[3];
+  for (int seed = 0; seed < seeds; ++seed) {
+    context.settings.seed = static_cast<uint32_t>(seed);
+    Frame frame = test::make_test_frame(context.settings, false);
+    frame.passes = make_pass_planes(feature_passes(), frame.count[0].size());
+    test::sample_frame(*make_path_integrator(context), 0, 16, &frame);
+    const Features features = read_features(frame);
+    const FeatureImage* all[3] = {&features.normal, &features.albedo, &features.depth};
+    for (int k = 0; k < 3; ++k) {
+      images[k].add(all[k]->values);
+      variances[k].add(all[k]->variance);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    double estimated = 0.0, empirical = 0.0;
+    for (size_t i = 0; i < images[k].size(); ++i) {
+      estimated += variances[k].mean(i);
+      empirical += images[k].variance_of_mean(i) * seeds;
+    }
+    std::printf("  %.3f", estimated / empirical);
+    EXPECT_GT(estimated / empirical, 0.85) << k;
+    EXPECT_LT(estimated / empirical, 1.15) << k;
+  }
+  std::printf("\n");
+}
 
 // Samples that are given where the noise is: the estimate is still that of the spread, and the mean that of equal counts. Both could be
 // off, as counts depend on the samples that they weigh: what was bright by chance is followed by more samples and counts for less.

@@ -48,7 +48,7 @@ uint64_t Frame::memory_bytes() const {
     }
   }
   for (const PassPlane& plane : passes) {
-    bytes += (plane.values.size() + plane.weight.size()) * sizeof(float);
+    bytes += (plane.values[0].size() + plane.values[1].size() + plane.weight.size()) * sizeof(float);
   }
   return bytes;
 }

@@ -45,10 +45,13 @@ struct ComponentPlanes {
 struct PassPlane {
   uint32_t pass = GRADUS_PASS_COUNT;
   uint32_t channels = 0;
-  bool first_sample_only = false;  // depth, ids: value, not a sum
-  bool skips_transparent = false;  // averaged by `weight` instead of the sample count
-  std::vector<float> values;
+  bool first_sample_only = false;                  // depth, ids: value, not a sum
+  bool skips_transparent = false;                  // averaged by `weight` instead of the sample count
+  bool in_halves = false;                          // features, whose noise is to be known
+  std::array<std::vector<float>, kHalves> values;  // all in the first, unless in_halves
   std::vector<float> weight;
+
+  std::vector<float>& of_half(int half) { return values[in_halves ? half : 0]; }
 };
 
 // Counters by cause; names in gradus stats. One per worker, added up in the end.

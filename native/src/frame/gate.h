@@ -36,8 +36,8 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
 }
 
 // Values of a pass: added to its sums, or kept as they are where only the first sample counts.
-inline void add_feature(const float* values, float weight, size_t pixel, PassPlane* plane, Counters* counters) {
-  float* sum = plane->values.data() + pixel * plane->channels;
+inline void add_feature(const float* values, float weight, size_t pixel, int half, PassPlane* plane, Counters* counters) {
+  float* sum = plane->of_half(half).data() + pixel * plane->channels;
   float next[4];
   for (uint32_t i = 0; i < plane->channels; ++i) {
     next[i] = plane->first_sample_only ? values[i] : sum[i] + values[i] * weight;

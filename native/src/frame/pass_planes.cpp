@@ -1,5 +1,7 @@
 #include "frame/pass_planes.h"
 
+#include <algorithm>
+
 #include "settings/pass_table.h"
 
 namespace gradus {
@@ -12,10 +14,22 @@ std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
     plane.channels = info.channels;
     plane.first_sample_only = info.kind == PassKind::First;
     plane.skips_transparent = info.kind == PassKind::Weighted;
-    plane.values.assign(pixels * info.channels, 0.0f);
+    plane.in_halves = info.kind == PassKind::Feature;
+    for (int half = 0; half < (plane.in_halves ? kHalves : 1); ++half) plane.values[half].assign(pixels * info.channels, 0.0f);
     if (plane.skips_transparent) plane.weight.assign(pixels, 0.0f);
   }
   return planes;
+}
+
+uint64_t kept_passes(const Frame& frame) {
+  uint64_t passes = 0;
+  for (const PassPlane& plane : frame.passes) passes |= uint64_t{1} << plane.pass;
+  return passes;
+}
+
+const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
+  const auto plane = std::find_if(frame.passes.begin(), frame.passes.end(), [&](const PassPlane& p) { return p.pass == pass; });
+  return plane != frame.passes.end() ? &*plane : nullptr;
 }
 
 }  // namespace gradus

@@ -7,5 +7,9 @@ namespace gradus {
 
 // Zeroed, in order of pass number. passes: what is asked for; pixels: of the frame's region.
 std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels);
+// Which passes the frame has planes of, a bit each.
+uint64_t kept_passes(const Frame& frame);
+// nullptr: there is none.
+const PassPlane* find_plane(const Frame& frame, uint32_t pass);
 
 }  // namespace gradus

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr int kMaxSide = 1 << 16;
 constexpr int kBlockRows = 16;  // of the ZIP compression: blocks are written whole
 constexpr const char* kAttribute = "gradus";
@@ -86,6 +86,7 @@ json describe_samples(const Frame& frame) {
           {"sampling_key", hex(sampling_key(frame.settings))},
           {"scene_key", hex(frame.scene_key)},
           {"settings", settings_to_json(frame.settings)},
+          {"planes", kept_passes(frame)},
           {"samples", ranges_to_json(frame.samples)},
           {"counters", counters_to_json(frame.counters)}};
 }
@@ -174,9 +175,10 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   if ((channels != 3 && channels != 4) || components < 1 || components > 64) throw damaged("its planes are wrong");
   const bool gradients = description.at("gradients");
   GradusSettings settings = settings_from_json(description.at("settings"));
+  const uint64_t passes = description.at("planes");
   const Region region{data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
   const uint64_t per_pixel =
-      uint64_t(components) * kHalves * sizeof(Radiance) * (gradients ? 1 + kOffsets : 1) + pass_bytes_per_pixel(settings.passes);
+      uint64_t(components) * kHalves * sizeof(Radiance) * (gradients ? 1 + kOffsets : 1) + pass_bytes_per_pixel(passes);
   if (per_pixel * uint64_t(region.area()) > machine_memory_bytes()) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   Frame frame(uint32_t(display.max.x + 1), uint32_t(height), region, channels, components, gradients);
@@ -186,7 +188,7 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   frame.counters = counters_from_json(description.at("counters"));
   frame.samples = ranges_from_json(description.at("samples"));
   if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), region);
-  frame.passes = make_pass_planes(settings.passes, size_t(region.area()));
+  frame.passes = make_pass_planes(passes, size_t(region.area()));
   if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame.fallback.assign(size_t(region.area()), 0.0f);
   return frame;
 }

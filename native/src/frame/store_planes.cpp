@@ -54,8 +54,11 @@ std::vector<StoredPlane> stored_planes(Frame* frame) {
     for (int o = 0; o < kOffsets; ++o) list.floats("pairs." + h + "." + kOffsetNames[o], &frame->pair_count[half][o]);
   }
   for (PassPlane& plane : frame->passes) {
-    for (uint32_t c = 0; c < plane.channels; ++c) {
-      list.floats(pass_channel(plane.pass) + "." + kVectorNames[c], &plane.values, plane.channels, c);
+    for (int half = 0; half < (plane.in_halves ? kHalves : 1); ++half) {
+      const std::string name = pass_channel(plane.pass) + (plane.in_halves ? std::string(".") + kHalfNames[half] : "");
+      for (uint32_t c = 0; c < plane.channels; ++c) {
+        list.floats(name + "." + kVectorNames[c], &plane.values[half], plane.channels, c);
+      }
     }
     list.floats(pass_channel(plane.pass) + ".weight", &plane.weight);
   }

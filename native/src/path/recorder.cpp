@@ -56,22 +56,23 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
     planes_[plane.pass] = &plane;
     active_ = true;
     lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
-    features_ |= plane.pass == GRADUS_PASS_DENOISING_ALBEDO || plane.pass == GRADUS_PASS_DENOISING_NORMAL ||
-                 plane.pass == GRADUS_PASS_DENOISING_DEPTH;
+    features_ |= plane.in_halves;
   }
 }
 
-void PassRecorder::begin_sample(size_t pixel, bool first_sample) {
+void PassRecorder::begin_sample(size_t pixel, int half, bool first_sample) {
   pixel_ = pixel;
+  half_ = half;
   first_sample_ = first_sample;
   features_done_ = !features_;
   path_length_ = 0.0f;
+  albedo_ = Rgb(0.0f);
 }
 
 void PassRecorder::add(uint32_t pass, const Vec4& value) {
   PassPlane* target = plane(pass);
   if (target != nullptr && (first_sample_ || !target->first_sample_only)) {
-    add_feature(&value.x, 1.0f, pixel_, target, counters_);
+    add_feature(&value.x, 1.0f, pixel_, half_, target, counters_);
   }
 }
 
@@ -119,7 +120,7 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
     camera_surface(sampler, state.throughput, vertex);
   }
   if (!features_done_) {
-    features(state, vertex, segment);
+    features(state, vertex);
   }
 }
 
@@ -221,19 +222,28 @@ void PassRecorder::background_motion(const Vec3& direction) {
   }
 }
 
-// Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles.
-void PassRecorder::features(const PathState& state, const Vertex& vertex, const Segment&) {
+// Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles, where what shines counts as an
+// albedo, too: lamps and the sky, which have no closures, would else look like black.
+void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   const Closures& closures = vertex.shade.closures;
+  add_albedo(state.throughput * vertex.shade.emission);
   const bool mirror = !closures.empty() && closures.class_probability(ScatterClass::Diffuse) < 0.25f;
   if (mirror && !state.emission_only) {
     return;
   }
   features_done_ = true;
   if (plane(GRADUS_PASS_DENOISING_ALBEDO) != nullptr) {
-    add(GRADUS_PASS_DENOISING_ALBEDO, glm::clamp(state.throughput * closures.albedo(vertex.wo), Rgb(0.0f), Rgb(1.0f)));
+    add_albedo(state.throughput * closures.albedo(vertex.wo));
   }
   add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
   add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
+}
+
+// A sample's albedo stays in [0, 1], as denoisers expect it.
+void PassRecorder::add_albedo(const Rgb& value) {
+  const Rgb sum = glm::clamp(albedo_ + value, Rgb(0.0f), Rgb(1.0f));
+  add(GRADUS_PASS_DENOISING_ALBEDO, sum - albedo_);
+  albedo_ = sum;
 }
 
 }  // namespace gradus

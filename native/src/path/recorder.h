@@ -16,13 +16,17 @@ class PassRecorder {
   PassRecorder(const PathContext& context, Frame* frame, Counters* counters);
   bool active() const { return active_; }
 
-  void begin_sample(size_t pixel, bool first_sample);
+  void begin_sample(size_t pixel, int half, bool first_sample);
   // surface() will look at the closures of the vertex with `depth` scatterings before it.
   bool needs_closures(int depth) const { return depth == 0 || !features_done_; }
   // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // The ray left the scene.
   void escaped(const PathState& state);
+  // A lamp or the world on the path's last segment, with the whole of the light that arrives from there.
+  void sighting(const Rgb& light) {
+    if (!features_done_) add_albedo(light);
+  }
   // Light that was scattered `scatterings` times; 0: seen by the camera.
   void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
   void environment(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT); }
@@ -43,7 +47,8 @@ class PassRecorder {
   void mist(const Rgb& weight, const Vec3& position);
   void motion(const Vertex& vertex);
   void background_motion(const Vec3& direction);
-  void features(const PathState& state, const Vertex& vertex, const Segment& segment);
+  void features(const PathState& state, const Vertex& vertex);
+  void add_albedo(const Rgb& value);
 
   const PathContext& context_;
   Counters* counters_;
@@ -54,7 +59,9 @@ class PassRecorder {
   bool first_sample_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;
+  Rgb albedo_ = Rgb(0.0f);  // feature of this sample, so far
   size_t pixel_ = 0;
+  int half_ = 0;
   PassShare share_{};
 };
 

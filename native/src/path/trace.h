@@ -112,7 +112,7 @@ class PathTracer {
   }
 
   // The path's last ray, of which nobody wants to know more than the light that it finds.
-  bool sees_lights_alone() const { return recorder_ == nullptr && shows_lights_alone(context_, state_); }
+  bool sees_lights_alone() const { return !records() && shows_lights_alone(context_, state_); }
 
   // The recorder looks at the closures of the next vertex.
   bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
@@ -201,6 +201,7 @@ class PathTracer {
   void add_lamps(const RaySource& source) {
     for (const LampSighting& lamp : segment_->lamps) {
       const Contribution c = lamp_contribution(context_, source, state_, lamp);
+      if (recorder_ != nullptr) recorder_->sighting(state_.throughput * lamp.weight * c.light);
       if (!is_black(c.clamped)) {
         add(c.clamped);
         if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
@@ -213,6 +214,7 @@ class PathTracer {
     if (recorder_ != nullptr) recorder_->escaped(state_);
     if (state_.depth == 0 && context_.settings.film_transparent != 0) add_transparent(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
+    if (recorder_ != nullptr) recorder_->sighting(state_.throughput * c.light);
     if (!is_black(c.clamped)) {
       add(c.clamped);
       if (recorder_ != nullptr) recorder_->environment(state_.depth, c.clamped);

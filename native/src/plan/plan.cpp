@@ -107,10 +107,17 @@ void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* 
   if (plan->channels == 3) plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
 }
 
-void list_passes(const GradusSettings& settings, Plan* plan) {
+void choose_passes(const GradusSettings& settings, Plan* plan) {
+  plan->passes = settings.passes;
+  if (!features_wanted(*plan)) return;
+  plan->passes |= feature_passes();
+  plan->chosen.emplace_back("denoising features", "the reconstruction is guided by them");
+}
+
+void list_passes(Plan* plan) {
   std::string names;
   for (uint32_t pass = GRADUS_PASS_NOISY_IMAGE; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (wants(settings.passes, pass)) continue;
+    if (wants(plan->passes, pass)) continue;
     names += names.empty() ? pass_info(pass).name : std::string(", ") + pass_info(pass).name;
   }
   if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
@@ -145,9 +152,12 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
   const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
   plan.unbiased = !plan.adaptive && !clamps;
   list_scene(settings, snapshot, &plan);
-  list_passes(settings, &plan);
+  choose_passes(settings, &plan);
+  list_passes(&plan);
   return plan;
 }
+
+bool features_wanted(const Plan& plan) { return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED; }
 
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction) {
   return plan.unbiased && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
@@ -185,12 +195,12 @@ uint64_t noise_floats(const Plan& plan) {
 
 }  // namespace
 
-uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings) {
+uint64_t planned_bytes(const Plan& plan) {
   // Per half: the primal, and in a gradient render four offsets; then counts, and pair counts.
   uint64_t bytes = kHalves * sizeof(Radiance) * (plan.gradients ? 1 + kOffsets : 1);
   bytes += kHalves * (sizeof(uint32_t) + (plan.gradients ? kOffsets * sizeof(float) : 0));
-  bytes += pass_bytes_per_pixel(settings.passes);
-  if (wants(settings.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
+  bytes += pass_bytes_per_pixel(plan.passes);
+  if (wants(plan.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
   bytes += 4 * sizeof(float);  // what is shown meanwhile
   uint64_t floats = reconstruction_floats(plan);
   if (plan.adaptive) {

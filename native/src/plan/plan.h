@@ -23,6 +23,7 @@ struct Plan {
   bool unbiased = true;   // what is sampled; see delivers_unbiased()
   bool adaptive = false;  // tiles take samples by their noise, and may stop early
   int channels = 3;
+  uint64_t passes = 0;       // that the frame keeps: those asked for, and what the reconstruction reads
   uint32_t first_check = 0;  // samples before a tile may stop
   Region delivered;
   Region sampled;  // with the guard ring
@@ -39,7 +40,10 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot);
 // Contract 2.2. reconstruction: what is done in the end, which the pilot may have changed to NONE.
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction);
 
+// What the reconstruction reads besides the image: features (settings/pass_table.h).
+bool features_wanted(const Plan& plan);
+
 // Most bytes that a render takes at a time: the frame, and the work space of its reconstruction or of the estimate of its noise.
-uint64_t planned_bytes(const Plan& plan, const GradusSettings& settings);
+uint64_t planned_bytes(const Plan& plan);
 
 }  // namespace gradus

@@ -34,7 +34,7 @@ RenderLoop::RenderLoop(LoopInput input)
       arena_(arena_size(input_.threads)),
       process_cpu_start_(process_cpu_nanoseconds()) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
-  const uint64_t bytes = planned_bytes(plan_, input_.settings), available = machine_memory_bytes();
+  const uint64_t bytes = planned_bytes(plan_), available = machine_memory_bytes();
   if (available > 0 && bytes > available) {
     throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "the frame needs " + std::to_string(bytes >> 20) + " MiB, the machine has " +
                                                 std::to_string(available >> 20) + " MiB: render fewer pixels or passes");
@@ -103,8 +103,8 @@ void RenderLoop::prepare() {
     frame = std::make_shared<Frame>(*input_.resumed);
   } else {
     frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, 1, !gradients_.none());
-    frame->passes = make_pass_planes(settings.passes, size_t(plan_.sampled.area()));
-    if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
+    frame->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
+    if (wants(plan_.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
   if (frame->settings.noise_threshold != settings.noise_threshold) frame->shared.stopped.assign(frame->shared.stopped.size(), 0);
   frame->settings = settings;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "frame/pass_planes.h"
 #include "settings/pass_table.h"
 
 namespace gradus {
@@ -13,13 +14,6 @@ namespace {
 // Depth of a pixel that sees nothing, as in Blender.
 constexpr float kFarDepth = 1e10f;
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
-
-const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
-  for (const PassPlane& plane : frame.passes) {
-    if (plane.pass == pass) return &plane;
-  }
-  return nullptr;
-}
 
 template <class Function>
 void for_pixels(const Frame& frame, const Region& region, Function&& function) {
@@ -92,8 +86,8 @@ void read_derived(const Frame& frame, uint32_t pass, const Region& region, float
 void read_light(const Frame& frame, const PassPlane& light, const PassPlane& color, const Region& region, float* pixels) {
   for_pixels(frame, region, [&](size_t i, size_t out) {
     for (int c = 0; c < 3; ++c) {
-      const float divisor = color.values[3 * i + c];
-      const float quotient = divisor > 0.0f ? frame.settings.film_exposure * light.values[3 * i + c] / divisor : 0.0f;
+      const float divisor = color.values[0][3 * i + c];
+      const float quotient = divisor > 0.0f ? frame.settings.film_exposure * light.values[0][3 * i + c] / divisor : 0.0f;
       pixels[3 * out + c] = std::clamp(quotient, -kMaxFloat, kMaxFloat);
     }
   });
@@ -108,7 +102,11 @@ void read_stored(const Frame& frame, const PassInfo& info, const PassPlane& plan
     } else if (info.kind != PassKind::First) {
       factor = scale * inverse_count(frame, i);
     }
-    for (uint32_t c = 0; c < info.channels; ++c) pixels[info.channels * out + c] = factor * plane.values[info.channels * i + c];
+    for (uint32_t c = 0; c < info.channels; ++c) {
+      const size_t value = info.channels * i + c;
+      pixels[info.channels * out + c] =
+          factor * (plane.in_halves ? plane.values[0][value] + plane.values[1][value] : plane.values[0][value]);
+    }
     if (info.pass == GRADUS_PASS_DEPTH && pixels[out] == 0.0f) pixels[out] = kFarDepth;
   });
 }

@@ -5,7 +5,9 @@
 
 #include "base/error.h"
 #include "frame/cells.h"
+#include "frame/pass_planes.h"
 #include "settings/options.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {
@@ -25,7 +27,7 @@ void add(std::vector<T>* to, const std::vector<T>& from) {
 
 void add_planes(PassPlane* to, const PassPlane& from) {
   if (to->first_sample_only) return;  // the frame that has sample 0 came first
-  add(&to->values, from.values);
+  for (int half = 0; half < kHalves; ++half) add(&to->values[half], from.values[half]);
   add(&to->weight, from.weight);
 }
 
@@ -75,6 +77,10 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
   const std::string gap = frame.samples.first_gap(settings.first_sample);
   if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
   if (frame.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
+  const uint64_t kept = kept_passes(frame);
+  for (const PassInfo& info : stored_passes(plan.passes)) {
+    if (!wants(kept, info.pass)) throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
+  }
   if (resumed_samples(frame, settings.noise_threshold > 0.0f) > settings.samples)
     throw invalid_argument("the frame has more samples than are asked for");
 }

@@ -33,9 +33,9 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_TRANSMISSION_INDIRECT, "Transmission Indirect", 3, PassKind::Light,    GRADUS_PASS_TRANSMISSION_COLOR},
     {GRADUS_PASS_TRANSMISSION_COLOR,    "Transmission Color",    3, PassKind::Color,    kNone},
     {GRADUS_PASS_AMBIENT_OCCLUSION,     "Ambient Occlusion",     3, PassKind::Average,  kNone},
-    {GRADUS_PASS_DENOISING_NORMAL,      "Denoising Normal",      3, PassKind::Average,  kNone},
-    {GRADUS_PASS_DENOISING_ALBEDO,      "Denoising Albedo",      3, PassKind::Average,  kNone},
-    {GRADUS_PASS_DENOISING_DEPTH,       "Denoising Depth",       1, PassKind::Average,  kNone},
+    {GRADUS_PASS_DENOISING_NORMAL,      "Denoising Normal",      3, PassKind::Feature,  kNone},
+    {GRADUS_PASS_DENOISING_ALBEDO,      "Denoising Albedo",      3, PassKind::Feature,  kNone},
+    {GRADUS_PASS_DENOISING_DEPTH,       "Denoising Depth",       1, PassKind::Feature,  kNone},
     {GRADUS_PASS_SAMPLE_COUNT,          "Debug Sample Count",    1, PassKind::Derived,  kNone},
     {GRADUS_PASS_GRADIENT_X,            "Gradient X",            3, PassKind::Derived,  kNone},
     {GRADUS_PASS_GRADIENT_Y,            "Gradient Y",            3, PassKind::Derived,  kNone},
@@ -77,8 +77,18 @@ std::vector<PassInfo> stored_passes(uint64_t passes) {
 
 uint64_t pass_bytes_per_pixel(uint64_t passes) {
   uint64_t floats = 0;
-  for (const PassInfo& info : stored_passes(passes)) floats += info.channels + (info.kind == PassKind::Weighted ? 1 : 0);
+  for (const PassInfo& info : stored_passes(passes)) {
+    floats += info.channels * (info.kind == PassKind::Feature ? 2 : 1) + (info.kind == PassKind::Weighted ? 1 : 0);
+  }
   return floats * sizeof(float);
+}
+
+uint64_t feature_passes() {
+  uint64_t passes = 0;
+  for (const PassInfo& info : kPasses) {
+    if (info.kind == PassKind::Feature) passes |= uint64_t{1} << info.pass;
+  }
+  return passes;
 }
 
 }  // namespace gradus

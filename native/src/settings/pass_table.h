@@ -19,6 +19,7 @@ enum class PassKind : uint8_t {
   Average,   // sum of a quantity over all samples, misses count as 0
   Weighted,  // sum over those samples that have it, divided by their number
   First,     // value of the first sample
+  Feature,   // as Average, but by halves: its noise is to be known
 };
 
 struct PassInfo {
@@ -40,5 +41,7 @@ uint64_t needed_passes(uint64_t passes);
 std::vector<PassInfo> stored_passes(uint64_t passes);
 // Bytes of these planes per pixel.
 uint64_t pass_bytes_per_pixel(uint64_t passes);
+// What reconstructions and denoisers are guided by.
+uint64_t feature_passes();
 
 }  // namespace gradus

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "frame/gate.h"
+#include "frame/pass_planes.h"
 
 namespace gradus {
 namespace {
@@ -29,13 +30,13 @@ TEST(B6_Gate, NonFiniteSamplesStayOutAndAreCounted) {
 // Samples of 3e38 are finite, sums of two were not, nor were the mean of both halves and the variance.
 TEST(B6_Gate, SumsThatWouldOverflowStayOutAndAreCounted) {
   Frame frame = small_frame();
-  PassPlane plane{GRADUS_PASS_EMISSION, 3, false, false, std::vector<float>(36), {}};
+  PassPlane plane = make_pass_planes(uint64_t{1} << GRADUS_PASS_EMISSION, 12)[0];
   for (int half = 0; half < kHalves; ++half) {
     for (const float value : {3e38f, 6e36f, 6e36f}) {
       const float feature[3] = {value, value, value};
       add_radiance(Radiance(half == 0 ? value : -value), &frame.components[0].primal[half][5], &frame.counters);
       add_gradient(Radiance(value), &frame.components[0].gradient[half][kRight][5], &frame.counters);
-      add_feature(feature, 1.0f, 5, &plane, &frame.counters);
+      add_feature(feature, 1.0f, 5, half, &plane, &frame.counters);
       ++frame.count[half][5];
     }
   }

@@ -74,7 +74,7 @@ struct FakeIntegrator final : Integrator {
 
   static void add_pass(PassPlane* plane, size_t i, float value, uint32_t sample) {
     for (uint32_t c = 0; c < plane->channels; ++c) {
-      float& v = plane->values[i * plane->channels + c];
+      float& v = plane->of_half(int(sample % 2))[i * plane->channels + c];
       v = plane->first_sample_only ? (sample == 0 ? value : v) : v + value;
     }
     if (plane->skips_transparent) plane->weight[i] += 1.0f;

@@ -45,6 +45,19 @@ TEST(Plan, PathHasNoGradientsAndSaysSo) {
   EXPECT_TRUE(has("lens samples"));
 }
 
+TEST(Plan, KeepsThePassesThatAreAskedForAndWhatTheReconstructionReads) {
+  GradusSettings settings = small_settings(64, 64, 4);
+  settings.passes |= uint64_t{1} << GRADUS_PASS_MIST;
+  EXPECT_EQ(make_plan(settings, *empty_snapshot()).passes, settings.passes);
+  Plan plan;
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
+    plan.reconstruction = reconstruction;
+    EXPECT_FALSE(features_wanted(plan));
+  }
+  plan.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  EXPECT_TRUE(features_wanted(plan));
+}
+
 // The threshold was taken for 0.1, whatever the setting.
 TEST(Plan, HalfVectorShiftsAreJudgedByTheSettingOfTheThreshold) {
   auto snapshot = std::make_shared<Snapshot>(*empty_snapshot());

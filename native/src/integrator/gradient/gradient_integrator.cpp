@@ -55,7 +55,7 @@ class GradientIntegrator final : public Integrator {
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto worker = std::make_unique<Worker>(path_, frame, counters);
     for_each_sample(path_, unit, *frame, &worker->vertices, stop, [&](const PixelSample& s) {
-      worker->recorder.begin_sample(s.pixel, s.number == path_.settings.first_sample);
+      worker->recorder.begin_sample(s.pixel, s.half, s.number == path_.settings.first_sample);
       if (!has_gradients(unit, s.pixel)) {
         add_primal(worker->plain.trace(s.sampler, s.film, s.first), s, frame, counters);
         return;

@@ -1,0 +1,148 @@
+// Features and their noise as a frame keeps them: by halves, through reading, the store, merging and going on.
+#include "frame/features.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "frame/pass_planes.h"
+#include "frame/store.h"
+#include "render/fake_integrator.h"
+#include "render/pass_read.h"
+#include "render/resume.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+GradusSettings with_features(uint32_t samples) {
+  GradusSettings settings = small_settings(40, 30, samples);
+  settings.passes |= feature_passes();
+  return settings;
+}
+
+// A frame that keeps them though nobody asked for them, as the plan may have it.
+Frame with_unasked_features() {
+  Frame frame = *rendered(with_features(6));
+  frame.settings.passes = uint64_t{1} << GRADUS_PASS_COMBINED;
+  return frame;
+}
+
+struct StoredFeatures : ::testing::Test {
+  ~StoredFeatures() override { std::filesystem::remove(path); }
+  const std::string path = (std::filesystem::temp_directory_path() / ("gradus_features_" + std::to_string(getpid()) + ".exr")).string();
+};
+
+TEST(Features, HalvesAverageToThePass) {
+  const auto frame = rendered(with_features(5));  // three of the one half, two of the other
+  ASSERT_TRUE(has_features(*frame));
+  const Features both = read_features(*frame), a = read_features(*frame, {0, 1}), b = read_features(*frame, {1, 2});
+  EXPECT_EQ(both.width, frame->region.width());
+  EXPECT_EQ(both.height, frame->region.height());
+  EXPECT_NE(a.normal.values, b.normal.values);
+  std::vector<float> pass(size_t(frame->region.area()) * 3);
+  read_frame_pass(*frame, GRADUS_PASS_DENOISING_NORMAL, frame->region, pass.data());
+  EXPECT_EQ(both.normal.values, pass);
+  EXPECT_TRUE(a.normal.variance.empty());
+  for (size_t i = 0; i < pass.size(); ++i) {
+    EXPECT_NEAR(both.normal.values[i], (3.0f * a.normal.values[i] + 2.0f * b.normal.values[i]) / 5.0f, 1e-6f);
+    const float half = 0.5f * (a.normal.values[i] - b.normal.values[i]);
+    EXPECT_NEAR(both.normal.variance[i], half * half, 1e-6f);
+  }
+  EXPECT_EQ(both.albedo.values.size(), pass.size());
+  EXPECT_EQ(both.depth.values.size(), pass.size() / 3);
+  EXPECT_EQ(both.depth.variance.size(), pass.size() / 3);
+}
+
+TEST(Features, OneHalfAloneHasNoVariance) {
+  const auto frame = rendered(with_features(1));
+  const Features features = read_features(*frame);
+  const std::vector<float> none(features.albedo.values.size());
+  EXPECT_NE(features.albedo.values, none);
+  EXPECT_EQ(read_features(*frame, {1, 2}).albedo.values, none);
+  for (const float v : features.albedo.variance) EXPECT_TRUE(std::isnan(v));
+}
+
+TEST(Features, FramesWithoutThemSaySo) {
+  const auto frame = rendered(small_settings(40, 30, 2));
+  EXPECT_FALSE(has_features(*frame));
+  EXPECT_THROW(read_features(*frame), Error);
+  EXPECT_THROW(read_feature(*rendered(with_features(2)), GRADUS_PASS_NORMAL), Error) << "not kept in halves";
+}
+
+// Counts of pixels and halves differ where tiles stop early.
+TEST(Features, FollowTheCountsOfAdaptiveRenders) {
+  GradusSettings settings = with_features(64);
+  settings.noise_threshold = 1e-3f;
+  const auto render = start(settings, fake_factory([](FakeIntegrator* fake) { fake->quiet_until = 16; }));
+  ASSERT_TRUE(render->wait(-1.0));
+  const std::shared_ptr<const Frame> frame = render->frame();
+  const auto [least, most] = std::minmax_element(frame->count[0].begin(), frame->count[0].end());
+  ASSERT_LT(*least, *most);
+  const std::vector<float> depth = read_features(*frame).depth.values, primal = read_images(*frame, 0).primal;
+  for (size_t i = 0; i < depth.size(); ++i) EXPECT_NEAR(depth[i], primal[3 * i], 1e-5f);  // the fake's are the same
+}
+
+TEST(Features, HalvesAreMergedApart) {
+  GradusSettings late = with_features(25);
+  late.first_sample = 7;
+  Frame merged = *rendered(with_features(7));
+  merge_frames(&merged, *rendered(late));
+  const auto whole = rendered(with_features(32));
+  for (int half = 0; half < kHalves; ++half) {
+    const Features a = read_features(merged, {half, half + 1}), b = read_features(*whole, {half, half + 1});
+    for (size_t i = 0; i < a.albedo.values.size(); ++i) EXPECT_NEAR(a.albedo.values[i], b.albedo.values[i], 1e-5f);
+  }
+}
+
+TEST(L3_Resume, FeaturesHaveTheSameBits) {
+  EXPECT_TRUE(same_samples(*rendered(with_features(32), rendered(with_features(7))), *rendered(with_features(32))));
+}
+
+// A reconstruction that reads them would have met half of the samples, or none.
+TEST(L3_Resume, RefusesFramesThatLackWhatTheReconstructionReads) {
+  const GradusSettings settings = small_settings(40, 30, 16);
+  Plan plan = make_plan(settings, *empty_snapshot());
+  const uint64_t scene = empty_snapshot()->content_key;
+  Frame frame = *rendered(small_settings(40, 30, 8));
+  EXPECT_NO_THROW(check_resumable(frame, settings, plan, scene));
+  plan.passes |= feature_passes();
+  EXPECT_THROW(check_resumable(frame, settings, plan, scene), Error);
+  EXPECT_NO_THROW(check_resumable(with_unasked_features(), settings, plan, scene));
+}
+
+TEST_F(StoredFeatures, ComeBackWithTheirHalves) {
+  const Frame frame = with_unasked_features();
+  save_frame(frame, path);
+  const auto back = load_frame(path);
+  EXPECT_EQ(kept_passes(*back), feature_passes());
+  EXPECT_TRUE(same_samples(frame, *back));
+  EXPECT_EQ(read_features(*back).depth.variance, read_features(frame).depth.variance);
+}
+
+// Files from before features had halves have one plane of each.
+TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
+  save_frame(*rendered(with_features(2)), path);
+  std::stringstream content;
+  content << std::ifstream(path, std::ios::binary).rdbuf();
+  std::string bytes = content.str();
+  const size_t format = bytes.find("\"format\":3");
+  ASSERT_NE(format, std::string::npos);
+  bytes[format + 9] = '2';
+  std::ofstream(path, std::ios::binary) << bytes;
+  try {
+    load_frame(path);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("another version"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace gradus
