@@ -57,6 +57,7 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
     active_ = true;
     lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
     features_ |= plane.in_halves;
+    others_ |= !plane.in_halves;
   }
 }
 
@@ -116,7 +117,7 @@ void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent
 
 void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
   path_length_ += segment.length;
-  if (state.depth == 0) {
+  if (state.depth == 0 && others_) {
     camera_surface(sampler, state.throughput, vertex);
   }
   if (!features_done_) {

@@ -56,6 +56,7 @@ class PassRecorder {
   bool active_ = false;
   bool lights_ = false;
   bool features_ = false;
+  bool others_ = false;  // planes that are no features
   bool first_sample_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;
