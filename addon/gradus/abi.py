@@ -104,6 +104,12 @@ class Reconstruction(IntEnum):
     REGULARIZED = 5
 
 
+class Denoiser(IntEnum):
+    NONE = 0
+    AUTO = 1
+    OIDN = 2
+
+
 class PixelFilter(IntEnum):
     BOX = 0
     GAUSSIAN = 1
@@ -172,7 +178,7 @@ class Struct(ctypes.Structure):
 
 
 class DeviceSettings(Struct):
-    _fields_ = [("struct_size", c_uint32), ("threads", c_uint32), ("color_config", c_char_p)]
+    _fields_ = [("struct_size", c_uint32), ("threads", c_uint32), ("color_config", c_char_p), ("denoiser_path", c_char_p)]
 
 
 class ColorSpace(Struct):
@@ -404,7 +410,7 @@ class Settings(Struct):
         ("independent_sampler", c_uint32),
         ("passes", c_uint64),
         ("first_sample", c_uint32),
-        ("reserved", c_uint32),
+        ("denoiser", c_uint32),
     ]
 
 
@@ -466,6 +472,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     ObjectKind,
     Integrator,
     Reconstruction,
+    Denoiser,
     PixelFilter,
     Pass,
     OptionType,
@@ -517,7 +524,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_frame_load": (c_int, [Device, c_char_p, POINTER(Frame)]),
     "gradus_frame_merge": (c_int, [Frame, Frame]),
     "gradus_frame_size": (c_int, [Frame, POINTER(c_uint32), POINTER(c_uint32)]),
-    "gradus_frame_reconstruct": (c_int, [Frame, c_uint32, c_float, POINTER(c_float), c_size_t]),
+    "gradus_frame_reconstruct": (c_int, [Frame, c_uint32, c_float, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_frame_read_pass": (c_int, [Frame, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_frame_release": (c_int, [Frame]),
 }

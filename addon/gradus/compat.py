@@ -32,6 +32,13 @@ def bundled_python_packages() -> str:
     return str(found[-1]) if found else ""
 
 
+def bundled_libraries() -> str:
+    """Folder of the libraries that Blender brings along; "" where it uses the system's."""
+    resources = bpy.utils.resource_path("LOCAL")
+    folder = Path(resources).parent / "lib"
+    return str(folder) if resources and folder.is_dir() else ""
+
+
 def image_color_spaces() -> set[str]:
     """Names of the colour spaces of all images."""
     return {image.colorspace_settings.name for image in bpy.data.images}

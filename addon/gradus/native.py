@@ -24,6 +24,7 @@ from .abi import (  # noqa: F401
     Camera,
     CameraType,
     ColorSpace,
+    Denoiser,
     DeviceSettings,
     Domain,
     Error,

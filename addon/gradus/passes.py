@@ -80,10 +80,10 @@ GROUPS: dict[str, tuple[Pass, ...]] = {
 """Names that `--gradus-passes` takes besides those of single planes."""
 
 
-def is_reconstructed(integrator: str, reconstruction: str) -> bool:
+def is_reconstructed(integrator: str, reconstruction: str, denoiser: str) -> bool:
     """Whether Combined is a reconstruction, so that the sampled image becomes a pass of its own (contract 6.1). Identifiers of
-    settings.py; AUTO may find that gradients do not pay: then both are the same."""
-    return integrator != "PATH" and reconstruction != "NONE"
+    settings.py; AUTO may find that gradients do not pay, or no denoiser: then both are the same."""
+    return (integrator != "PATH" and reconstruction != "NONE") or denoiser != "NONE"
 
 
 def list_passes(view_layer: Any, reconstructed: bool, extra: Iterable[Pass] = ()) -> Iterator[PassInfo]:

@@ -29,9 +29,8 @@ def stop_requested(engine: Any) -> bool:
 
 def active_passes(scene: Any, view_layer: Any, overrides: options.Overrides) -> list[passes.PassInfo]:
     """Passes of the layer, with the command line's wishes."""
-    integrator = overrides.value("integrator") or scene.gradus.integrator
-    reconstruction = overrides.value("reconstruction") or scene.gradus.reconstruction
-    reconstructed = passes.is_reconstructed(integrator.upper(), reconstruction.upper())
+    names = ("integrator", "reconstruction", "denoiser")
+    reconstructed = passes.is_reconstructed(*((overrides.value(name) or getattr(scene.gradus, name)).upper() for name in names))
     return list(passes.list_passes(view_layer, reconstructed, overrides.passes))
 
 
@@ -73,6 +72,7 @@ def limit_preview(result: native.Settings, samples: int) -> None:
     """Previews must not take the machine from the user, nor from a render that runs at the same time."""
     result.samples = min(result.samples, samples)
     result.threads = max(1, store.process_cpu_threads() // 2)
+    result.denoiser = native.Denoiser.NONE
 
 
 def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
@@ -326,6 +326,6 @@ def _stamp(engine: Any, summary: dict[str, Any]) -> None:
     stamped = engine.get_result()
     if stamped is None or not hasattr(stamped, "stamp_data_add_field"):
         return
-    for name in ("version", "integrator", "reconstruction", "seed", "samples"):
+    for name in ("version", "integrator", "reconstruction", "denoiser", "seed", "samples"):
         if name in summary:
             stamped.stamp_data_add_field(f"gradus.{name}", str(summary[name]))

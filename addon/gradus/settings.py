@@ -52,6 +52,11 @@ RECONSTRUCTIONS = (
     ("WEIGHTED", "Weighted", "Least squares by the measured noise of every pixel and difference: least error; consistent", 3),
     ("L1", "L1", "Least absolute deviations: robust to outliers, without dipoles; biased, it may darken", 4),
 )
+DENOISERS = (
+    ("NONE", "None", "Deliver the reconstruction as it is", 0),
+    ("AUTO", "Automatic", "Open Image Denoise where this Blender has it, nothing where it has not", 1),
+    ("OIDN", "Open Image Denoise", "That of this Blender, on the CPU; an error where it has none", 2),
+)
 FILTERS = (
     ("BOX", "Box", "One pixel, whatever the width", 0),
     ("GAUSSIAN", "Gaussian", "Gauss curve of the given width", 1),
@@ -98,6 +103,14 @@ SETTINGS: tuple[Setting, ...] = (
         0.0,
         1e3,
         1,
+    ),
+    Setting(
+        "denoiser",
+        ENUM,
+        "NONE",
+        "Denoiser",
+        "What takes the rest of the noise out of the result, guided by colours and normals of surfaces. Biased; animations may flicker",
+        choices=DENOISERS,
     ),
     Setting("max_bounces", INT, 12, "Total", "Most bounces of a path", 0, 1024, 128),
     Setting("diffuse_bounces", INT, 4, "Diffuse", "Most diffuse bounces of a path", 0, 1024, 128),

@@ -111,6 +111,7 @@ def device(library: native.Library, threads: int = 0) -> int:
             baker = color.baker_for(path, compat.bundled_python_packages())
             # With a baker, the configuration would only make the library say that it cannot read it.
             settings = native.DeviceSettings(threads=threads, color_config=None if baker else native.text(path) or None)
+            settings.denoiser_path = native.text(compat.bundled_libraries()) or None
             handle = ctypes.c_uint64()
             library.device_create(byref(settings), byref(handle))
             if baker is not None:

@@ -20,7 +20,7 @@ from gpu_extras.presets import draw_texture_2d
 
 from . import native, options, renderer, store, view_border
 from .export import ViewOverride
-from .native import Error, GradusError, Integrator, Pass, Phase, Reconstruction
+from .native import Denoiser, Error, GradusError, Integrator, Pass, Phase, Reconstruction
 from .store import VIEWPORT, Key, Session
 
 REFRESH_SECONDS = 0.1
@@ -105,7 +105,7 @@ class View:
         settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides())
         settings.samples = scene.gradus.preview_samples
         settings.noise_threshold = settings.time_limit = 0.0
-        settings.integrator, settings.reconstruction = Integrator.PATH, Reconstruction.NONE
+        settings.integrator, settings.reconstruction, settings.denoiser = Integrator.PATH, Reconstruction.NONE, Denoiser.NONE
         settings.threads = max(1, store.process_cpu_threads() - 1)  # one is left for the interface
         settings.width, settings.height = self.override.width, self.override.height
         settings.region[:] = region

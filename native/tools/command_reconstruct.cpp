@@ -6,23 +6,25 @@ namespace gradus::tool {
 namespace {
 
 struct ReconstructArguments {
-  std::string frame, output, reconstruction = "auto", passes;
+  std::string frame, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes;
   std::vector<std::string> merged;
   float alpha = 0.0f;
 };
 
 int run(const ReconstructArguments& args) {
-  const client::Device device;
+  const client::Device device(0, nullptr, args.denoiser_path.c_str());
   client::Frame frame = client::Frame::load(device, args.frame);
   for (const std::string& path : args.merged) frame.merge(client::Frame::load(device, path));
   const auto [width, height] = frame.size();
-  std::vector<ImageLayer> layers = {{"", 4, frame.reconstruct(parse_choice("reconstruction", args.reconstruction), args.alpha)}};
+  const uint32_t reconstruction = parse_choice("reconstruction", args.reconstruction), denoiser = parse_choice("denoiser", args.denoiser);
+  std::vector<ImageLayer> layers = {{"", 4, frame.reconstruct(reconstruction, args.alpha, denoiser)}};
   const uint64_t passes = args.passes.empty() ? 1 : parse_passes(args.passes);
   for (uint32_t pass = 1; pass < GRADUS_PASS_COUNT; ++pass) {
     if ((passes >> pass & 1) == 0) continue;
     layers.push_back({client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
   }
   save_image(args.output, int(width), int(height), layers);
+  print_warnings(device);
   return 0;
 }
 
@@ -37,6 +39,9 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
       ->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased), weighted (by the measured noise) or l1 (robust)")
       ->capture_default_str();
   command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients; 0: automatic")->capture_default_str();
+  command->add_option("--denoiser", args->denoiser, "none, oidn (the machine's Open Image Denoise) or auto (that where there is one)")
+      ->capture_default_str();
+  add_denoiser_path(command, &args->denoiser_path);
   command->add_option("--merge", args->merged, "Frames of the same scene with other samples, to add")->check(CLI::ExistingFile);
   command->add_option("--passes", args->passes, "Passes to write as layers, separated by commas; they must be in the frame");
   command->callback([args, exit_code] { *exit_code = run(*args); });

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 std::atomic<bool> interrupted{false};
 
 struct RenderArguments {
-  std::string scene, output, image, stats;
+  std::string scene, output, image, stats, denoiser_path;
   bool resume = false;
   OptionFlags options;
 };
@@ -67,7 +67,7 @@ void write_image(const client::Frame& frame, const GradusSettings& settings, con
 
 int run(const RenderArguments& args) {
   GradusSettings settings = client::default_settings();
-  const client::Device device;
+  const client::Device device(0, nullptr, args.denoiser_path.c_str());
   const client::Scene scene = client::Scene::load(device, args.scene, &settings);
   args.options.apply(&settings);
   const fs::path target = frame_path(args, settings.frame);
@@ -91,6 +91,7 @@ void add_render(CLI::App* app, int* exit_code) {
   command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr")->check(exr_only);
   command->add_option("--stats", args->stats, "Append one JSON object about the render to this file");
   command->add_flag("--resume", args->resume, "Go on from the samples of the frame that is already in the store");
+  add_denoiser_path(command, &args->denoiser_path);
   args->options.add_to(command);
   command->footer("Options not given are those the scene was saved with.");
   command->callback([args, exit_code] { *exit_code = run(*args); });

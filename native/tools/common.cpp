@@ -93,12 +93,20 @@ std::string exr_only(const std::string& path) {
 uint32_t parse_choice(const std::string& option, const std::string& value) {
   GradusSettings settings = client::default_settings();
   client::check(gradus_settings_parse(&settings, option.c_str(), value.c_str()));
-  return option == "integrator" ? settings.integrator : settings.reconstruction;
+  return option == "denoiser" ? settings.denoiser : settings.reconstruction;
+}
+
+void print_warnings(const client::Device& device) {
+  for (std::string text = device.warning(); !text.empty(); text = device.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
 void print_warnings(const client::Device& device, const client::Scene& scene) {
-  for (std::string text = device.warning(); !text.empty(); text = device.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  print_warnings(device);
   for (std::string text = scene.warning(); !text.empty(); text = scene.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+}
+
+void add_denoiser_path(CLI::App* command, std::string* path) {
+  command->add_option("--denoiser-path", *path, "File or folder of libOpenImageDenoise.so.2, where the system does not find it");
 }
 
 }  // namespace gradus::tool

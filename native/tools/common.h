@@ -40,9 +40,13 @@ class OptionFlags {
 uint64_t parse_passes(const std::string& text);
 // For CLI::Option::check: what is wrong with a file name that does not end in .exr, the only format that the tool reads and writes.
 std::string exr_only(const std::string& path);
-// Value of an option of kind enum; throws as the library does.
+// Value of `reconstruction` or `denoiser`; throws as the library does.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
+// Adds --denoiser-path, for what client::Device takes.
+void add_denoiser_path(CLI::App* command, std::string* path);
+
+void print_warnings(const client::Device& device);
 void print_warnings(const client::Device& device, const client::Scene& scene);
 
 }  // namespace gradus::tool

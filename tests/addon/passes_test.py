@@ -88,11 +88,19 @@ def test_only_what_is_enabled() -> None:
 
 
 @pytest.mark.parametrize(
-    ("integrator", "reconstruction", "expected"),
-    [("AUTO", "AUTO", True), ("GRADIENT", "L1", True), ("GRADIENT", "NONE", False), ("PATH", "AUTO", False), ("PATH", "NONE", False)],
+    ("integrator", "reconstruction", "denoiser", "expected"),
+    [
+        ("AUTO", "AUTO", "NONE", True),
+        ("GRADIENT", "L1", "NONE", True),
+        ("GRADIENT", "NONE", "NONE", False),
+        ("PATH", "AUTO", "NONE", False),
+        ("PATH", "NONE", "NONE", False),
+        ("PATH", "NONE", "OIDN", True),
+        ("GRADIENT", "NONE", "AUTO", True),
+    ],
 )
-def test_noisy_image_exists_whenever_combined_is_reconstructed(integrator: str, reconstruction: str, expected: bool) -> None:
-    assert (Pass.NOISY_IMAGE in listed(layer(), passes.is_reconstructed(integrator, reconstruction))) == expected
+def test_noisy_image_exists_whenever_combined_is_reconstructed(integrator: str, reconstruction: str, denoiser: str, expected: bool) -> None:
+    assert (Pass.NOISY_IMAGE in listed(layer(), passes.is_reconstructed(integrator, reconstruction, denoiser))) == expected
 
 
 def test_switches_exist_in_this_blender() -> None:

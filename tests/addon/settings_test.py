@@ -20,6 +20,7 @@ DOCUMENTED = {
     "integrator": "AUTO",
     "reconstruction": "AUTO",
     "reconstruction_alpha": 0.0,
+    "denoiser": "NONE",
     "max_bounces": 12,
     "diffuse_bounces": 4,
     "glossy_bounces": 4,

@@ -17,7 +17,7 @@ BUILT_IN: dict[str, tuple[str, dict[str, Any]]] = {
 }
 """Identifier -> label, values; what is not named goes to its default."""
 
-SAVED = ("samples", "min_samples", "noise_threshold", "time_limit", "integrator", "reconstruction", "reconstruction_alpha")
+SAVED = ("samples", "min_samples", "noise_threshold", "time_limit", "integrator", "reconstruction", "reconstruction_alpha", "denoiser")
 
 
 def apply(settings: Any, identifier: str) -> None:

@@ -40,12 +40,22 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
             column.prop(settings, "reconstruction_alpha")
         if settings.integrator == "PATH" and settings.reconstruction not in ("NONE", "AUTO"):
             layout.label(text="Plain paths have no gradients to reconstruct from", icon="ERROR")
+        elif settings.denoiser != "NONE":
+            layout.label(text="Biased: it is denoised", icon="INFO")
         elif settings.reconstruction in ("L1", "WEIGHTED") or (settings.reconstruction == "AUTO" and settings.integrator != "PATH"):
             layout.label(text="Consistent", icon="INFO")
         elif settings.noise_threshold > 0.0:
             layout.label(text="Unbiased at threshold 0", icon="INFO")
         else:
             layout.label(text="Unbiased", icon="CHECKMARK")
+
+
+class GRADUS_RENDER_PT_denoise(RenderPanel, bpy.types.Panel):
+    bl_label = "Denoise"
+    bl_parent_id = "GRADUS_RENDER_PT_sampling"
+
+    def draw(self, context: Any) -> None:
+        self.columns().prop(context.scene.gradus, "denoiser")
 
 
 class GRADUS_RENDER_PT_advanced(RenderPanel, bpy.types.Panel):
@@ -159,6 +169,7 @@ CLASSES = (
     GRADUS_OT_copy_from_cycles,
     GRADUS_RENDER_PT_sampling,
     GRADUS_RENDER_PT_method,
+    GRADUS_RENDER_PT_denoise,
     GRADUS_RENDER_PT_advanced,
     GRADUS_RENDER_PT_light_paths,
     GRADUS_RENDER_PT_film,

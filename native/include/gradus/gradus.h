@@ -51,7 +51,7 @@ GRADUS_API uint32_t gradus_version(void);
 GRADUS_API const char* gradus_version_text(void);
 /* Hash of all struct layouts and enum values of this header; the caller compares it with its own. FNV-1a, 64 bit, over the ASCII text
  * "Name:size:offset,offset,…;" of every struct and then "Name:value,value,…;" of every enum, each in order of declaration, names without
- * the prefix Gradus, numbers decimal, the ellipsis meaning repetition only: e.g. "DeviceSettings:16:0,4,8;" and "Domain:0,1,2;". */
+ * the prefix Gradus, numbers decimal, the ellipsis meaning repetition only: e.g. "DeviceSettings:24:0,4,8,16;" and "Domain:0,1,2;". */
 GRADUS_API uint64_t gradus_abi_hash(void);
 /* Reads and clears the calling thread's error slot. `text` (may be NULL) stays valid until the thread's next call. */
 GRADUS_API GradusError gradus_error(const char** text);
@@ -70,6 +70,7 @@ typedef struct GradusDeviceSettings {
   uint32_t struct_size;
   uint32_t threads;          /* 0 = all */
   const char* color_config;  /* path of the OpenColorIO configuration, UTF-8; NULL or unreadable = built-in sRGB/linear */
+  const char* denoiser_path; /* file or folder of Open Image Denoise 2, UTF-8, for where the process has not loaded it; may be NULL */
 } GradusDeviceSettings;
 
 /* Creates the object that owns threads, Embree and colour. Checks Embree's version and traces one ray: UNSUPPORTED if that
@@ -348,6 +349,13 @@ typedef enum GradusReconstruction {
   GRADUS_RECONSTRUCTION_REGULARIZED = 5 /* refused until it works */
 } GradusReconstruction;
 
+/* The host's: Open Image Denoise, looked for when a render starts (see GradusDeviceSettings.denoiser_path), never brought along. */
+typedef enum GradusDenoiser {
+  GRADUS_DENOISER_NONE = 0,
+  GRADUS_DENOISER_AUTO = 1,        /* OIDN where there is one */
+  GRADUS_DENOISER_OIDN = 2         /* UNSUPPORTED where there is none */
+} GradusDenoiser;
+
 typedef enum GradusPixelFilter {
   GRADUS_FILTER_BOX = 0,
   GRADUS_FILTER_GAUSSIAN = 1,
@@ -390,7 +398,7 @@ typedef struct GradusSettings {
   uint32_t independent_sampler;    /* test switch: independent random numbers in place of the Sobol net (contract 1.2) */
   uint64_t passes;                 /* bit i = GradusPass i is wanted; Combined always is */
   uint32_t first_sample;           /* samples are numbered first_sample … first_sample + samples - 1, for frames to merge */
-  uint32_t reserved;
+  uint32_t denoiser;               /* GradusDenoiser */
 } GradusSettings;
 
 typedef enum GradusPass {
@@ -505,8 +513,9 @@ GRADUS_API GradusError gradus_frame_load(GradusDevice device, const char* path, 
 GRADUS_API GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other);
 /* Size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height);
-/* Reconstructs Combined from the planes; RGBA. alpha: weight of the primal against the gradients; 0: automatic. */
-GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, float* rgba, size_t count);
+/* Reconstructs Combined from the planes; RGBA. alpha: weight of the primal against the gradients; 0: automatic. denoiser: GradusDenoiser. */
+GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
+                                                size_t count);
 GRADUS_API GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count);
 GRADUS_API GradusError gradus_frame_release(GradusFrame frame);
 

@@ -63,10 +63,11 @@ class Handle {
 
 class Device : public Handle<GradusDevice, gradus_device_release> {
  public:
-  explicit Device(uint32_t threads = 0, const char* color_config = nullptr) {
+  explicit Device(uint32_t threads = 0, const char* color_config = nullptr, const char* denoiser_path = nullptr) {
     auto settings = make<GradusDeviceSettings>();
     settings.threads = threads;
     settings.color_config = color_config;
+    settings.denoiser_path = denoiser_path;
     check(gradus_device_create(&settings, &id_));
   }
   // Empty when there is none.
@@ -140,9 +141,9 @@ class Frame : public Handle<GradusFrame, gradus_frame_release> {
     check(gradus_frame_size(id_, &width, &height));
     return {width, height};
   }
-  std::vector<float> reconstruct(uint32_t reconstruction, float alpha) const {
+  std::vector<float> reconstruct(uint32_t reconstruction, float alpha, uint32_t denoiser = GRADUS_DENOISER_NONE) const {
     std::vector<float> rgba(pixels() * 4);
-    check(gradus_frame_reconstruct(id_, reconstruction, alpha, rgba.data(), rgba.size()));
+    check(gradus_frame_reconstruct(id_, reconstruction, alpha, denoiser, rgba.data(), rgba.size()));
     return rgba;
   }
   std::vector<float> read_pass(uint32_t pass) const {

@@ -5,8 +5,10 @@
 #include "api/guard.h"
 #include "api/objects.h"
 #include "base/fpu.h"
+#include "frame/features.h"
 #include "frame/store.h"
 #include "render/combine.h"
+#include "render/denoise_combined.h"
 #include "render/pass_read.h"
 #include "render/resume.h"
 #include "settings/options.h"
@@ -47,15 +49,23 @@ uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
 }
 
 // RGBA, by as many threads as a render with the frame's settings has.
-void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, float* rgba) {
-  tbb::task_arena arena(arena_size(frame.settings.threads > 0 ? frame.settings.threads : object->device->threads()));
-  arena.execute([&] {
+void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba) {
+  const auto never = [] { return false; };
+  const uint32_t threads = frame.settings.threads > 0 ? frame.settings.threads : object->device->threads();
+  std::string why_not;
+  const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
+  std::vector<float> image;
+  tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
     SolveReport report;
-    const std::vector<float> image = combine(
-        frame, resolve(reconstruction, frame), alpha, delivered(frame), [] { return false; }, &report);
-    std::copy(image.begin(), image.end(), rgba);
+    image = combine(frame, resolve(reconstruction, frame), alpha, delivered(frame), never, &report);
   });
+  if (library) {
+    if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
+    const std::string failure = denoise_combined(*library, frame, delivered(frame), threads, never, &image);
+    if (!failure.empty()) object->device->warnings().add(failure);
+  }
+  std::copy(image.begin(), image.end(), rgba);
 }
 
 }  // namespace
@@ -93,14 +103,15 @@ GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* heig
   });
 }
 
-GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, float* rgba, size_t count) {
+GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
+                                     size_t count) {
   return api::guard([&] {
     const auto object = api::find_handle<api::FrameObject>(frame);
     const std::shared_ptr<const Frame> content = object->get();
     api::check_count(count, api::delivered(*content), 4);
     api::check_array(rgba, count, "rgba");
     check_alpha(alpha);
-    api::reconstruct_into(object.get(), *content, reconstruction, alpha, rgba);
+    api::reconstruct_into(object.get(), *content, reconstruction, alpha, denoiser, rgba);
   });
 }
 
@@ -112,7 +123,8 @@ GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixe
     api::check_count(count, region, pass_info(pass).channels);
     api::check_array(pixels, count, "pixels");
     if (pass != GRADUS_PASS_COMBINED) return read_frame_pass(*content, pass, region, pixels);
-    api::reconstruct_into(object.get(), *content, content->settings.reconstruction, content->settings.reconstruction_alpha, pixels);
+    const GradusSettings& s = content->settings;
+    api::reconstruct_into(object.get(), *content, s.reconstruction, s.reconstruction_alpha, s.denoiser, pixels);
   });
 }
 

@@ -14,7 +14,7 @@ namespace {
 #define GRADUS_VALUES(name, ...) constexpr int64_t k##name##Values[] = {GRADUS_FOR_EACH(GRADUS_VALUE, name, __VA_ARGS__)};
 
 // clang-format off
-GRADUS_FIELDS(DeviceSettings, struct_size, threads, color_config)
+GRADUS_FIELDS(DeviceSettings, struct_size, threads, color_config, denoiser_path)
 GRADUS_FIELDS(ColorSpace, struct_size, curve_count, name, curve, matrix)
 GRADUS_FIELDS(Attribute, struct_size, domain, channels, is_uv, name, data)
 GRADUS_FIELDS(Mesh, struct_size, key_count, key_times, vertex_count, positions, corner_count, corner_vertices, triangle_count,
@@ -37,7 +37,7 @@ GRADUS_FIELDS(Settings, struct_size, width, height, region, samples, min_samples
   frame, integrator, reconstruction, reconstruction_alpha, max_bounces, diffuse_bounces, glossy_bounces, transmission_bounces,
   volume_bounces, transparent_max_bounces, clamp_direct, clamp_indirect, pixel_filter, filter_width, film_exposure, film_transparent,
   roughness_threshold, strict, threads, alpha_threshold, use_sky, independent_sampler, passes, first_sample,
-  reserved)
+  denoiser)
 GRADUS_FIELDS(OptionInfo, struct_size, type, name, doc, default_value, minimum, maximum, choices)
 GRADUS_FIELDS(Progress, struct_size, phase, fraction, seconds, samples_done, version, memory_bytes, peak_memory_bytes)
 
@@ -56,6 +56,7 @@ GRADUS_VALUES(ObjectKind, KIND_MESH, KIND_IMAGE, KIND_MATERIAL)
 GRADUS_VALUES(Integrator, INTEGRATOR_AUTO, INTEGRATOR_PATH, INTEGRATOR_GRADIENT, INTEGRATOR_BIDIRECTIONAL, INTEGRATOR_METROPOLIS)
 GRADUS_VALUES(Reconstruction, RECONSTRUCTION_AUTO, RECONSTRUCTION_NONE, RECONSTRUCTION_L2, RECONSTRUCTION_WEIGHTED, RECONSTRUCTION_L1,
   RECONSTRUCTION_REGULARIZED)
+GRADUS_VALUES(Denoiser, DENOISER_NONE, DENOISER_AUTO, DENOISER_OIDN)
 GRADUS_VALUES(PixelFilter, FILTER_BOX, FILTER_GAUSSIAN, FILTER_BLACKMAN_HARRIS)
 GRADUS_VALUES(Pass, PASS_COMBINED, PASS_NOISY_IMAGE, PASS_DEPTH, PASS_MIST, PASS_NORMAL, PASS_POSITION, PASS_UV, PASS_VECTOR,
   PASS_OBJECT_INDEX, PASS_MATERIAL_INDEX, PASS_EMISSION, PASS_ENVIRONMENT, PASS_DIFFUSE_DIRECT, PASS_DIFFUSE_INDIRECT,
@@ -78,10 +79,10 @@ constexpr StructLayout kStructs[] = {
     GRADUS_STRUCT(Material),       GRADUS_STRUCT(Settings),   GRADUS_STRUCT(OptionInfo), GRADUS_STRUCT(Progress),
 };
 constexpr EnumLayout kEnums[] = {
-    GRADUS_ENUM(Error),       GRADUS_ENUM(Domain),     GRADUS_ENUM(Visibility),  GRADUS_ENUM(LightType),
-    GRADUS_ENUM(LightFlags),  GRADUS_ENUM(CameraType), GRADUS_ENUM(MistFalloff), GRADUS_ENUM(ImageSource),
-    GRADUS_ENUM(AlphaMode),   GRADUS_ENUM(ObjectKind), GRADUS_ENUM(Integrator),  GRADUS_ENUM(Reconstruction),
-    GRADUS_ENUM(PixelFilter), GRADUS_ENUM(Pass),       GRADUS_ENUM(OptionType),  GRADUS_ENUM(Phase),
+    GRADUS_ENUM(Error),      GRADUS_ENUM(Domain),         GRADUS_ENUM(Visibility),  GRADUS_ENUM(LightType),   GRADUS_ENUM(LightFlags),
+    GRADUS_ENUM(CameraType), GRADUS_ENUM(MistFalloff),    GRADUS_ENUM(ImageSource), GRADUS_ENUM(AlphaMode),   GRADUS_ENUM(ObjectKind),
+    GRADUS_ENUM(Integrator), GRADUS_ENUM(Reconstruction), GRADUS_ENUM(Denoiser),    GRADUS_ENUM(PixelFilter), GRADUS_ENUM(Pass),
+    GRADUS_ENUM(OptionType), GRADUS_ENUM(Phase),
 };
 
 std::string abi_text() {

@@ -85,7 +85,8 @@ int arena_size(uint32_t threads) {
   return int(std::clamp<size_t>(threads, 1, std::max<size_t>(most, 1)));
 }
 
-Device::Device(const GradusDeviceSettings& settings) : threads_(thread_count(settings.threads)) {
+Device::Device(const GradusDeviceSettings& settings)
+    : threads_(thread_count(settings.threads)), denoiser_path_(settings.denoiser_path ? settings.denoiser_path : "") {
   check_tbb();
   color_ = std::make_unique<ColorManager>(settings.color_config ? settings.color_config : "",
                                           [this](const std::string& text) { warnings_.add(text); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <tbb/task_arena.h>
 
@@ -30,6 +31,7 @@ class Device {
   tbb::task_arena& arena() { return arena_; }
   uint32_t threads() const { return threads_; }
   ColorManager& color() { return *color_; }
+  const std::string& denoiser_path() const { return denoiser_path_; }
   // Of the device itself: colour management. Those of scenes are with the scenes.
   Warnings& warnings() { return warnings_; }
 
@@ -39,6 +41,7 @@ class Device {
   uint32_t threads_ = 0;
   tbb::task_arena arena_;
   std::unique_ptr<ColorManager> color_;
+  const std::string denoiser_path_;
 };
 
 }  // namespace gradus

@@ -36,6 +36,7 @@ inline constexpr int kOidnCpu = 1, kOidnFloat3 = 3, kOidnQualityHigh = 6, kOidnC
 struct OidnLibrary {
   OidnApi api;
   std::string version;  // "2.3.3"
+  std::string name() const { return "Open Image Denoise " + version; }
 };
 
 // Where to look, in this order: what the process has loaded already under the name `soname`; `path`, which is a file or a folder that holds

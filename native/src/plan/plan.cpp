@@ -75,6 +75,16 @@ void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   }
 }
 
+void list_denoiser(const GradusSettings& settings, const HostDenoiser& denoiser, Plan* plan) {
+  plan->denoises = !denoiser.name.empty();
+  if (plan->denoises) {
+    plan->chosen.emplace_back("denoiser " + denoiser.name,
+                              settings.denoiser == GRADUS_DENOISER_AUTO ? "automatic: it is there" : "set by the user");
+  } else {
+    plan->skipped.emplace_back("denoiser", denoiser.why_not);
+  }
+}
+
 void choose_region(const GradusSettings& settings, Plan* plan) {
   const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
   const uint32_t* r = settings.region;
@@ -111,7 +121,8 @@ void choose_passes(const GradusSettings& settings, Plan* plan) {
   plan->passes = settings.passes;
   if (!features_wanted(*plan)) return;
   plan->passes |= feature_passes();
-  plan->chosen.emplace_back("denoising features", "the reconstruction is guided by them");
+  plan->chosen.emplace_back("denoising features",
+                            plan->denoises ? "the denoiser is guided by them" : "the reconstruction is guided by them");
 }
 
 void list_passes(Plan* plan) {
@@ -133,11 +144,12 @@ uint32_t first_check(const GradusSettings& settings) {
 
 }  // namespace
 
-Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
+Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser) {
   check_settings(settings);
   Plan plan;
   choose_integrator(settings, &plan);
   choose_reconstruction(settings, &plan);
+  list_denoiser(settings, denoiser, &plan);
   choose_region(settings, &plan);
   plan.channels = settings.film_transparent || snapshot.features.has_holdouts ? 4 : 3;
   plan.first_check = first_check(settings);
@@ -157,10 +169,10 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot) {
   return plan;
 }
 
-bool features_wanted(const Plan& plan) { return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED; }
+bool features_wanted(const Plan& plan) { return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED || plan.denoises; }
 
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction) {
-  return plan.unbiased && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
+  return plan.unbiased && !plan.denoises && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
 }
 
 namespace {
@@ -193,6 +205,13 @@ uint64_t noise_floats(const Plan& plan) {
   return images + 3 + result + solve_floats(std::min<uint64_t>(c, 3)) + 3 + result;
 }
 
+// What the host's denoiser takes: picture and guides, twice, and its network, which goes through large pictures in tiles (as measured with
+// Open Image Denoise 2.3.3).
+uint64_t denoiser_bytes(const Plan& plan) {
+  const uint64_t area = uint64_t(plan.delivered.area()), tile = std::min(area, uint64_t{2160} * 2160);
+  return 22 * sizeof(float) * area + 750 * tile;
+}
+
 }  // namespace
 
 uint64_t planned_bytes(const Plan& plan) {
@@ -207,8 +226,8 @@ uint64_t planned_bytes(const Plan& plan) {
     floats = std::max(floats, noise_floats(plan));
     bytes += 2 * sizeof(uint32_t);  // where the samples of a batch go
   }
-  bytes += floats * sizeof(float);
-  return bytes * uint64_t(plan.sampled.area());
+  const uint64_t area = uint64_t(plan.sampled.area());
+  return bytes * area + std::max(floats * sizeof(float) * area, plan.denoises ? denoiser_bytes(plan) : 0);
 }
 
 }  // namespace gradus

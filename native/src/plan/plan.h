@@ -20,6 +20,7 @@ struct Plan {
   bool gradients = false;
   bool pilot = false;     // a few samples tell where gradients pay
   bool solves = false;    // Combined comes from a solver
+  bool denoises = false;  // … and then from the host's denoiser
   bool unbiased = true;   // what is sampled; see delivers_unbiased()
   bool adaptive = false;  // tiles take samples by their noise, and may stop early
   int channels = 3;
@@ -34,8 +35,14 @@ struct Plan {
 // by 0.82 per pixel at alpha 0.2 (contract 2.1).
 inline constexpr int kGuardRing = 35;
 
+// What the setting `denoiser` comes to here.
+struct HostDenoiser {
+  std::string name;     // empty: none
+  std::string why_not;  // that there is none
+};
+
 // Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced (contract 5.1).
-Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot);
+Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser = {"", "denoiser is none"});
 
 // Contract 2.2. reconstruction: what is done in the end, which the pilot may have changed to NONE.
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction);

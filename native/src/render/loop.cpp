@@ -12,6 +12,7 @@
 #include "frame/pass_planes.h"
 #include "render/batches.h"
 #include "render/combine.h"
+#include "render/denoise_combined.h"
 #include "render/pass_read.h"
 #include "render/resume.h"
 #include "settings/options.h"
@@ -29,7 +30,8 @@ uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.
 
 RenderLoop::RenderLoop(LoopInput input)
     : input_(std::move(input)),
-      plan_(make_plan(input_.settings, *input_.snapshot)),
+      denoiser_(choose_denoiser(input_.settings.denoiser, input_.device.get(), &why_no_denoiser_)),
+      plan_(make_plan(input_.settings, *input_.snapshot, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
       tiles_(make_cells(plan_.sampled, tile_side(plan_.sampled, input_.threads))),
       arena_(arena_size(input_.threads)),
       process_cpu_start_(process_cpu_nanoseconds()) {
@@ -67,6 +69,7 @@ void RenderLoop::render() {
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
   reconstruct_frame();
+  if (plan_.denoises) denoise_frame();
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
 }
 
@@ -112,6 +115,7 @@ void RenderLoop::prepare() {
   // AUTO is resolved here, once: whoever reads the frame later must not decide again.
   frame->settings.integrator = integrator;
   frame->settings.reconstruction = gradients_.none() ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan_.reconstruction;
+  frame->settings.denoiser = plan_.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
   frame->scene_key = input_.snapshot->content_key;
   frame->frame_number = settings.frame;
   stats_.warnings = input_.snapshot->warnings;
@@ -268,6 +272,20 @@ void RenderLoop::reconstruct_frame() {
   stats_.seconds.reconstruct = clock_.seconds() - began;
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
+  const std::lock_guard lock(mutex_);
+  combined_ = std::move(rgba);
+}
+
+void RenderLoop::denoise_frame() {
+  const double began = clock_.seconds();
+  const uint64_t cpu = process_cpu_nanoseconds();
+  const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
+  std::vector<float> rgba = combined_;
+  const std::string failure = denoise_combined(*denoiser_, *frame_, plan_.delivered, input_.threads, cancel, &rgba);
+  if (failure.empty()) stats_.denoiser = denoiser_->name();
+  if (!failure.empty()) stats_.warnings.push_back(failure);
+  stats_.seconds.denoise = clock_.seconds() - began;
+  stats_.cpu_seconds.denoise = 1e-9 * double(process_cpu_nanoseconds() - cpu);
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
 }

@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "denoise/oidn_library.h"
 #include "frame/frame.h"
 #include "plan/plan.h"
 #include "render/adaptive_sampling.h"
@@ -56,6 +57,7 @@ class RenderLoop {
   GradientMap choose_gradients();
   void sample();
   void reconstruct_frame();
+  void denoise_frame();
   // False: nothing more to do.
   bool next_batch(uint32_t begin, uint32_t* end) const;
   uint32_t affordable_samples(uint32_t begin) const;
@@ -73,6 +75,8 @@ class RenderLoop {
   void end(GradusError code, const std::string& text) noexcept;
 
   const LoopInput input_;
+  std::string why_no_denoiser_;
+  const std::shared_ptr<const OidnLibrary> denoiser_;
   const Plan plan_;
   const std::vector<Region> tiles_;
   mutable tbb::task_arena arena_;

@@ -50,7 +50,7 @@ double mean_samples(const Frame& frame) {
   return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
 }
 
-json phases(const PhaseTimes& t) { return {{"sample", t.sample}, {"reconstruct", t.reconstruct}, {"filter", 0.0}}; }
+json phases(const PhaseTimes& t) { return {{"sample", t.sample}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0}}; }
 
 }  // namespace
 
@@ -66,6 +66,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["seed"] = settings.seed;
   j["integrator"] = choice_name(*find_option("integrator"), settings.integrator);
   j["reconstruction"] = choice_name(*find_option("reconstruction"), settings.reconstruction);
+  j["denoiser"] = stats.denoiser.empty() ? json(nullptr) : json(stats.denoiser);
   j["unbiased"] = delivers_unbiased(plan, settings.reconstruction);
   j["samples"] = mean_samples(frame);
   j["spp_base"] = j["samples"];
@@ -75,7 +76,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["seconds"] = phases(stats.seconds);
   j["seconds"]["total"] = stats.total_seconds;
   j["cpu_seconds"] = phases(stats.cpu_seconds);
-  j["cpu_seconds"]["total"] = stats.cpu_seconds.sample + stats.cpu_seconds.reconstruct;
+  j["cpu_seconds"]["total"] = stats.cpu_seconds.sample + stats.cpu_seconds.reconstruct + stats.cpu_seconds.denoise;
   j["process_cpu"] = stats.process_cpu;
   j["rays"] = rays(frame.counters);
   j["shifts"] = shifts(frame.counters);

@@ -13,15 +13,17 @@ namespace gradus {
 struct PhaseTimes {
   double sample = 0.0;
   double reconstruct = 0.0;
+  double denoise = 0.0;
 };
 
 struct RenderStats {
-  // CPU time of samples is that of our threads, by tiles; that of the pilot, of estimates of noise and of solves is the whole process's
-  // meanwhile, what the host does in these moments included.
+  // CPU time of samples is that of our threads, by tiles; that of the pilot, of estimates of noise, of solves and of the denoiser is the
+  // whole process's meanwhile, what the host does in these moments included.
   PhaseTimes seconds, cpu_seconds;
   double total_seconds = 0.0;
   double process_cpu = 0.0;
-  std::string stopped;  // why sampling ended: samples, noise, time, cancelled
+  std::string denoiser;  // name and version of the host's; empty: none was used
+  std::string stopped;   // why sampling ended: samples, noise, time, cancelled
   SolveReport solve;
   std::vector<std::string> warnings;
   Reasons chosen, skipped;  // what was decided after the plan, by samples

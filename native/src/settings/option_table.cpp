@@ -18,6 +18,7 @@ constexpr auto kEnum = GRADUS_OPTION_ENUM;
 
 constexpr const char* kIntegrators = "auto path gradient bidirectional metropolis";
 constexpr const char* kReconstructions = "auto none l2 weighted l1 regularized";
+constexpr const char* kDenoisers = "none auto oidn";
 constexpr const char* kFilters = "box gaussian blackman_harris";
 
 // clang-format off
@@ -39,6 +40,9 @@ constexpr Option kOptions[] = {
            "How the image is reconstructed from samples and gradients; l2 is unbiased; weighted (auto) goes by the "
            "measured noise and l1 is robust: both consistent. regularized is refused until it works"),
     OPTION(reconstruction_alpha, kFloat, 0.0, 0.0, 1e3, "", kOther, "Weight of the primal image against the gradients; 0 = automatic: 0.4 for L2, 0.2 for L1 and for the means of weighted"),
+    OPTION(denoiser, kEnum, GRADUS_DENOISER_NONE, 0, 2, kDenoisers, kOther,
+           "What takes the rest of the noise out of the result; oidn: the host's Open Image Denoise, an error where there is none; auto: "
+           "that where it is there. Biased, for stills"),
     OPTION(max_bounces, kInt, 12, 0, 1024, "", kSampling, "Most bounces of a path"),
     OPTION(diffuse_bounces, kInt, 4, 0, 1024, "", kSampling, "Most diffuse bounces of a path"),
     OPTION(glossy_bounces, kInt, 4, 0, 1024, "", kSampling, "Most glossy bounces of a path"),

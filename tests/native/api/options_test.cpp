@@ -26,6 +26,7 @@ frame 0 0 -2.14748e+09 2.14748e+09
 integrator 3 0 0 4 auto path gradient bidirectional metropolis
 reconstruction 3 0 0 5 auto none l2 weighted l1 regularized
 reconstruction_alpha 1 0 0 1000 
+denoiser 3 0 0 2 none auto oidn
 max_bounces 0 12 0 1024 
 diffuse_bounces 0 4 0 1024 
 glossy_bounces 0 4 0 1024 

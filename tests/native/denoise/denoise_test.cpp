@@ -1,8 +1,11 @@
 // The host's denoiser: what is found and what is refused, by stand-ins for the library; and the library itself where there is one.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <iostream>
 #include <limits>
 #include <random>
 
@@ -197,41 +200,46 @@ double rms_error(const std::vector<float>& image, const std::vector<float>& trut
   return std::sqrt(sum / double(truth.size()));
 }
 
-TEST(HostDenoiser, TakesNoiseAwayOrSaysWhyThereIsNone) {
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "it keeps memory to its end";
-#endif
+// Two walls under noise, with and without guides; then a picture of values that are none, or too large. What went wrong, or "".
+std::string check_real_library(const std::string& path) {
   std::string why_not;
-  const auto library = find_oidn({GRADUS_SOURCE_DIR "/.venv/bpy45/lib/python3.11/site-packages/bpy/lib"}, &why_not);
-  if (!library) {
-    EXPECT_TRUE(has(why_not, "Open Image Denoise")) << why_not;
-    GTEST_SKIP() << why_not;
-  }
-  EXPECT_EQ(library->version.substr(0, 2), "2.");
+  const auto library = find_oidn({path}, &why_not);
+  if (!library || !has(library->version, "2.")) return why_not + ", or another version";
   NoisyPicture p;
   p.width = 67, p.height = 41;
   std::vector<float> truth, noisy, albedo, normal;
   std::mt19937 generator(1);
   std::exponential_distribution<float> noise(1.0f);
-  for (int y = 0; y < p.height; ++y) {
-    for (int x = 0; x < p.width; ++x) {
-      const float value = (x < 30 ? 0.2f : 0.8f) * (1.0f + 0.01f * float(y));
-      for (int c = 0; c < 3; ++c) {
-        truth.push_back(value), noisy.push_back(value * noise(generator)), albedo.push_back(x < 30 ? 0.2f : 0.8f);
-        normal.push_back(c == 2 ? 1.0f : 0.0f);
-      }
-    }
+  for (int i = 0; i < p.width * p.height * 3; ++i) {
+    const float value = i / 3 % p.width < 30 ? 0.2f : 0.8f;
+    truth.push_back(value), noisy.push_back(value * noise(generator)), albedo.push_back(value);
+    normal.push_back(i % 3 == 2 ? 1.0f : 0.0f);
   }
   p.color = noisy.data();
   const double before = rms_error(noisy, truth), plain = rms_error(denoise(*library, p, 2, never), truth);
   p.albedo = {albedo.data(), true};
   p.normal = {normal.data(), false};
   const double guided = rms_error(denoise(*library, p, 2, never), truth);
-  EXPECT_LT(plain, 0.3 * before);
-  EXPECT_LT(guided, 0.3 * before);
+  if (plain > 0.3 * before || guided > 0.3 * before || guided > plain) return "too much noise is left";
   std::fill(noisy.begin(), noisy.end(), std::numeric_limits<float>::max());
   noisy[0] = kNaN;
-  for (const float v : denoise(*library, p, 2, never)) ASSERT_TRUE(std::isfinite(v));
+  for (const float v : denoise(*library, p, 2, never)) {
+    if (!std::isfinite(v)) return "not finite";
+  }
+  return "";
+}
+
+// In a process of its own: in this one, tests could not tell the stand-ins from it.
+TEST(HostDenoiserDeathTest, TakesNoiseAway) {
+  const std::string path = GRADUS_SOURCE_DIR "/.venv/bpy45/lib/python3.11/site-packages/bpy/lib";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "there is no " << path;
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto check = [&] {
+    const std::string failure = check_real_library(path);
+    std::cerr << failure << std::endl;
+    _exit(failure.empty() ? 0 : 1);
+  };
+  EXPECT_EXIT(check(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

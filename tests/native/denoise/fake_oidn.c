@@ -1,11 +1,12 @@
 /* A stand-in for Open Image Denoise: the part of its C API that is used, with arithmetic in the place of the network. A guide by itself is
- * halved; a picture becomes picture + 1 + albedo + 10 normal. FAKE_OIDN in the environment: old, no_device, no_filter, refuses, fails, nan.
+ * halved; a picture becomes picture + 1 + albedo + 10 normal. FAKE_OIDN in the environment: old, no_device, no_filter, refuses, fails, slow, nan.
  */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 typedef bool (*Progress)(void* user, double done);
 
@@ -114,6 +115,7 @@ void oidnExecuteFilter(void* f) {
   (void)f;
   ++runs;
   for (size_t i = 0; i < 3 * filter.width * filter.height; ++i) {
+    if (is("slow")) nanosleep(&(struct timespec){0, 1000000}, NULL);
     if (filter.progress && !filter.progress(filter.user, 0.5)) {
       fail(6, "cancelled by the user");
       return;

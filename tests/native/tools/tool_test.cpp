@@ -42,8 +42,9 @@ class Tool : public ::testing::Test {
     EXPECT_OK(gradus_scene_release(scene));
     EXPECT_OK(gradus_device_release(device));
   }
-  Outcome run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder.string() + "' && " GRADUS_BINARY_DIR "/native/gradus " + arguments + " >out 2>err";
+  Outcome run(const std::string& arguments, const std::string& environment = "") const {
+    const std::string command =
+        "cd '" + folder.string() + "' && " + environment + GRADUS_BINARY_DIR "/native/gradus " + arguments + " >out 2>err";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("out"), text("err")};
   }
@@ -91,6 +92,29 @@ TEST_F(Tool, ResumeHasTheBitsOfOneRender) {
     ASSERT_EQ(run("reconstruct whole.exr -o b.exr" + options).code, 0);
     EXPECT_EQ(text("a.exr"), text("b.exr")) << how;
   }
+}
+
+// By a stand-in for Open Image Denoise.
+constexpr const char* kFakeDenoiser = " --denoiser oidn --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+
+TEST_F(Tool, Denoises) {
+  const Outcome rendered = run(std::string("render good.gradus -o frame.exr --samples 16 --image combined.exr") + kFakeDenoiser);
+  ASSERT_EQ(rendered.code, 0) << rendered.err;
+  ASSERT_EQ(run("reconstruct frame.exr -o plain.exr").code, 0);
+  ASSERT_EQ(run(std::string("reconstruct frame.exr -o again.exr") + kFakeDenoiser).code, 0);
+  EXPECT_EQ(relative_error("again.exr", "combined.exr"), 0.0);
+  EXPECT_GT(relative_error("plain.exr", "combined.exr"), 0.1);
+  const Outcome failed = run(std::string("reconstruct frame.exr -o failed.exr") + kFakeDenoiser, "FAKE_OIDN=fails ");
+  EXPECT_EQ(failed.code, 0);
+  EXPECT_NE(failed.err.find("warning: the picture was not denoised: Open Image Denoise: the fake has no memory"), std::string::npos);
+  EXPECT_EQ(relative_error("failed.exr", "plain.exr"), 0.0);
+}
+
+TEST_F(Tool, SaysThatTheDenoiserHasNoGuides) {
+  ASSERT_EQ(run("render good.gradus -o frame.exr").code, 0);
+  const Outcome made = run(std::string("reconstruct frame.exr -o image.exr") + kFakeDenoiser);
+  EXPECT_EQ(made.code, 0);
+  EXPECT_NE(made.err.find("warning: the frame holds no features"), std::string::npos) << made.err;
 }
 
 TEST_F(Tool, TellsWhatFilesHold) {

@@ -1,0 +1,25 @@
+// Combined by the host's denoiser (denoise/denoise.h), guided by what the frame knows of the surfaces.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "denoise/oidn_library.h"
+#include "frame/frame.h"
+
+namespace gradus {
+
+class Device;
+
+// What a GradusDenoiser is here: nullptr where nothing is to be done, and why. Throws UNSUPPORTED where that is refused (contract 5.1).
+// device: knows where to look; may be nullptr.
+std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Device* device, std::string* why_not);
+
+// rgba: of `region`; alpha stays. What it gives is empty, or says what went wrong: then rgba is as it was. Throws Error CANCELLED. Call it
+// from outside of TBB's arenas.
+std::string denoise_combined(const OidnLibrary& library, const Frame& frame, const Region& region, uint32_t threads,
+                             const std::function<bool()>& cancel, std::vector<float>* rgba);
+
+}  // namespace gradus

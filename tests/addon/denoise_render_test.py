@@ -1,0 +1,102 @@
+"""The denoiser of the host: Open Image Denoise in the bpy modules, none in Debian's Blender 3.4."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from gradus import compat, native, settings
+from support import images
+
+Render = Callable[..., images.Passes]
+
+
+@pytest.fixture
+def corner(scene: bpy.types.Scene) -> bpy.types.Scene:
+    """A cube on a floor under a large lamp, against nothing: noise in penumbrae and bounces, and an alpha of 0 to 1."""
+    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 0.75))
+    bpy.ops.mesh.primitive_plane_add(size=5.0)
+    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))
+    lamp.data.energy, lamp.data.size, lamp.location = 300.0, 3.0, (0.0, 0.0, 4.0)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location, camera.rotation_euler = (5.0, -5.0, 4.0), (1.05, 0.0, 0.785)
+    for item in (lamp, camera):
+        scene.collection.objects.link(item)
+    scene.camera = camera
+    scene.render.film_transparent = True
+    scene.gradus.integrator, scene.gradus.noise_threshold = "PATH", 0.0
+    return scene
+
+
+def error(image: np.ndarray, truth: np.ndarray) -> float:
+    return float(np.sqrt(np.mean((image[..., :3] - truth[..., :3]) ** 2)))
+
+
+@pytest.mark.module
+@pytest.mark.parametrize(("integrator", "left"), [("PATH", 0.7), ("GRADIENT", 0.95)])
+def test_noise_falls_and_the_rest_stays(corner: bpy.types.Scene, render: Render, integrator: str, left: float) -> None:
+    truth = render(corner, samples=512)["Combined"]
+    plain = render(corner, samples=4, integrator=integrator)["Combined"]
+    passes = render(corner, samples=4, integrator=integrator, denoiser="OIDN")
+    assert error(passes["Combined"], truth) < left * error(plain, truth)
+    assert np.array_equal(passes["Combined"][..., 3], plain[..., 3])
+    assert np.isfinite(passes["Combined"]).all()
+    if integrator == "PATH":
+        assert np.array_equal(passes["Noisy Image"], plain)
+
+
+@pytest.mark.module
+def test_stats_name_it(corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "stats.jsonl"
+    monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path), "--gradus-denoiser", "auto"])
+    render(corner, samples=1)
+    stats = json.loads(path.read_text())
+    assert stats["denoiser"].startswith("Open Image Denoise 2.")
+    assert stats["seconds"]["denoise"] > 0.0
+    assert stats["cpu_seconds"]["denoise"] > 0.0
+    assert not stats["unbiased"]
+    assert stats["warnings"] == []
+
+
+@pytest.mark.module
+def test_denoised_frames_are_the_same_again(corner: bpy.types.Scene, render: Render) -> None:
+    one, other = (render(corner, samples=2, denoiser="OIDN")["Combined"] for _ in range(2))
+    assert np.array_equal(one, other)
+
+
+@pytest.mark.application
+def test_where_there_is_none_it_is_refused_by_name(corner: bpy.types.Scene, render: Render) -> None:
+    with pytest.raises(RuntimeError, match="denoiser oidn: no Open Image Denoise in this process.*use denoiser auto or none"):
+        render(corner, samples=1, denoiser="OIDN")
+
+
+@pytest.mark.application
+def test_where_there_is_none_auto_goes_on_without(corner: bpy.types.Scene, render: Render) -> None:
+    plain = render(corner, samples=2)["Combined"]
+    assert np.array_equal(render(corner, samples=2, denoiser="AUTO")["Combined"], plain)
+
+
+def test_previews_are_not_denoised(corner: bpy.types.Scene) -> None:
+    from gradus import options, renderer
+
+    corner.gradus.denoiser = "OIDN"
+    filled: Any = renderer.native_settings(native.load(), corner, corner.view_layers[0], options.Overrides())
+    assert filled.denoiser == native.Denoiser.OIDN
+    renderer.limit_preview(filled, 8)
+    assert filled.denoiser == native.Denoiser.NONE
+
+
+def test_bundled_libraries_hold_it_where_blender_brings_it_along() -> None:
+    folder = compat.bundled_libraries()
+    assert (folder != "") == getattr(bpy.app, "module", False)
+    if folder:
+        assert (Path(folder) / "libOpenImageDenoise.so.2").exists()
+
+
+def test_menu_names_what_the_library_knows() -> None:
+    assert [(name, value) for name, _, _, value in settings.DENOISERS] == [(kind.name, kind.value) for kind in native.Denoiser]

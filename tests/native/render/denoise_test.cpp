@@ -1,0 +1,159 @@
+// A denoiser behind the reconstruction, by the stand-in of tests/native/denoise: what it changes, what it leaves, what is said of it.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/device.h"
+#include "denoise/oidn_library.h"
+#include "frame/features.h"
+#include "render/fake_integrator.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+
+const std::string kFake = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+constexpr Region kAll{0, 0, 40, 30};
+
+std::shared_ptr<Device> device_with(const std::string& denoiser) {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  settings.denoiser_path = denoiser.c_str();
+  return std::make_shared<Device>(settings);
+}
+
+GradusSettings settings_with(uint32_t denoiser) {
+  GradusSettings settings = small_settings(40, 30, 4);
+  settings.denoiser = denoiser;
+  settings.film_transparent = 1;
+  return settings;
+}
+
+class DenoisedRender : public ::testing::Test {
+ protected:
+  void TearDown() override { unsetenv("FAKE_OIDN"); }
+  std::unique_ptr<Render> start(const GradusSettings& settings, float noise = 1.0f) const {
+    return std::make_unique<Render>(device, empty_snapshot(), settings, nullptr,
+                                    fake_factory([=](FakeIntegrator* f) { f->noise = noise; }));
+  }
+  std::unique_ptr<Render> finished(const GradusSettings& settings, float noise = 1.0f) const {
+    auto render = start(settings, noise);
+    render->wait(-1.0);
+    return render;
+  }
+  const std::shared_ptr<Device> device = device_with(kFake);
+};
+
+// What the stand-in makes of a picture: guides that are noisy come halved.
+std::vector<float> denoised(std::vector<float> rgba, const Frame& frame, float guide_factor) {
+  const Features features = read_features(frame);
+  for (size_t i = 0; i < rgba.size(); ++i) {
+    const size_t g = i / 4 * 3 + i % 4;
+    if (i % 4 < 3) rgba[i] += 1.0f + guide_factor * (features.albedo.values[g] + 10.0f * features.normal.values[g]);
+  }
+  return rgba;
+}
+
+void expect_near(const std::vector<float>& a, const std::vector<float>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-4) << i;
+}
+
+TEST_F(DenoisedRender, CombinedGoesThroughItAndTheRestStays) {
+  for (const float noise : {0.0f, 1.0f}) {
+    const auto plain = finished(settings_with(GRADUS_DENOISER_NONE), noise), render = finished(settings_with(GRADUS_DENOISER_OIDN), noise);
+    const auto expected = denoised(read(*plain, GRADUS_PASS_COMBINED, kAll), *render->frame(), noise > 0.0f ? 0.5f : 1.0f);
+    expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
+    EXPECT_EQ(read(*render, GRADUS_PASS_NOISY_IMAGE, kAll), read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll));
+    EXPECT_TRUE(has_features(*render->frame())) << "nobody asked for the passes";
+    EXPECT_FALSE(has_features(*plain->frame()));
+  }
+}
+
+TEST_F(DenoisedRender, IsSaidInStatsPlanAndFrame) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
+  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  const auto render = finished(settings);
+  const json stats = json::parse(render->stats_json());
+  EXPECT_EQ(stats["denoiser"], "Open Image Denoise 2.7.5");
+  EXPECT_EQ(stats["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"], "automatic: it is there");
+  EXPECT_EQ(stats["unbiased"], false);
+  EXPECT_GT(stats["seconds"]["denoise"], 0.0);
+  EXPECT_GE(stats["cpu_seconds"]["denoise"], 0.0);
+  EXPECT_EQ(render->frame()->settings.denoiser, uint32_t{GRADUS_DENOISER_OIDN});
+  settings.denoiser = GRADUS_DENOISER_NONE;
+  const json plain = json::parse(finished(settings)->stats_json());
+  EXPECT_TRUE(plain["denoiser"].is_null());
+  EXPECT_EQ(plain["plan"]["skipped"]["denoiser"], "denoiser is none");
+  EXPECT_EQ(plain["unbiased"], true);
+  EXPECT_EQ(plain["seconds"]["denoise"], 0.0);
+}
+
+TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
+  settings.integrator = GRADUS_INTEGRATOR_PATH;
+  const uint32_t region[] = {10, 5, 30, 20};
+  const Region part{10, 5, 30, 20};
+  const auto whole = read(*finished(settings), GRADUS_PASS_COMBINED, kAll);
+  std::copy(region, region + 4, settings.region);
+  const auto image = read(*finished(settings), GRADUS_PASS_COMBINED, part);
+  for (int y = 0; y < 15; ++y) {
+    for (int x = 0; x < 80; ++x) ASSERT_NEAR(image[size_t(y) * 80 + size_t(x)], whole[size_t(y + 5) * 160 + size_t(x + 40)], 1e-4);
+  }
+}
+
+// The picture was there.
+TEST_F(DenoisedRender, FailureIsAWarningAndThePictureStays) {
+  const auto plain = read(*finished(settings_with(GRADUS_DENOISER_NONE)), GRADUS_PASS_COMBINED, kAll);
+  auto render = start(settings_with(GRADUS_DENOISER_OIDN));
+  setenv("FAKE_OIDN", "fails", 1);
+  render->wait(-1.0);
+  std::string text;
+  EXPECT_EQ(render->outcome(&text), GRADUS_OK) << text;
+  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, kAll), plain);
+  const json stats = json::parse(render->stats_json());
+  ASSERT_EQ(stats["warnings"].size(), 1u);
+  EXPECT_NE(stats["warnings"][0].get<std::string>().find("the fake has no memory"), std::string::npos);
+  EXPECT_TRUE(stats["denoiser"].is_null());
+}
+
+TEST_F(DenoisedRender, CancelledMeanwhileItLeavesTheReconstruction) {
+  const auto plain = read(*finished(settings_with(GRADUS_DENOISER_NONE)), GRADUS_PASS_COMBINED, kAll);
+  setenv("FAKE_OIDN", "slow", 1);
+  const auto render = start(settings_with(GRADUS_DENOISER_OIDN));
+  while (render->progress().phase < GRADUS_PHASE_RECONSTRUCTING || read(*render, GRADUS_PASS_COMBINED, kAll) != plain) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  render->cancel();
+  ASSERT_TRUE(render->wait(1.0)) << "it goes on";
+  EXPECT_EQ(render->outcome(nullptr), GRADUS_ERROR_CANCELLED);
+  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, kAll), plain);
+}
+
+TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleWhereThereIsNone) {
+  setenv("FAKE_OIDN", "old", 1);
+  std::string why_not;
+  if (find_oidn({}, &why_not)) GTEST_SKIP() << "this machine has the library";
+  try {
+    start(settings_with(GRADUS_DENOISER_OIDN));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), GRADUS_ERROR_UNSUPPORTED);
+    EXPECT_NE(std::string(e.what()).find("version 1.7.5"), std::string::npos) << e.what();
+  }
+  const auto render = finished(settings_with(GRADUS_DENOISER_AUTO));
+  const json stats = json::parse(render->stats_json());
+  EXPECT_NE(stats["plan"]["skipped"]["denoiser"].get<std::string>().find("version 1.7.5"), std::string::npos);
+  EXPECT_EQ(render->frame()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
+  EXPECT_TRUE(stats["denoiser"].is_null());
+  EXPECT_FALSE(has_features(*render->frame()));
+}
+
+}  // namespace
+}  // namespace gradus
