@@ -171,9 +171,9 @@ def test_stats_line(cube: bpy.types.Scene, render: Render, tmp_path: Path, argum
     keys = (
         "schema version scene view seed integrator reconstruction spp_base spp_offset unbiased resolution samples plan seconds cpu_seconds"
     )
-    keys += " rays shifts nonfinite_dropped peak_memory_bytes process_cpu warnings"
+    keys += " denoiser rays shifts nonfinite_dropped peak_memory_bytes process_cpu warnings"
     assert set(keys.split()) <= lines[0].keys()
-    assert {"export", "build", "sample", "reconstruct", "filter", "upload", "total"} <= lines[0]["seconds"].keys()
+    assert {"export", "build", "sample", "reconstruct", "denoise", "filter", "upload", "total"} <= lines[0]["seconds"].keys()
     assert lines[0]["samples"] == 3
     assert lines[0]["resolution"] == [40, 24]
 

@@ -209,7 +209,7 @@ uint64_t noise_floats(const Plan& plan) {
 // Open Image Denoise 2.3.3).
 uint64_t denoiser_bytes(const Plan& plan) {
   const uint64_t area = uint64_t(plan.delivered.area()), tile = std::min(area, uint64_t{2160} * 2160);
-  return 22 * sizeof(float) * area + 750 * tile;
+  return 22 * sizeof(float) * area + 800 * tile + (32 << 20);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "plan/plan.h"
 #include "render/fake_integrator.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {
@@ -121,6 +122,17 @@ TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
   EXPECT_EQ(first_check(0.002f, 0), 80u);
   EXPECT_EQ(first_check(0.002f, 20), 20u);
   EXPECT_EQ(first_check(0.01f, 4), 16u);
+}
+
+TEST(Plan, DenoiserIsBiasedAndAsksForFeaturesAndMemory) {
+  GradusSettings s = small_settings(64, 64, 4);
+  s.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  const Plan plain = make_plan(s, *empty_snapshot()), denoised = make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
+  EXPECT_TRUE(delivers_unbiased(plain, plain.reconstruction));
+  EXPECT_FALSE(delivers_unbiased(denoised, denoised.reconstruction));
+  EXPECT_EQ(plain.passes & feature_passes(), 0u);
+  EXPECT_EQ(denoised.passes & feature_passes(), feature_passes());
+  EXPECT_GT(planned_bytes(denoised), planned_bytes(plain) + uint64_t{64} * 64 * 700);
 }
 
 TEST(Plan, NoCameraIsAnError) {
