@@ -106,7 +106,7 @@ Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel
   const SolverPlanes planes = load_planes(interleaved, images.width, images.height, channels);
   Minimum result{WeightedLeastSquares(images.width, images.height, channels),
                  start_from_l2(interleaved, images.width, images.height, channels, kUnknownAlpha)};
-  weigh_by_noise(images, robust_scale(planes), &result.system.data_weights(), &result.system.matrix());
+  weigh_by_noise(images, robust_scale(planes.primal), &result.system.data_weights(), &result.system.matrix());
   result.system.update();
   const CgReport solve = result.system.solve(planes, kGoal, kMostSteps, cancel, &result.solution);
   ++report->outer_steps;

@@ -27,7 +27,7 @@ Minimum minimise_l1(const GradientImages& images, float alpha, const CancelTest&
   const int channels = std::min(images.channels, 3);
   const PoissonPlanes interleaved = planes_of(images, 0);
   const SolverPlanes planes = load_planes(interleaved, images.width, images.height, channels);
-  const float scale = robust_scale(planes);
+  const float scale = robust_scale(planes.primal);
   Minimum result{WeightedLeastSquares(images.width, images.height, channels),
                  start_from_l2(interleaved, images.width, images.height, channels, alpha)};
   float floor = kFirstFloor;

@@ -29,8 +29,7 @@ SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int
   return result;
 }
 
-float robust_scale(const SolverPlanes& planes) {
-  const Field& image = planes.primal;
+float robust_scale(const Field& image) {
   const size_t pixels = size_t(image.width()) * image.height(), step = std::max<size_t>(1, pixels / kMedianSamples);
   std::vector<float> values;
   for (size_t i = 0; i < pixels; i += step) {

@@ -16,7 +16,7 @@ struct SolverPlanes {
 // Takes channels [0, channels) from interleaved planes.
 SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int channels);
 // Scale of the image: the median of the luminances that are not 0; 1 for a black image. Residuals and noise are measured in it.
-float robust_scale(const SolverPlanes& planes);
+float robust_scale(const Field& image);
 // Whether a row's value is there in all of some channels, interleaved.
 inline bool is_complete(const float* value, int channels) {
   bool complete = true;

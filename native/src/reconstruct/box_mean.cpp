@@ -1,0 +1,42 @@
+#include "reconstruct/box_mean.h"
+
+#include <algorithm>
+
+#include "reconstruct/rows.h"
+
+namespace gradus {
+namespace {
+
+// Sum of the values within `radius` of each, and their number's inverse as a factor.
+void mean_along(const float* from, int length, int radius, float* to) {
+  for (int x = 0; x < length; ++x) {
+    const int begin = std::max(0, x - radius), end = std::min(length, x + radius + 1);
+    float sum = 0.0f;
+    for (int i = begin; i < end; ++i) sum += from[i];
+    to[x] = sum / static_cast<float>(end - begin);
+  }
+}
+
+}  // namespace
+
+Field box_mean(const Field& image, int radius) {
+  const int w = image.width(), h = image.height(), channels = image.channels();
+  Field rows(w, h, channels), result(w, h, channels);
+  for_rows(h, [&](int y) {
+    for (int c = 0; c < channels; ++c) mean_along(image.row(y, c), w, radius, rows.row(y, c));
+  });
+  for_rows(h, [&](int y) {
+    const int begin = std::max(0, y - radius), end = std::min(h, y + radius + 1);
+    const float factor = 1.0f / static_cast<float>(end - begin);
+    for (int c = 0; c < channels; ++c) {
+      float* to = result.row(y, c);
+      for (int i = begin; i < end; ++i) {
+        const float* from = rows.row(i, c);
+        for (int x = 0; x < w; ++x) to[x] += factor * from[x];
+      }
+    }
+  });
+  return result;
+}
+
+}  // namespace gradus

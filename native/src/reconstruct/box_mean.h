@@ -1,0 +1,12 @@
+// Means over squares of pixels, as far as they lie in the image.
+#pragma once
+
+#include "reconstruct/field.h"
+
+namespace gradus {
+
+// Mean over (2·radius + 1)² pixels, each channel by itself. Every sum is taken anew: sums that slide would keep the rounding of what was
+// bright in the shade beside it.
+Field box_mean(const Field& image, int radius);
+
+}  // namespace gradus

@@ -1,0 +1,32 @@
+// The image by its features: regression in small windows, then what that lost is given back by regression of the residual in large ones.
+// Both steps are linear in the image once their weights are known, so other planes can go through them (contract 3.4).
+#pragma once
+
+#include "frame/features.h"
+#include "reconstruct/local_regression.h"
+
+namespace gradus {
+
+// What is known of a frame's component, in three channels and the scale of 1 for its median luminance.
+struct HalvedImage {
+  Field mean;
+  Field half_difference;  // (A − B)/2; the mean itself where a half has no samples: nothing is known of its noise
+};
+
+class FeatureRegression {
+ public:
+  FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel);
+
+  const Field& image() const { return image_; }
+  // Estimated squared error of the image, mean over its channels, bias included.
+  const Field& error() const { return error_; }
+  // One channel by the frozen weights.
+  Field apply(const Field& values, const CancelTest& cancel) const;
+
+ private:
+  LocalRegression by_features_, of_residual_;
+  Field kept_;  // share of each pixel's residual that is given back: outliers are limited
+  Field image_, error_;
+};
+
+}  // namespace gradus

@@ -1,0 +1,50 @@
+// First-order regression in windows. Around every pixel q, for every radius r, the image is taken to be linear in the features:
+//   a_q = argmin Σ_{p in window} w_p (I_p − a·φ_p)² + λ Σw |a|²     (λ not for the constant)
+// and a pixel's value is the mean of what all windows that hold it say, those with little error first:
+//   x_p = Σ_q η_q a_q·φ_p / Σ_q η_q,     η = 1/(windows' pixels · estimated squared error).
+// Moon, Carr, Yoon 2014 and Bitterli et al. 2016 (NFOR) regress on features; here weights belong to pixels, not to pairs of them, so that
+// windows are sums that slide (as of the guided filter: He, Sun, Tang 2010), and several radii take the place of weights by distance.
+//
+// The error of a window comes from the half-buffers: of the mean v and half the difference d of the two halves, with the same weights,
+//   bias² = (Σ w e_v² − Σ w e_d²)/Σw    noise = Σ w (a_d·φ)²/Σw
+// since noise leaves as much in the residuals e_v as in e_d, and what the features cannot explain is in e_v alone.
+#pragma once
+
+#include <vector>
+
+#include "reconstruct/field.h"
+#include "reconstruct/solver.h"
+
+namespace gradus {
+
+struct RegressionSettings {
+  std::vector<int> radii;    // of the windows, ascending, 8 at most
+  bool coordinates = false;  // the pixel's x and y are features, too
+  float ridge = 1e-3f;       // λ, for features that range over about 1
+  float floor = 1e-4f;       // squared error that no window is believed to stay below
+};
+
+struct RegressionResult {
+  Field mean;   // x, three channels
+  Field noise;  // what the same operator makes of half the difference of the halves: its square estimates the variance of x
+  Field bias;   // estimated squared bias, mean over the channels; one channel
+};
+
+class LocalRegression {
+ public:
+  // features: 7 channels with coordinates, or 3 without, in about [−1, 1]; weights: one channel, 0 where a pixel does not count.
+  LocalRegression() = default;
+  LocalRegression(Field features, Field weights, RegressionSettings settings);
+
+  // Regresses three channels, given half the difference of the halves, and freezes η. Deterministic for any number of threads.
+  RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelTest& cancel);
+  // One channel by the frozen operator.
+  Field apply(const Field& values, const CancelTest& cancel) const;
+
+ private:
+  Field features_, weights_;
+  RegressionSettings settings_;
+  Field confidence_;  // η by radius
+};
+
+}  // namespace gradus

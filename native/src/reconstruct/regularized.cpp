@@ -1,0 +1,148 @@
+#include "reconstruct/regularized.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/types.h"
+#include "reconstruct/feature_regression.h"
+#include "reconstruct/minimise_by_noise.h"
+#include "reconstruct/rows.h"
+#include "reconstruct/solver_planes.h"
+#include "reconstruct/weighted_least_squares.h"
+
+namespace gradus {
+namespace {
+
+// Errors of the regression are alike in pixels that lie close together, so it counts for less than as many independent pixels.
+constexpr float kSharedError = 8.0f;
+// Of its differences less is shared.
+constexpr float kSharedDifference = 0.5f;
+constexpr float kLeastError = 1e-12f;
+// Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
+constexpr float kMost = 1e12f;
+constexpr CgGoal kGoal{.row_error = 1e-2f};
+constexpr int kMostSteps = 60;
+
+// The mean and half the difference of the halves, in units of the image; what is not finite is 0.
+HalvedImage read_halves(const Frame& frame, int component) {
+  const int w = frame.region.width(), h = frame.region.height(), channels = frame.channels;
+  HalvedImage image{Field(w, h, 3), Field(w, h, 3)};
+  for_pieces(h, [&](int begin, int end) {
+    std::vector<float> mean(size_t(w) * channels), a(mean), b(mean);
+    for (int y = begin; y < end; ++y) {
+      read_primal_row(frame, component, {}, y, mean.data());
+      read_primal_row(frame, component, {0, 1}, y, a.data());
+      read_primal_row(frame, component, {1, 2}, y, b.data());
+      for (int x = 0; x < w; ++x) {
+        const size_t pixel = size_t(y) * size_t(w) + size_t(x);
+        const bool known = frame.count[0][pixel] > 0 && frame.count[1][pixel] > 0;
+        for (int c = 0; c < 3; ++c) {
+          const size_t i = size_t(x) * size_t(channels) + size_t(c);
+          const float value = is_finite(mean[i]) ? mean[i] : 0.0f, half = known ? 0.5f * (a[i] - b[i]) : value;
+          image.mean.row(y, c)[x] = value;
+          image.half_difference.row(y, c)[x] = is_finite(half) ? half : value;
+        }
+      }
+    }
+  });
+  return image;
+}
+
+// Into units of the median luminance, within bounds.
+void normalise(float scale, Field* field) {
+  for_rows(field->height(), [&](int y) {
+    for (int c = 0; c < field->channels(); ++c) {
+      for (int x = 0; x < field->width(); ++x) {
+        float& value = field->row(y, c)[x];
+        value = std::clamp(value / scale, -kMost, kMost);
+      }
+    }
+  });
+}
+
+void multiply(float factor, Field* field) {
+  for_rows(field->height(), [&](int y) {
+    for (int c = 0; c < field->channels(); ++c) {
+      for (int x = 0; x < field->width(); ++x) field->row(y, c)[x] *= factor;
+    }
+  });
+}
+
+// Mean of two estimates of a difference, by their weights: the regression's takes the place of a sampled one that is absent.
+void blend_differences(const Field& image, const Field& weight, int step_x, int step_y, Field* sampled, Field* weights) {
+  const int w = image.width(), h = image.height();
+  for_rows(h, [&](int y) {
+    if (y + step_y >= h) return;
+    for (int x = 0; x + step_x < w; ++x) {
+      const float own = weight.row(y)[x], total = own + weights->row(y)[x], share = own / total;
+      for (int c = 0; c < image.channels(); ++c) {
+        const float difference = image.row(y + step_y, c)[x + step_x] - image.row(y, c)[x];
+        float& value = sampled->row(y, c)[x];
+        value = share < 1.0f ? value + share * (difference - value) : difference;
+      }
+      weights->row(y)[x] = total;
+    }
+  });
+}
+
+// The regression as the data of a least squares problem whose differences are those sampled and the regression's own, by their errors.
+Field fuse(const GradientImages& images, float scale, const FeatureRegression& regression, const CancelTest& cancel, SolveReport* report) {
+  const int w = images.width, h = images.height;
+  SolverPlanes planes = load_planes(planes_of(images, 0), w, h, 3);
+  multiply(1.0f / scale, &planes.dx);
+  multiply(1.0f / scale, &planes.dy);
+  planes.primal = regression.image();
+  WeightedLeastSquares system(w, h, 3);
+  weigh_by_noise(images, scale, &system.data_weights(), &system.matrix());
+  Field of_differences(w, h, 1);
+  for_rows(h, [&](int y) {
+    for (int x = 0; x < w; ++x) {
+      const float error = regression.error().row(y)[x] + kLeastError;
+      system.data_weights().row(y)[x] = 1.0f / (kSharedError * error);
+      of_differences.row(y)[x] = 1.0f / (kSharedDifference * error);
+    }
+  });
+  blend_differences(regression.image(), of_differences, 1, 0, &planes.dx, &system.matrix().right);
+  blend_differences(regression.image(), of_differences, 0, 1, &planes.dy, &system.matrix().up);
+  system.update();
+  Field x = regression.image();
+  const CgReport solve = system.solve(planes, kGoal, kMostSteps, cancel, &x);
+  ++report->outer_steps;
+  add_solve(solve, report);
+  return x;
+}
+
+}  // namespace
+
+Regularized regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
+  const int w = frame.region.width(), h = frame.region.height(), channels = frame.channels;
+  HalvedImage image = read_halves(frame, component);
+  const float scale = robust_scale(image.mean);
+  normalise(scale, &image.mean);
+  normalise(scale, &image.half_difference);
+  const FeatureRegression regression(read_features(frame), image, cancel);
+  Regularized result{std::vector<float>(size_t(w) * size_t(h) * size_t(channels)), std::vector<float>(size_t(w) * size_t(h))};
+  Field solution = regression.image();
+  if (frame.gradients) {
+    GradientImages images = read_images(frame, component);
+    read_deviations(frame, component, &images);
+    solution = fuse(images, scale, regression, cancel, report);
+  }
+  multiply(scale, &solution);
+  for (int c = 0; c < 3; ++c) store_channel(solution, c, size_t(channels), result.image.data() + c);
+  if (channels == 4) {
+    Field alpha(w, h, 1);
+    for_rows(h, [&](int y) {
+      std::vector<float> row(size_t(w) * 4);
+      read_primal_row(frame, component, {}, y, row.data());
+      for (int x = 0; x < w; ++x) alpha.row(y)[x] = is_finite(row[4 * size_t(x) + 3]) ? row[4 * size_t(x) + 3] : 0.0f;
+    });
+    store_channel(regression.apply(alpha, cancel), 0, 4, result.image.data() + 3);
+  }
+  Field error = regression.error();
+  multiply(scale * scale, &error);
+  store_channel(error, 0, 1, result.error.data());
+  return result;
+}
+
+}  // namespace gradus

@@ -1,0 +1,46 @@
+// Normal equations of eight windows side by side.
+#pragma once
+
+namespace gradus {
+
+using Lanes = float __attribute__((vector_size(32)));
+
+inline constexpr int kLanes = 8;
+
+// Row-major lower triangle of a symmetric matrix: (i, j), j <= i.
+constexpr int packed(int i, int j) { return i * (i + 1) / 2 + j; }
+
+// Solves M a = R for C right sides by M = L D Lᵀ (no square roots), in place: `matrix` becomes L and D, `right` the solutions,
+// right[C·i + c] the i-th coefficient of side c. M is positive semidefinite but for rounding; a pivot that rounding has left nothing of
+// counts as infinite, which leaves its coefficient out.
+template <int P, int C>
+inline void solve_windows(Lanes* matrix, Lanes* right) {
+  const Lanes zero{}, least = zero + 1e-30f;
+  Lanes inverse[P];
+  for (int j = 0; j < P; ++j) {
+    Lanes scaled[P] = {}, pivot = matrix[packed(j, j)];
+    const Lanes negligible = 2e-6f * pivot + least;
+    for (int k = 0; k < j; ++k) {
+      scaled[k] = matrix[packed(j, k)] * matrix[packed(k, k)];
+      pivot -= matrix[packed(j, k)] * scaled[k];
+    }
+    matrix[packed(j, j)] = pivot > negligible ? pivot : zero;
+    inverse[j] = pivot > negligible ? 1.0f / pivot : zero;
+    for (int i = j + 1; i < P; ++i) {
+      Lanes sum = matrix[packed(i, j)];
+      for (int k = 0; k < j; ++k) sum -= matrix[packed(i, k)] * scaled[k];
+      matrix[packed(i, j)] = sum * inverse[j];
+    }
+  }
+  for (int c = 0; c < C; ++c) {
+    for (int i = 1; i < P; ++i) {
+      for (int k = 0; k < i; ++k) right[C * i + c] -= matrix[packed(i, k)] * right[C * k + c];
+    }
+    for (int i = 0; i < P; ++i) right[C * i + c] *= inverse[i];
+    for (int i = P - 2; i >= 0; --i) {
+      for (int k = i + 1; k < P; ++k) right[C * i + c] -= matrix[packed(k, i)] * right[C * k + c];
+    }
+  }
+}
+
+}  // namespace gradus

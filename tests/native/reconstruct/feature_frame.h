@@ -1,0 +1,97 @@
+// Frames that are written by hand, one sample in each half: an image, its noise and features of any kind.
+#pragma once
+
+#include <functional>
+
+#include "frame/frame.h"
+#include "frame/pass_planes.h"
+#include "reconstruct/test_images.h"
+#include "settings/pass_table.h"
+
+namespace gradus::test {
+
+struct FeatureFrame {
+  int width, height;
+  std::vector<float> truth;  // three channels
+  // Standard deviation of a half's pixel.
+  std::function<float(size_t)> sigma = [](size_t) { return 0.4f; };
+  // Features: normal, albedo and depth, seven values, by pixel and half.
+  std::function<float(int x, int y, int channel, int half)> feature;
+  bool gradients = false;
+  unsigned seed = 1;
+};
+
+inline void fill_features(const FeatureFrame& description, Frame* frame) {
+  frame->passes = make_pass_planes(feature_passes(), size_t(frame->region.area()));
+  int first = 0;
+  for (const uint32_t pass : {GRADUS_PASS_DENOISING_NORMAL, GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_DENOISING_DEPTH}) {
+    for (PassPlane& plane : frame->passes) {
+      if (plane.pass != pass) continue;
+      for (int half = 0; half < kHalves; ++half) {
+        for (size_t i = 0; i < plane.values[half].size(); ++i) {
+          const int pixel = int(i / plane.channels), channel = first + int(i % plane.channels);
+          plane.values[half][i] = description.feature(pixel % description.width, pixel / description.width, channel, half);
+        }
+      }
+      first += int(plane.channels);
+    }
+  }
+}
+
+// Differences are sampled exactly, one sample of each pixel and half.
+inline void fill_differences(const FeatureFrame& description, Frame* frame) {
+  const int w = description.width, h = description.height;
+  for (int half = 0; half < kHalves; ++half) {
+    for (int o = 0; o < kOffsets; ++o) {
+      for (int y = 0; y < h; ++y) {
+        for (int x = 0; x < w; ++x) {
+          const int nx = x + kOffsetX[o], ny = y + kOffsetY[o];
+          if (nx < 0 || nx >= w || ny < 0 || ny >= h) continue;
+          const size_t i = size_t(y) * size_t(w) + size_t(x), n = size_t(ny) * size_t(w) + size_t(nx);
+          frame->pair_count[half][o][i] = 1.0f;
+          // Each end of a pair has half of the difference.
+          for (int c = 0; c < 3; ++c)
+            frame->components[0].gradient[half][o][i][c] =
+                0.5f * (description.truth[3 * n + size_t(c)] - description.truth[3 * i + size_t(c)]);
+        }
+      }
+    }
+  }
+}
+
+inline Frame make_feature_frame(const FeatureFrame& description, int channels = 3) {
+  const int w = description.width, h = description.height;
+  Frame frame(uint32_t(w), uint32_t(h), {0, 0, w, h}, channels, 1, description.gradients);
+  frame.settings.width = uint32_t(w);
+  frame.settings.height = uint32_t(h);
+  std::mt19937 random(description.seed);
+  std::normal_distribution<float> normal(0.0f, 1.0f);
+  for (int half = 0; half < kHalves; ++half) {
+    for (size_t i = 0; i < size_t(w) * size_t(h); ++i) {
+      frame.count[half][i] = 1;
+      Radiance& pixel = frame.components[0].primal[half][i];
+      for (int c = 0; c < 3; ++c) pixel[c] = description.truth[3 * i + size_t(c)] + description.sigma(i) * normal(random);
+      if (channels == 4) pixel[3] = pixel[0] / 8.0f;
+    }
+  }
+  fill_features(description, &frame);
+  if (description.gradients) fill_differences(description, &frame);
+  return frame;
+}
+
+// Three planes with normals, a chequered albedo, a depth of their own.
+inline float room_feature(int x, int y, int channel, int /*half*/) {
+  if (channel < 3) return channel == (x < 20 ? 0 : y < 15 ? 1 : 2) ? 1.0f : 0.0f;
+  if (channel < 6) return (x / 6 + y / 5) % 2 ? 0.8f : 0.2f + 0.1f * float(channel - 3);
+  return 3.0f + 0.05f * float(x);
+}
+
+inline FeatureFrame room(int w, int h) {
+  FeatureFrame frame{w, h, {}, [](size_t) { return 0.4f; }, room_feature};
+  frame.truth = make_image(w, h, 3, [](int x, int y, int c) {
+    return (1.0f + 0.01f * float(x) + (y < 15 ? 0.5f : 0.0f)) * room_feature(x, y, 3 + c, 0) + (x < 20 ? 0.3f : 0.0f);
+  });
+  return frame;
+}
+
+}  // namespace gradus::test

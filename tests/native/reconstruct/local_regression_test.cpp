@@ -1,0 +1,147 @@
+// B1, B2 for regression in windows.
+#include "reconstruct/local_regression.h"
+
+#include <gtest/gtest.h>
+
+#include "reconstruct/test_images.h"
+#include "support/threads.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+const RegressionSettings kSettings{.radii = {1, 2, 4}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-4f};
+
+Field make_field(int w, int h, int channels, const std::function<float(int, int, int)>& value) {
+  Field field(w, h, channels);
+  for (int y = 0; y < h; ++y) {
+    for (int c = 0; c < channels; ++c) {
+      for (int x = 0; x < w; ++x) field.row(y, c)[x] = value(x, y, c);
+    }
+  }
+  return field;
+}
+
+float feature(int x, int y, int c) { return std::sin(0.9f * float(x) * float(c + 1) + 0.37f * float(y * y) * float(c + 2)); }
+Field features(int w, int h) { return make_field(w, h, 7, feature); }
+Field ones(int w, int h) {
+  return make_field(w, h, 1, [](int, int, int) { return 1.0f; });
+}
+Field noise(int w, int h, float sigma, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(0.0f, sigma);
+  return make_field(w, h, 3, [&](int, int, int) { return normal(random); });
+}
+
+double largest_difference(const Field& a, const Field& b) {
+  double worst = 0.0;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int c = 0; c < a.channels(); ++c) {
+      for (int x = 0; x < a.width(); ++x) worst = std::max(worst, std::abs(double(a.row(y, c)[x]) - b.row(y, c)[x]));
+    }
+  }
+  return worst;
+}
+
+Field channel_of(const Field& field, int channel) {
+  return make_field(field.width(), field.height(), 1, [&](int x, int y, int) { return field.row(y, channel)[x]; });
+}
+
+// Sizes below a window, at the borders of tiles, and one row or column.
+constexpr int kRegressionSizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {3, 2}, {80, 128}, {81, 129}, {200, 150}};
+
+TEST(B1_Regression, KeepsWhatTheFeaturesExplain) {
+  for (const auto& [w, h] : kRegressionSizes) {
+    const Field image = make_field(w, h, 3, [](int x, int y, int c) {
+      return 5.0f + 0.03f * float(x) - 0.02f * float(y) + 0.5f * feature(x, y, c) - 0.25f * feature(x, y, 6);
+    });
+    LocalRegression regression(features(w, h), ones(w, h), kSettings);
+    const RegressionResult result = regression.estimate(image, Field(w, h, 3), never);
+    // The ridge takes a little of each coefficient, most of it where windows are small.
+    EXPECT_LT(largest_difference(result.mean, image), 0.01) << w << "x" << h;
+    EXPECT_EQ(largest_difference(result.noise, Field(w, h, 3)), 0.0);
+  }
+}
+
+TEST(B2_Regression, IsTheFrozenOperatorThatItApplies) {
+  const int w = 170, h = 140;
+  const Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2), other = noise(w, h, 2.0f, 3);
+  LocalRegression regression(features(w, h), ones(w, h), kSettings);
+  const RegressionResult result = regression.estimate(image, half, never);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_LT(largest_difference(regression.apply(channel_of(image, c), never), channel_of(result.mean, c)), 1e-4);
+    EXPECT_LT(largest_difference(regression.apply(channel_of(half, c), never), channel_of(result.noise, c)), 1e-4);
+  }
+  const Field sum = make_field(w, h, 1, [&](int x, int y, int) { return image.row(y, 0)[x] - 3.0f * other.row(y, 0)[x]; });
+  const Field a = regression.apply(channel_of(image, 0), never), b = regression.apply(channel_of(other, 0), never);
+  const Field expected = make_field(w, h, 1, [&](int x, int y, int) { return a.row(y)[x] - 3.0f * b.row(y)[x]; });
+  EXPECT_LT(largest_difference(regression.apply(sum, never), expected), 1e-4);
+}
+
+TEST(B2_Regression, HasTheSameBitsForAnyNumberOfThreads) {
+  const int w = 170, h = 140;
+  const Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2);
+  expect_same_bits_for_any_number_of_threads([&] {
+    LocalRegression regression(features(w, h), ones(w, h), kSettings);
+    const Field mean = regression.estimate(image, half, never).mean;
+    std::vector<float> values;
+    for (int y = 0; y < h; ++y) values.insert(values.end(), mean.row(y, 1), mean.row(y, 1) + w);
+    return values;
+  });
+}
+
+// What the operator leaves of half the difference of the halves is the error of a picture that the features explain, no more and no less.
+TEST(B2_Regression, KnowsItsNoise) {
+  const int w = 160, h = 120;
+  double estimated = 0.0, actual = 0.0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const Field a = noise(w, h, 0.5f, seed), b = noise(w, h, 0.5f, 100 + seed);
+    const auto truth = [](int x, int y, int c) { return 2.0f + 0.5f * feature(x, y, c); };
+    const Field image = make_field(w, h, 3, [&](int x, int y, int c) { return truth(x, y, c) + 0.5f * (a.row(y, c)[x] + b.row(y, c)[x]); });
+    const Field half = make_field(w, h, 3, [&](int x, int y, int c) { return 0.5f * (a.row(y, c)[x] - b.row(y, c)[x]); });
+    LocalRegression regression(features(w, h), ones(w, h), kSettings);
+    const RegressionResult result = regression.estimate(image, half, never);
+    for (int y = 0; y < h; ++y) {
+      for (int c = 0; c < 3; ++c) {
+        for (int x = 0; x < w; ++x) {
+          estimated += result.noise.row(y, c)[x] * result.noise.row(y, c)[x];
+          actual += std::pow(result.mean.row(y, c)[x] - truth(x, y, c), 2.0);
+        }
+      }
+    }
+  }
+  EXPECT_NEAR(estimated / actual, 1.0, 0.15);
+  EXPECT_LT(actual, 0.15 * 4.0 * 3.0 * w * h * 0.125);  // of the noise of the mean, 0.5²/2
+}
+
+// A shelf of three dark rows between bright ones, far from the tile's centre, was as bright as a tenth of them: slopes of hundreds with a
+// constant of thousands do not fit into floats.
+TEST(B2_Regression, AShelfStaysDarkFarFromTheTilesCentre) {
+  const int w = 160, h = 120;
+  const Field image = make_field(w, h, 3, [](int, int y, int) { return y % 20 < 3 ? 0.3f : 30.0f; });
+  const Field none = make_field(w, h, 7, [](int, int, int c) { return c == 1 ? 1.0f : 0.0f; });
+  LocalRegression regression(none, ones(w, h), kSettings);
+  const RegressionResult result = regression.estimate(image, Field(w, h, 3), never);
+  for (int x = 8; x < w - 8; ++x) {
+    for (const int y : {21, 41, 61, 81, 101}) EXPECT_NEAR(result.mean.row(y)[x], 0.3f, 0.1f) << x << " " << y;
+  }
+}
+
+TEST(B2_Regression, LeavesOutPixelsWithoutWeight) {
+  const int w = 64, h = 48;
+  Field image = make_field(w, h, 3, [](int x, int, int) { return 1.0f + 0.01f * float(x); });
+  Field weights = ones(w, h);
+  const Field truth = image;
+  for (int y = 0; y < h; ++y) {
+    for (int x = (y * 7) % 5; x < w; x += 5) {
+      weights.row(y)[x] = 0.0f;
+      for (int c = 0; c < 3; ++c) image.row(y, c)[x] = 1e4f;
+    }
+  }
+  LocalRegression regression(features(w, h), weights, kSettings);
+  EXPECT_LT(largest_difference(regression.estimate(image, Field(w, h, 3), never).mean, truth), 0.03);
+}
+
+}  // namespace
+}  // namespace gradus

@@ -1,0 +1,202 @@
+// B1, B2 and bad input for REGULARIZED.
+#include "reconstruct/regularized.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "reconstruct/feature_frame.h"
+#include "support/threads.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr int kWidth = 72, kHeight = 50;
+
+std::vector<float> solve(const Frame& frame) {
+  SolveReport report;
+  return regularize(frame, 0, never, &report).image;
+}
+
+std::vector<float> noisy(const Frame& frame) { return read_images(frame, 0).primal; }
+
+void expect_finite_and_bounded(const Frame& frame, float bound) {
+  SolveReport report;
+  const Regularized result = regularize(frame, 0, never, &report);
+  for (const float v : result.image) ASSERT_LE(std::fabs(v), bound);
+  for (const float v : result.error) ASSERT_TRUE(v >= 0.0f && v <= std::numeric_limits<float>::max()) << v;
+}
+
+TEST(B2_Regularized, TakesMostOfTheNoise) {
+  FeatureFrame description = room(kWidth, kHeight);
+  for (const bool gradients : {false, true}) {
+    description.gradients = gradients;
+    const Frame frame = make_feature_frame(description);
+    EXPECT_LT(rms_difference(solve(frame), description.truth), (gradients ? 0.2 : 0.3) * rms_difference(noisy(frame), description.truth));
+  }
+}
+
+// Shadows, caustics and reflections are in no feature: there the differences have to tell.
+TEST(B2_Regularized, DifferencesTellWhatNoFeatureKnows) {
+  FeatureFrame description = room(96, 64);
+  const std::vector<float> shadow =
+      make_image(96, 64, 3, [](int x, int y, int) { return (x - 50) * (x - 50) + (y - 30) * (y - 30) < 150 ? 0.3f : 1.0f; });
+  for (size_t i = 0; i < shadow.size(); ++i) description.truth[i] *= shadow[i];
+  const double without = rms_difference(solve(make_feature_frame(description)), description.truth);
+  description.gradients = true;
+  EXPECT_LT(rms_difference(solve(make_feature_frame(description)), description.truth), 0.6 * without);
+}
+
+// Consistent: a hundred times the samples leave less than a fifth of the error, whatever the features say.
+TEST(B2_Regularized, ErrorFallsWithTheNoise) {
+  FeatureFrame description = room(kWidth, kHeight);
+  description.feature = [](int x, int, int, int) { return float(x % 3) / 3.0f; };  // nothing to do with the picture
+  double before = std::numeric_limits<double>::infinity();
+  for (const float sigma : {0.4f, 0.04f, 0.004f}) {
+    description.sigma = [sigma](size_t) { return sigma; };
+    const double error = rms_difference(solve(make_feature_frame(description)), description.truth);
+    EXPECT_LT(error, 0.2 * before) << sigma;
+    before = error;
+  }
+}
+
+TEST(B2_Regularized, ScalesWithTheImage) {
+  FeatureFrame description = room(kWidth, kHeight);
+  std::vector<float> small = solve(make_feature_frame(description));
+  for (float& v : description.truth) v *= 1024.0f;
+  description.sigma = [](size_t) { return 1024.0f * 0.4f; };
+  const std::vector<float> large = solve(make_feature_frame(description));
+  for (float& v : small) v *= 1024.0f;
+  EXPECT_LT(max_difference(small, large), 1e-2 * 1024.0);
+}
+
+// Alpha, which is an eighth of red in these frames, goes through the weights of the colours.
+TEST(B2_Regularized, AlphaGoesThroughTheSameWeights) {
+  const FeatureFrame description = room(kWidth, kHeight);
+  const std::vector<float> rgba = solve(make_feature_frame(description, 4));
+  for (size_t i = 0; i < rgba.size(); i += 4) ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 2e-3f) << i / 4;
+}
+
+TEST(B2_Regularized, HasTheSameBitsForAnyNumberOfThreads) {
+  FeatureFrame description = room(170, 140);
+  description.gradients = true;
+  const Frame frame = make_feature_frame(description);
+  expect_same_bits_for_any_number_of_threads([&] { return solve(frame); });
+}
+
+// Windows are biased in different ways, of which their mean has less: the estimate is too high where features explain little.
+TEST(B2_Regularized, EstimatesItsError) {
+  FeatureFrame description = room(160, 120);
+  double estimated = 0.0, actual = 0.0;
+  for (description.seed = 1; description.seed <= 4; ++description.seed) {
+    SolveReport report;
+    const Regularized result = regularize(make_feature_frame(description), 0, never, &report);
+    for (const float v : result.error) estimated += v / double(result.error.size());
+    actual += std::pow(rms_difference(result.image, description.truth), 2.0);
+  }
+  EXPECT_GT(estimated / actual, 0.7);
+  EXPECT_LT(estimated / actual, 1.7);
+}
+
+TEST(BadInput_Regularized, ConstantFeatures) {
+  FeatureFrame description = room(kWidth, kHeight);
+  for (const float value : {0.0f, 1.0f, -5e3f}) {
+    description.feature = [value](int, int, int, int) { return value; };
+    const Frame frame = make_feature_frame(description);
+    EXPECT_LT(rms_difference(solve(frame), description.truth), 0.8 * rms_difference(noisy(frame), description.truth)) << value;
+  }
+}
+
+TEST(BadInput_Regularized, FeaturesOfNoiseAlone) {
+  FeatureFrame description = room(kWidth, kHeight);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  description.feature = [&](int, int, int, int) { return uniform(random); };
+  const Frame frame = make_feature_frame(description);
+  EXPECT_LT(rms_difference(solve(frame), description.truth), rms_difference(noisy(frame), description.truth));
+}
+
+TEST(BadInput_Regularized, FeaturesThatAreNotFinite) {
+  const FeatureFrame description = room(kWidth, kHeight);
+  Frame frame = make_feature_frame(description);
+  for (PassPlane& plane : frame.passes) {
+    plane.values[0][17 * plane.channels] = std::numeric_limits<float>::quiet_NaN();
+    plane.values[1][400 * plane.channels] = std::numeric_limits<float>::infinity();
+    plane.values[1][401 * plane.channels] = 1e37f;
+  }
+  expect_finite_and_bounded(frame, 10.0f);
+  EXPECT_LT(rms_difference(solve(frame), description.truth), 0.5 * rms_difference(noisy(frame), description.truth));
+}
+
+// No surface anywhere, as in a volume: no normal, no albedo, no depth.
+TEST(BadInput_Regularized, MissingFeatures) {
+  FeatureFrame description = room(kWidth, kHeight);
+  description.feature = [](int, int, int channel, int) { return channel < 3 ? 0.5f : 0.0f; };
+  expect_finite_and_bounded(make_feature_frame(description), 10.0f);
+  Frame frame = make_feature_frame(description);
+  frame.passes.clear();
+  SolveReport report;
+  EXPECT_THROW(regularize(frame, 0, never, &report), Error);
+}
+
+TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
+  for (const auto& [w, h] : kSizes) {
+    if (w > 200) continue;
+    FeatureFrame description = room(w, h);
+    for (const bool gradients : {false, true}) {
+      description.gradients = gradients;
+      const Frame frame = make_feature_frame(description);
+      expect_finite_and_bounded(frame, 10.0f);
+      EXPECT_LT(rms_difference(solve(frame), description.truth), 1.1 * rms_difference(noisy(frame), description.truth) + 1e-6)
+          << w << "x" << h;
+    }
+  }
+}
+
+// What is huge does not reach far.
+TEST(BadInput_Regularized, HugeValues) {
+  const FeatureFrame description = room(kWidth, kHeight);
+  for (const float value : {1e6f, 1e20f, 1e36f}) {
+    Frame frame = make_feature_frame(description);
+    frame.components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(value);
+    expect_finite_and_bounded(frame, value);
+    const std::vector<float> image = solve(frame);
+    double far = 0.0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 60; x < kWidth; ++x) {
+        const size_t i = 3 * (size_t(y) * kWidth + size_t(x));
+        far = std::max(far, std::abs(double(image[i]) - description.truth[i]));
+      }
+    }
+    EXPECT_LT(far, 1.0) << value;
+  }
+}
+
+TEST(BadInput_Regularized, ASingleSample) {
+  Frame frame = make_feature_frame(room(kWidth, kHeight));
+  std::fill(frame.count[1].begin(), frame.count[1].end(), 0u);
+  std::fill(frame.components[0].primal[1].begin(), frame.components[0].primal[1].end(), Radiance(0.0f));
+  for (PassPlane& plane : frame.passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  const std::vector<float> truth = room(kWidth, kHeight).truth;
+  expect_finite_and_bounded(frame, 20.0f);
+  EXPECT_LT(rms_difference(solve(frame), truth), 0.7 * rms_difference(noisy(frame), truth));
+}
+
+// Halves that say different things: half the picture is one of them alone.
+TEST(BadInput_Regularized, ContradictoryHalves) {
+  const FeatureFrame description = room(kWidth, kHeight);
+  Frame frame = make_feature_frame(description);
+  for (size_t i = 0; i < size_t(kWidth) * 25; ++i) frame.components[0].primal[1][i] = Radiance(0.0f);
+  expect_finite_and_bounded(frame, 10.0f);
+}
+
+TEST(BadInput_Regularized, ABlackImageIsBlack) {
+  FeatureFrame description = room(kWidth, kHeight);
+  description.truth.assign(description.truth.size(), 0.0f);
+  description.sigma = [](size_t) { return 0.0f; };
+  EXPECT_EQ(solve(make_feature_frame(description)), description.truth);
+}
+
+}  // namespace
+}  // namespace gradus
