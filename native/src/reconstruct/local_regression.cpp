@@ -15,6 +15,8 @@ namespace {
 
 // Outputs of a tile. Its sums are in the second cache; the taller, the less is done twice.
 constexpr int kTileWidth = 80, kTileHeight = 128;
+// Windows of this radius and above are taken around every other row.
+constexpr int kSparseRadius = 4;
 // Pixels in a unit of the coordinates: some windows, so that their slopes feel the ridge as little as those of the other features do.
 constexpr float kCoordinateUnit = 20.0f;
 
@@ -66,7 +68,7 @@ class Tile {
         moments_(kMoments * (2 * reach_ + 1), width_),
         columns_(kColumns, width_),
         boxes_(kBoxes, width_),
-        said_(kSaid, width_),
+        said_(kSaid * int(task.settings->radii.size()), width_),
         sums_(kSaid * (2 * reach_ + 1), width_),
         basis_(P, width_) {}
 
@@ -134,15 +136,20 @@ class Tile {
 
   // All windows around the pixels of row q.
   void regress_row(int q) {
+    const std::vector<int>& radii = task_.settings->radii;
     int done = -1;
-    for (size_t k = 0; k < task_.settings->radii.size(); ++k) {
-      const int r = task_.settings->radii[k];
-      for (; done < r; ++done) add_rows(q, done + 1);
-      sum_windows(r);
-      for (int x = reach_; x < width_ - reach_; x += kLanes) regress(q, int(k), r, x);
-      spread(q, r);
+    for (int k = 0; k < int(radii.size()); ++k) {
+      if (!has_windows(q, radii[size_t(k)])) continue;
+      for (; done < radii[size_t(k)]; ++done) add_rows(q, done + 1);
+      sum_windows(radii[size_t(k)]);
+      for (int x = reach_; x < width_ - reach_; x += kLanes) regress(q, k, radii[size_t(k)], x);
     }
+    spread(q);
   }
+
+  // Large windows overlap so much that every other row of them does.
+  static int row_step(int r) { return r < kSparseRadius ? 1 : 2; }
+  static bool has_windows(int q, int r) { return q % row_step(r) == 0; }
 
   // Adds the moments of the rows q ± r to the columns' sums.
   void add_rows(int q, int r) {
@@ -186,28 +193,39 @@ class Tile {
     }
   }
 
-  // Sums over 2r + 1 values; those times x from the middle; those times x².
+  // Sums over 2r + 1 values; those times x from the middle; those times x². One pass over the row for each radius in use.
   void box(const float* from, int r, float* to) const {
-    for (int x = r; x < width_ - r; ++x) to[x] = from[x];
-    for (int d = 1; d <= r; ++d) {
-      for (int x = r; x < width_ - r; ++x) to[x] += from[x - d] + from[x + d];
+    switch (r) {
+      case 1:
+        return weighted_box<1>(from, to, [](int) { return 1.0f; });
+      case 2:
+        return weighted_box<2>(from, to, [](int) { return 1.0f; });
+      case 4:
+        return weighted_box<4>(from, to, [](int) { return 1.0f; });
+      default:
+        return weighted_box<8>(from, to, [](int) { return 1.0f; });
     }
   }
   void ramp(const float* from, int r, float* to) const {
-    std::fill_n(to, width_, 0.0f);
-    for (int d = 1; d <= r; ++d) {
-      for (int x = r; x < width_ - r; ++x) to[x] += float(d) / kCoordinateUnit * (from[x + d] - from[x - d]);
-    }
+    constexpr auto weight = [](int d) { return float(d) / kCoordinateUnit; };
+    r == 1 ? weighted_box<1>(from, to, weight) : r == 2 ? weighted_box<2>(from, to, weight) : weighted_box<4>(from, to, weight);
   }
   void square_ramp(const float* from, int r, float* to) const {
-    std::fill_n(to, width_, 0.0f);
-    for (int d = 1; d <= r; ++d) {
-      for (int x = r; x < width_ - r; ++x) to[x] += float(d * d) / (kCoordinateUnit * kCoordinateUnit) * (from[x + d] + from[x - d]);
+    constexpr auto weight = [](int d) { return float(d * d) / (kCoordinateUnit * kCoordinateUnit); };
+    r == 1 ? weighted_box<1>(from, to, weight) : r == 2 ? weighted_box<2>(from, to, weight) : weighted_box<4>(from, to, weight);
+  }
+  template <int R, class Weight>
+  void weighted_box(const float* from, float* to, const Weight& weight) const {
+    for (int x = R; x < width_ - R; ++x) {
+      float sum = weight(0) * from[x];
+      for (int d = 1; d <= R; ++d) sum += weight(d) * from[x + d] + weight(-d) * from[x - d];
+      to[x] = sum;
     }
   }
 
   // Eight windows: coefficients, error and, by these, what they have to say.
   void regress(int q, int scale, int r, int x) {
+    const int said = scale * kSaid;
     Lanes matrix[packed(P, 0)], right[kSides], solution[kSides];
     for (int i = 0; i < packed(P, 0); ++i) matrix[i] = load(boxes_[i] + x);
     for (int i = 0; i < kSides; ++i) solution[i] = right[i] = load(boxes_[kBoxRight + i] + x);
@@ -228,20 +246,20 @@ class Tile {
       const Lanes unit = weight > zero ? 1.0f / (float(C / 2) * weight) : zero;
       bias = residual > zero ? unit * residual : zero;
       const Lanes error = bias + (noise > zero ? unit * noise : zero) + task_.settings->floor;
-      eta = weight > zero ? 1.0f / (float((2 * r + 1) * (2 * r + 1)) * error) : zero;
-      store(eta, said_[kConfidence] + x);
+      eta = weight > zero ? float(row_step(r)) / (float((2 * r + 1) * (2 * r + 1)) * error) : zero;
+      store(eta, said_[said + kConfidence] + x);
       keep_confidence(q, scale, x);
     } else {
       load_confidence(q, scale, x);
-      eta = load(said_[kConfidence] + x);
+      eta = load(said_[said + kConfidence] + x);
     }
     if constexpr (Coordinates) {
       const Lanes at_x = load(basis_x() + x), at_y = zero + tile_y(q);
       for (int c = 0; c < C; ++c) solution[c] -= at_x * solution[C * kX + c] + at_y * solution[C * kY + c];
     }
-    for (int i = 0; i < kSides; ++i) store(eta * solution[i], said_[i] + x);
-    store(eta, said_[kConfidence] + x);
-    store(eta * bias, said_[kBias] + x);
+    for (int i = 0; i < kSides; ++i) store(eta * solution[i], said_[said + i] + x);
+    store(eta, said_[said + kConfidence] + x);
+    store(eta * bias, said_[said + kBias] + x);
   }
 
   const float* basis_x() const { return basis_[kX]; }
@@ -250,30 +268,45 @@ class Tile {
   void keep_confidence(int q, int scale, int x) {
     if (q < y0_ || q >= y1_) return;
     for (int i = std::max(x, 2 * reach_); i < std::min(x + kLanes, width_ - 2 * reach_); ++i)
-      task_.new_confidence->row(q, scale)[first_ + i] = said_[kConfidence][i];
+      task_.new_confidence->row(q, scale)[first_ + i] = said_[scale * kSaid + kConfidence][i];
   }
   void load_confidence(int q, int scale, int x) {
     for (int i = x; i < x + kLanes; ++i) {
       const int at = first_ + i;
-      said_[kConfidence][i] = at >= 0 && at < task_.weights->width() ? task_.confidence->row(q, scale)[at] : 0.0f;
+      said_[scale * kSaid + kConfidence][i] = at >= 0 && at < task_.weights->width() ? task_.confidence->row(q, scale)[at] : 0.0f;
     }
   }
 
-  // What the windows of row q say, to the pixels that they hold. There are no windows around pixels outside of the image.
-  void spread(int q, int r) {
+  // What the windows of row q say, to the pixels that they hold: the largest first, so that each row takes the sum of what reaches it.
+  // There are no windows around pixels outside of the image.
+  void spread(int q) {
+    const std::vector<int>& radii = task_.settings->radii;
     const int begin = std::max(std::max(first_, 0) - first_, reach_);
     const int end = std::min(std::min(first_ + width_, task_.weights->width()) - first_, width_ - reach_);
-    const int low = std::max(q - r, y0_), high = std::min(q + r, y1_ - 1);
+    float *sum = boxes_[0], *part = boxes_[1];
     for (int i = 0; i < kSaid; ++i) {
-      std::fill_n(said_[i], begin, 0.0f);
-      std::fill(said_[i] + end, said_[i] + said_.width(), 0.0f);
-      float* sum = boxes_[0];
-      box(said_[i], r, sum);
-      for (int y = low; y <= high; ++y) {
-        float* to = sums_[slot(y, kSaid) + i];
-        for (int x = 2 * reach_; x < width_ - 2 * reach_; ++x) to[x] += sum[x];
+      std::fill_n(sum, width_, 0.0f);
+      for (size_t k = radii.size(); k-- > 0;) {
+        const int r = radii[k], inner = k > 0 ? radii[k - 1] : -1;
+        if (has_windows(q, r)) {
+          float* said = said_[int(k) * kSaid + i];
+          std::fill_n(said, begin, 0.0f);
+          std::fill(said + end, said + said_.width(), 0.0f);
+          box(said, r, part);
+          for (int x = 2 * reach_; x < width_ - 2 * reach_; ++x) sum[x] += part[x];
+        }
+        for (int d = r; d > inner; --d) {
+          give(sum, q + d, i);
+          if (d > 0) give(sum, q - d, i);
+        }
       }
     }
+  }
+
+  void give(const float* sum, int y, int i) {
+    if (y < y0_ || y >= y1_) return;
+    float* to = sums_[slot(y, kSaid) + i];
+    for (int x = 2 * reach_; x < width_ - 2 * reach_; ++x) to[x] += sum[x];
   }
 
   void write_row(int y) {
@@ -282,12 +315,11 @@ class Tile {
     const float* all = sums_[at + kConfidence] + begin;
     for (int c = 0; c < C; ++c) {
       float* to = task_.result->row(y, c) + x0_;
-      std::fill_n(to, n, 0.0f);
-      for (int i = 0; i < P; ++i) {
-        const float *a = sums_[at + C * i + c] + begin, *phi = basis_[i] + begin;
-        for (int x = 0; x < n; ++x) to[x] += a[x] * phi[x];
+      for (int x = 0; x < n; ++x) {
+        float sum = 0.0f;
+        for (int i = 0; i < P; ++i) sum += sums_[at + C * i + c][begin + x] * basis_[i][begin + x];
+        to[x] = all[x] > 0.0f ? sum / all[x] : 0.0f;
       }
-      for (int x = 0; x < n; ++x) to[x] = all[x] > 0.0f ? to[x] / all[x] : 0.0f;
     }
     if constexpr (Estimates) {
       const float* bias = sums_[at + kBias] + begin;

@@ -18,7 +18,7 @@
 namespace gradus {
 
 struct RegressionSettings {
-  std::vector<int> radii;    // of the windows, ascending, 8 at most
+  std::vector<int> radii;    // of the windows, ascending, of 1, 2, 4 and 8
   bool coordinates = false;  // the pixel's x and y are features, too
   float ridge = 1e-3f;       // λ, for features that range over about 1
   float floor = 1e-4f;       // squared error that no window is believed to stay below
