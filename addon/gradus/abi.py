@@ -147,7 +147,8 @@ class Pass(IntEnum):
     GRADIENT_Y = 27
     VARIANCE = 28
     FALLBACK = 29
-    COUNT = 30
+    ERROR = 30
+    COUNT = 31
 
 
 class OptionType(IntEnum):
@@ -524,7 +525,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_frame_load": (c_int, [Device, c_char_p, POINTER(Frame)]),
     "gradus_frame_merge": (c_int, [Frame, Frame]),
     "gradus_frame_size": (c_int, [Frame, POINTER(c_uint32), POINTER(c_uint32)]),
-    "gradus_frame_reconstruct": (c_int, [Frame, c_uint32, c_float, c_uint32, POINTER(c_float), c_size_t]),
+    "gradus_frame_reconstruct": (c_int, [Frame, c_uint32, c_float, c_uint32, POINTER(c_float), c_size_t, POINTER(c_float)]),
     "gradus_frame_read_pass": (c_int, [Frame, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_frame_release": (c_int, [Frame]),
 }

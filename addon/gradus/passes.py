@@ -69,6 +69,7 @@ TABLE: tuple[PassInfo, ...] = (
     _same(Pass.GRADIENT_X, "Gradient X", "RGB", "COLOR", "gradus.use_pass_gradients"),
     _same(Pass.GRADIENT_Y, "Gradient Y", "RGB", "COLOR", "gradus.use_pass_gradients"),
     _same(Pass.VARIANCE, "Variance", "RGB", "COLOR", "gradus.use_pass_variance"),
+    _same(Pass.ERROR, "Error", "X", "VALUE", "gradus.use_pass_error"),
     _same(Pass.FALLBACK, "Fallback", "X", "VALUE", "option"),
 )
 
@@ -83,7 +84,7 @@ GROUPS: dict[str, tuple[Pass, ...]] = {
 def is_reconstructed(integrator: str, reconstruction: str, denoiser: str) -> bool:
     """Whether Combined is a reconstruction, so that the sampled image becomes a pass of its own (contract 6.1). Identifiers of
     settings.py; AUTO may find that gradients do not pay, or no denoiser: then both are the same."""
-    return (integrator != "PATH" and reconstruction != "NONE") or denoiser != "NONE"
+    return reconstruction == "REGULARIZED" or (integrator != "PATH" and reconstruction != "NONE") or denoiser != "NONE"
 
 
 def list_passes(view_layer: Any, reconstructed: bool, extra: Iterable[Pass] = ()) -> Iterator[PassInfo]:

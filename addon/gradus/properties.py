@@ -43,6 +43,9 @@ class GradusViewLayerSettings(bpy.types.PropertyGroup):
         name="Gradients", description="Sampled differences to the right and the upper neighbour: Gradient X, Gradient Y", default=False
     )
     use_pass_variance: BoolProperty(name="Variance", description="Estimated variance of the mean of Noisy Image", default=False)
+    use_pass_error: BoolProperty(
+        name="Error", description="Estimated squared error of Combined, mean over red, green and blue", default=False
+    )
     use_pass_sample_count: BoolProperty(name="Sample Count", description="Samples that each pixel took", default=False)
     use_pass_denoising: BoolProperty(
         name="Denoising Data", description="Denoising Normal, Albedo and Depth, as the compositor's Denoise node takes them", default=False

@@ -16,12 +16,16 @@ int run(const ReconstructArguments& args) {
   client::Frame frame = client::Frame::load(device, args.frame);
   for (const std::string& path : args.merged) frame.merge(client::Frame::load(device, path));
   const auto [width, height] = frame.size();
-  const uint32_t reconstruction = parse_choice("reconstruction", args.reconstruction), denoiser = parse_choice("denoiser", args.denoiser);
-  std::vector<ImageLayer> layers = {{"", 4, frame.reconstruct(reconstruction, args.alpha, denoiser)}};
   const uint64_t passes = args.passes.empty() ? 1 : parse_passes(args.passes);
+  const auto wanted = [passes](uint32_t pass) { return (passes >> pass & 1) != 0; };
+  const uint32_t reconstruction = parse_choice("reconstruction", args.reconstruction), denoiser = parse_choice("denoiser", args.denoiser);
+  std::vector<float> error;  // of this reconstruction, not of the one that the frame was rendered for
+  std::vector<ImageLayer> layers = {
+      {"", 4, frame.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
   for (uint32_t pass = 1; pass < GRADUS_PASS_COUNT; ++pass) {
-    if ((passes >> pass & 1) == 0) continue;
-    layers.push_back({client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
+    if (!wanted(pass)) continue;
+    layers.push_back(
+        {client::pass_name(pass), int(client::pass_channels(pass)), pass == GRADUS_PASS_ERROR ? error : frame.read_pass(pass)});
   }
   save_image(args.output, int(width), int(height), layers);
   print_warnings(device);

@@ -42,6 +42,7 @@ NAMES = {
     Pass.GRADIENT_X: ("Gradient X", "Gradient X", 3),
     Pass.GRADIENT_Y: ("Gradient Y", "Gradient Y", 3),
     Pass.VARIANCE: ("Variance", "Variance", 3),
+    Pass.ERROR: ("Error", "Error", 1),
 }
 
 
@@ -72,7 +73,9 @@ def test_channels_are_those_of_the_library() -> None:
 
 def layer(**on: bool) -> SimpleNamespace:
     ours = {name.removeprefix("gradus_"): value for name, value in on.items() if name.startswith("gradus_")}
-    defaults = dict.fromkeys(("use_pass_gradients", "use_pass_variance", "use_pass_sample_count", "use_pass_denoising"), False)
+    defaults = dict.fromkeys(
+        ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising"), False
+    )
     return SimpleNamespace(gradus=SimpleNamespace(**(defaults | ours)), **on)
 
 
@@ -96,6 +99,7 @@ def test_only_what_is_enabled() -> None:
         ("PATH", "AUTO", "NONE", False),
         ("PATH", "NONE", "NONE", False),
         ("PATH", "NONE", "OIDN", True),
+        ("PATH", "REGULARIZED", "NONE", True),
         ("GRADIENT", "NONE", "AUTO", True),
     ],
 )

@@ -137,6 +137,23 @@ def test_noisy_image_beside_a_reconstruction(cube: bpy.types.Scene, render: Rend
     assert passes["Noisy Image"].any()
 
 
+def test_error_is_the_square_of_what_halves_differ_by(cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]) -> None:
+    """Of plain paths: a cube before a grey world, which has no noise."""
+    cube.view_layers[0].gradus.use_pass_error = True
+    passes = render(cube, samples=16, reconstruction="NONE")
+    error, image = passes["Error"][..., 0], passes["Combined"][..., :3]
+    assert error.shape == (24, 40)
+    assert np.isfinite(error).all()
+    assert (error[:, 0] == 0.0).all()  # the world has no noise
+    converged = render(cube, samples=1024, reconstruction="NONE")["Combined"][..., :3]
+    actual = ((image - converged) ** 2).mean()
+    assert 0.5 < error.mean() / actual < 2.0
+    cube.view_layers[0].gradus.use_pass_error = False
+    assert "Error" not in render(cube)
+    arguments("--gradus-passes", "error")
+    assert "Error" in render(cube)
+
+
 def frames_of(cube: bpy.types.Scene, folder: Path) -> list[np.ndarray]:
     images.use_exr(cube, folder / "f")
     cube.render.use_file_extension = True

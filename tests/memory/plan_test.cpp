@@ -13,7 +13,7 @@ constexpr uint32_t kWidth = 400, kHeight = 300;  // what rows and threads take i
 struct Case {
   const char* name;
   uint32_t integrator, reconstruction;
-  bool adaptive, transparent, gaps;
+  bool adaptive, transparent, gaps, error = false;
 };
 
 class PlannedBytes : public ::testing::TestWithParam<Case> {};
@@ -26,6 +26,7 @@ GradusSettings settings_of(const Case& c) {
   settings.film_transparent = c.transparent ? 1 : 0;
   settings.noise_threshold = c.adaptive ? 1e-6f : 0.0f;
   settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | feature_passes();
+  if (c.error) settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
   return settings;
 }
 
@@ -56,6 +57,12 @@ INSTANTIATE_TEST_SUITE_P(All, PlannedBytes, ::testing::ValuesIn([] {
                                all.push_back({"Weighted", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, adaptive, transparent, false});
                                all.push_back({"WeightedWithGaps", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, adaptive, transparent, true});
                              }
+                           }
+                           for (const bool transparent : {false, true}) {
+                             all.push_back({"PathError", path, GRADUS_RECONSTRUCTION_NONE, false, transparent, false, true});
+                             all.push_back({"L2Error", gradient, GRADUS_RECONSTRUCTION_L2, false, transparent, false, true});
+                             all.push_back({"L2WithGapsError", gradient, GRADUS_RECONSTRUCTION_L2, false, transparent, true, true});
+                             all.push_back({"WeightedError", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, false, transparent, false, true});
                            }
                            return all;
                          }()),

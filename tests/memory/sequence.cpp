@@ -16,7 +16,7 @@ GradusError finish(GradusRender render, std::vector<float>* image) {
   GradusFrame frame = 0;
   if (const GradusError code = gradus_render_frame(render, &frame); code != GRADUS_OK) return code;
   const GradusError code =
-      gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, image->data(), image->size());
+      gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, image->data(), image->size(), nullptr);
   gradus_frame_release(frame);
   return code != GRADUS_OK ? code : gradus_render_read_pass(render, GRADUS_PASS_COMBINED, image->data(), image->size());
 }

@@ -14,7 +14,7 @@ LIGHT = tuple(
     (kind, tuple(f"use_pass_{kind}_{part}" for part in ("direct", "indirect", "color"))) for kind in ("diffuse", "glossy", "transmission")
 )
 OTHER_LIGHT = ("use_pass_emit", "use_pass_environment", "use_pass_ambient_occlusion")
-OURS = ("use_pass_gradients", "use_pass_variance", "use_pass_sample_count", "use_pass_denoising")
+OURS = ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising")
 
 
 class PassPanel(EnginePanel):

@@ -432,6 +432,7 @@ typedef enum GradusPass {
   GRADUS_PASS_GRADIENT_Y,
   GRADUS_PASS_VARIANCE,
   GRADUS_PASS_FALLBACK,            /* share of samples that met a replaced node; for tests and the bench */
+  GRADUS_PASS_ERROR,               /* estimated squared error of Combined, mean over RGB */
   GRADUS_PASS_COUNT
 } GradusPass;
 
@@ -513,9 +514,10 @@ GRADUS_API GradusError gradus_frame_load(GradusDevice device, const char* path, 
 GRADUS_API GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other);
 /* Size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height);
-/* Reconstructs Combined from the planes; RGBA. alpha: weight of the primal against the gradients; 0: automatic. denoiser: GradusDenoiser. */
+/* Reconstructs Combined from the planes; RGBA. alpha: weight of the primal against the gradients; 0: automatic. denoiser: GradusDenoiser.
+ * error: count / 4 floats for pass Error of what is reconstructed, before a denoiser; may be NULL. */
 GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
-                                                size_t count);
+                                                size_t count, float* error);
 GRADUS_API GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count);
 GRADUS_API GradusError gradus_frame_release(GradusFrame frame);
 

@@ -141,9 +141,13 @@ class Frame : public Handle<GradusFrame, gradus_frame_release> {
     check(gradus_frame_size(id_, &width, &height));
     return {width, height};
   }
-  std::vector<float> reconstruct(uint32_t reconstruction, float alpha, uint32_t denoiser = GRADUS_DENOISER_NONE) const {
+  // error: filled with the pass, if given.
+  std::vector<float> reconstruct(uint32_t reconstruction, float alpha, uint32_t denoiser = GRADUS_DENOISER_NONE,
+                                 std::vector<float>* error = nullptr) const {
     std::vector<float> rgba(pixels() * 4);
-    check(gradus_frame_reconstruct(id_, reconstruction, alpha, denoiser, rgba.data(), rgba.size()));
+    if (error != nullptr) error->resize(pixels());
+    float* wanted = error != nullptr ? error->data() : nullptr;
+    check(gradus_frame_reconstruct(id_, reconstruction, alpha, denoiser, rgba.data(), rgba.size(), wanted));
     return rgba;
   }
   std::vector<float> read_pass(uint32_t pass) const {

@@ -40,25 +40,25 @@ uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
     case GRADUS_RECONSTRUCTION_L2:
     case GRADUS_RECONSTRUCTION_L1:
     case GRADUS_RECONSTRUCTION_WEIGHTED:
-      return reconstruction;
     case GRADUS_RECONSTRUCTION_REGULARIZED:
-      throw unsupported("this reconstruction does not work yet: use weighted, l2, l1, none or auto");
+      return reconstruction;
     default:
       throw invalid_argument("there is no reconstruction " + std::to_string(reconstruction));
   }
 }
 
-// RGBA, by as many threads as a render with the frame's settings has.
-void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba) {
+// RGBA, and the error unless it is nullptr, by as many threads as a render with the frame's settings has.
+void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
+                      float* error) {
   const auto never = [] { return false; };
   const uint32_t threads = frame.settings.threads > 0 ? frame.settings.threads : object->device->threads();
   std::string why_not;
   const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
-  std::vector<float> image;
+  std::vector<float> image, estimate;
   tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
     SolveReport report;
-    image = combine(frame, resolve(reconstruction, frame), alpha, delivered(frame), never, &report);
+    image = combine(frame, resolve(reconstruction, frame), alpha, delivered(frame), never, &report, error != nullptr ? &estimate : nullptr);
   });
   if (library) {
     if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
@@ -66,6 +66,7 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
     if (!failure.empty()) object->device->warnings().add(failure);
   }
   std::copy(image.begin(), image.end(), rgba);
+  std::copy(estimate.begin(), estimate.end(), error);
 }
 
 }  // namespace
@@ -103,15 +104,16 @@ GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* heig
   });
 }
 
-GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
-                                     size_t count) {
+GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba, size_t count,
+                                     float* error) {
   return api::guard([&] {
     const auto object = api::find_handle<api::FrameObject>(frame);
     const std::shared_ptr<const Frame> content = object->get();
     api::check_count(count, api::delivered(*content), 4);
     api::check_array(rgba, count, "rgba");
+    if (error != nullptr) api::check_array(error, count / 4, "error");
     check_alpha(alpha);
-    api::reconstruct_into(object.get(), *content, reconstruction, alpha, denoiser, rgba);
+    api::reconstruct_into(object.get(), *content, reconstruction, alpha, denoiser, rgba, error);
   });
 }
 
@@ -122,9 +124,13 @@ GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixe
     const Region region = api::delivered(*content);
     api::check_count(count, region, pass_info(pass).channels);
     api::check_array(pixels, count, "pixels");
-    if (pass != GRADUS_PASS_COMBINED) return read_frame_pass(*content, pass, region, pixels);
     const GradusSettings& s = content->settings;
-    api::reconstruct_into(object.get(), *content, s.reconstruction, s.reconstruction_alpha, s.denoiser, pixels);
+    if (pass == GRADUS_PASS_COMBINED) {
+      return api::reconstruct_into(object.get(), *content, s.reconstruction, s.reconstruction_alpha, s.denoiser, pixels, nullptr);
+    }
+    if (pass != GRADUS_PASS_ERROR) return read_frame_pass(*content, pass, region, pixels);
+    std::vector<float> rgba(4 * count);
+    api::reconstruct_into(object.get(), *content, s.reconstruction, s.reconstruction_alpha, GRADUS_DENOISER_NONE, rgba.data(), pixels);
   });
 }
 

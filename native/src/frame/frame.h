@@ -130,7 +130,8 @@ struct GradientImages {
 // Merges halves and pairs.
 GradientImages read_images(const Frame& frame, int component);
 // Half the differences of the halves, (A − B)/2, in the place of primal, dx and dy: their squares estimate variances (contract 1.2), and
-// what is linear in those is so in these.
+// what is linear in those is so in these. Of a pixel with samples in one half alone, its mean: the square is no less than the variance on
+// average. A difference that a half lacks is absent.
 GradientImages read_half_differences(const Frame& frame, int component);
 // Fills the deviations.
 void read_deviations(const Frame& frame, int component, GradientImages* images);

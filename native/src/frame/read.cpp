@@ -104,6 +104,15 @@ void read_half_difference(size_t size, const Read& read, float* row) {
   for (size_t i = 0; i < size; ++i) row[i] = 0.5f * (row[i] - other[i]);
 }
 
+// Where a half has no samples, the whole of the other one's mean in place of half of it.
+void fill_unknown(const Frame& frame, int y, float* row) {
+  const auto width = static_cast<size_t>(frame.region.width());
+  for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i, row += frame.channels) {
+    if (frame.count[0][i] > 0 && frame.count[1][i] > 0) continue;
+    for (int c = 0; c < frame.channels; ++c) row[c] *= 2.0f;
+  }
+}
+
 }  // namespace
 
 GradientImages read_images(const Frame& frame, int component) {
@@ -119,6 +128,7 @@ GradientImages read_half_differences(const Frame& frame, int component) {
       [&](int y, float* row) {
         read_half_difference(
             size, [&](HalfRange half, float* to) { read_primal_row(frame, component, half, y, to); }, row);
+        fill_unknown(frame, y, row);
       },
       [&](Offset offset, int y, float* row) {
         read_half_difference(

@@ -16,13 +16,16 @@ constexpr uint32_t kFirstCheck = 16;
 
 std::string choice_of(const char* option, uint32_t value) { return choice_name(*find_option(option), value); }
 
+bool needs_gradients(uint32_t reconstruction) {
+  return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED ||
+         reconstruction == GRADUS_RECONSTRUCTION_L1;
+}
+
 // Light that comes straight from lamps has little noise; plain paths are two to three times as fast.
 bool is_direct_only(const GradusSettings& settings) { return settings.max_bounces == 0; }
 
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
-  // A reconstruction that was asked for needs them.
-  const bool free = settings.reconstruction == GRADUS_RECONSTRUCTION_AUTO || settings.reconstruction == GRADUS_RECONSTRUCTION_NONE;
-  if (free && is_direct_only(settings)) {
+  if (!needs_gradients(settings.reconstruction) && is_direct_only(settings)) {
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     plan->chosen.emplace_back("integrator path", "automatic: direct light alone has little noise");
     return;
@@ -55,8 +58,7 @@ void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   if (asked == GRADUS_RECONSTRUCTION_REGULARIZED) {
     throw unsupported("reconstruction regularized does not work yet: use weighted, l2, l1, none or auto");
   }
-  const bool needs_gradients = asked != GRADUS_RECONSTRUCTION_AUTO && asked != GRADUS_RECONSTRUCTION_NONE;
-  if (needs_gradients && !plan->gradients) {
+  if (needs_gradients(asked) && !plan->gradients) {
     throw invalid_argument("reconstruction " + choice_of("reconstruction", asked) + " needs gradients, but the integrator is path: use " +
                            "integrator gradient or reconstruction none");
   }
@@ -171,6 +173,10 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const H
 
 bool features_wanted(const Plan& plan) { return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED || plan.denoises; }
 
+uint32_t without_gradients(const Plan& plan) {
+  return needs_gradients(plan.reconstruction) ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan.reconstruction;
+}
+
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction) {
   return plan.unbiased && !plan.denoises && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
 }
@@ -185,10 +191,17 @@ uint64_t solve_floats(uint64_t channels) { return solver_floats(channels) + 4 * 
 // Where a pilot leaves differences out, L2 iterates (reconstruct/l2_with_gaps.h).
 bool l2_iterates(const Plan& plan) { return plan.pilot; }
 
+// REGULARIZED: the images, seven channels of features and their variances, and what comes out.
+uint64_t regularized_floats(const Plan& plan) {
+  const uint64_t c = uint64_t(plan.channels), features = 14;
+  return (plan.gradients ? 3 * c : c) + features + c;
+}
+
 // What the reconstruction takes beside the frame, floats per pixel: its result, and until it is there
 uint64_t reconstruction_floats(const Plan& plan) {
   const uint64_t c = uint64_t(plan.channels), rgba = 4;
   if (!plan.solves) return rgba;
+  if (plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) return rgba + regularized_floats(plan);
   if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return rgba + (l2_iterates(plan) ? 4 * c + solve_floats(c) : c + 1);
   // images, deviations, what is settled; then the solve with its blurred deviations, or that of alpha by the same weights.
   const uint64_t colors = std::min<uint64_t>(c, 3), images = 3 * c + 3 + c + 1;
@@ -196,11 +209,22 @@ uint64_t reconstruction_floats(const Plan& plan) {
   return rgba + images + (c > colors ? std::max(of_colors, of_alpha) : of_colors);
 }
 
+// What the pass Error takes at the end (reconstruct/error_estimate.h): the picture, half the difference of the halves, L2 of both, and
+// their squares.
+uint64_t error_floats(const Plan& plan) {
+  const uint64_t c = uint64_t(plan.channels), rgba = 4;
+  if (plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) return reconstruction_floats(plan) + 1;
+  if (!plan.solves) return rgba + c + c * (plan.gradients ? 3 : 1) + 1;
+  const uint64_t l2 = l2_iterates(plan) ? solve_floats(c) : c + 1;
+  return rgba + c + 3 * c + l2 + (plan.reconstruction == GRADUS_RECONSTRUCTION_L2 ? 0 : c);
+}
+
 // What the estimate of noise takes (render/cell_noise.h): images and the halves' differences, what is delivered and its noise, and those
 // of L2 where the weights follow the noise.
 uint64_t noise_floats(const Plan& plan) {
   const uint64_t c = uint64_t(plan.channels), images = 2 * c * (plan.gradients ? 3 : 1), result = 2 * c;
   if (!plan.solves) return images + result;
+  if (plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) return regularized_floats(plan) + 1;
   if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return images + result + (l2_iterates(plan) ? solve_floats(c) : 0);
   return images + 3 + result + solve_floats(std::min<uint64_t>(c, 3)) + 3 + result;
 }
@@ -222,6 +246,7 @@ uint64_t planned_bytes(const Plan& plan) {
   if (wants(plan.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
   bytes += 4 * sizeof(float);  // what is shown meanwhile
   uint64_t floats = reconstruction_floats(plan);
+  if (wants(plan.passes, GRADUS_PASS_ERROR)) floats = std::max(floats, error_floats(plan)) + 1;
   if (plan.adaptive) {
     floats = std::max(floats, noise_floats(plan));
     bytes += 2 * sizeof(uint32_t);  // where the samples of a batch go

@@ -44,7 +44,10 @@ struct HostDenoiser {
 // Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced (contract 5.1).
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser = {"", "denoiser is none"});
 
-// Contract 2.2. reconstruction: what is done in the end, which the pilot may have changed to NONE.
+// The reconstruction where no gradients are sampled, because the integrator has none or the pilot found that they pay nowhere.
+uint32_t without_gradients(const Plan& plan);
+
+// Contract 2.2. reconstruction: what is done in the end, which may be that without gradients.
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction);
 
 // What the reconstruction reads besides the image: features (settings/pass_table.h).

@@ -1,4 +1,4 @@
-// How much noise the cells of a picture have: what stops them and what shares samples between them.
+// The error of a picture's cells: what stops them and what shares samples between them.
 #pragma once
 
 #include <vector>

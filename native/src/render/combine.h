@@ -1,4 +1,4 @@
-// Combined from a frame: the sum of the components, each by its own solver (contract 3.4).
+// Combined from a frame, and its error.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 namespace gradus {
 
 // RGBA of `region`, with the film's exposure. reconstruction: never AUTO. L2 may be negative (contract 5.5), the others not; alpha lies in
-// [0, 1].
+// [0, 1]. error: if given, the region's estimated squared error, mean over RGB, in the units of the result squared.
 std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
-                           SolveReport* report);
+                           SolveReport* report, std::vector<float>* error = nullptr);
 
 }  // namespace gradus

@@ -24,6 +24,15 @@ namespace {
 // How often a long batch says that there is something new to see.
 constexpr int64_t kImageIntervalMs = 300;
 
+// Of what is delivered after a cancel.
+void read_error_of_noisy(const Frame& frame, const Region& region, float* pixels) {
+  SolveReport report;
+  std::vector<float> error;
+  combine(
+      frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, region, [] { return false; }, &report, &error);
+  std::copy(error.begin(), error.end(), pixels);
+}
+
 uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow; }
 
 }  // namespace
@@ -114,7 +123,7 @@ void RenderLoop::prepare() {
   frame->settings.struct_size = sizeof(GradusSettings);
   // AUTO is resolved here, once: whoever reads the frame later must not decide again.
   frame->settings.integrator = integrator;
-  frame->settings.reconstruction = gradients_.none() ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan_.reconstruction;
+  frame->settings.reconstruction = gradients_.none() ? without_gradients(plan_) : plan_.reconstruction;
   frame->settings.denoiser = plan_.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
   frame->scene_key = input_.snapshot->content_key;
   frame->frame_number = settings.frame;
@@ -265,15 +274,18 @@ void RenderLoop::reconstruct_frame() {
   const double began = clock_.seconds();
   const uint64_t cpu = process_cpu_nanoseconds();
   const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
-  std::vector<float> rgba;
+  const GradusSettings& settings = frame_->settings;
+  std::vector<float> rgba, error;
+  std::vector<float>* wanted = wants(plan_.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
   arena_.execute([&] {
-    rgba = combine(*frame_, frame_->settings.reconstruction, input_.settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve);
+    rgba = combine(*frame_, settings.reconstruction, settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve, wanted);
   });
   stats_.seconds.reconstruct = clock_.seconds() - began;
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
+  error_ = std::move(error);
 }
 
 void RenderLoop::denoise_frame() {
@@ -336,7 +348,7 @@ GradusProgress RenderLoop::progress() const {
     p.fraction = tracker_.fraction();
     p.seconds = static_cast<float>(stats_.total_seconds);
   }
-  p.memory_bytes = (frame_ ? frame_->memory_bytes() : 0) + combined_.size() * sizeof(float);
+  p.memory_bytes = (frame_ ? frame_->memory_bytes() : 0) + (combined_.size() + error_.size()) * sizeof(float);
   return p;
 }
 
@@ -357,8 +369,13 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
       std::copy(combined_.begin(), combined_.end(), pixels);
       return;
     }
+    if (pass == GRADUS_PASS_ERROR && !error_.empty()) {
+      std::copy(error_.begin(), error_.end(), pixels);
+      return;
+    }
     frame = frame_;
   }
+  if (frame && pass == GRADUS_PASS_ERROR && wants(plan_.passes, pass)) return read_error_of_noisy(*frame, plan_.delivered, pixels);
   if (frame) return read_frame_pass(*frame, pass, plan_.delivered, pixels);
   std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
 }

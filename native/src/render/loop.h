@@ -105,6 +105,7 @@ class RenderLoop {
   GradusError code_ = GRADUS_OK;
   std::string text_;
   std::vector<float> combined_;  // RGBA of the delivered region: the noisy image, tile by tile, until it is reconstructed
+  std::vector<float> error_;     // of what is reconstructed, if asked for
 };
 
 }  // namespace gradus

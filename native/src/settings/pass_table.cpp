@@ -41,6 +41,7 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_GRADIENT_Y,            "Gradient Y",            3, PassKind::Derived,  kNone},
     {GRADUS_PASS_VARIANCE,              "Variance",              3, PassKind::Derived,  kNone},
     {GRADUS_PASS_FALLBACK,              "Fallback",              1, PassKind::Derived,  kNone},
+    {GRADUS_PASS_ERROR,                 "Error",                 1, PassKind::Solved,   kNone},
 };
 // clang-format on
 
@@ -51,6 +52,8 @@ constexpr bool is_in_order() {
   return std::size(kPasses) == GRADUS_PASS_COUNT;
 }
 static_assert(is_in_order(), "one row per GradusPass, in order");
+
+bool is_stored(PassKind kind) { return kind != PassKind::Image && kind != PassKind::Derived && kind != PassKind::Solved; }
 
 }  // namespace
 
@@ -70,7 +73,7 @@ std::vector<PassInfo> stored_passes(uint64_t passes) {
   std::vector<PassInfo> stored;
   const uint64_t needed = needed_passes(passes);
   for (const PassInfo& info : kPasses) {
-    if (wants(needed, info.pass) && info.kind != PassKind::Image && info.kind != PassKind::Derived) stored.push_back(info);
+    if (wants(needed, info.pass) && is_stored(info.kind)) stored.push_back(info);
   }
   return stored;
 }

@@ -46,7 +46,7 @@ class L1_Determinism : public ::testing::TestWithParam<uint32_t> {
   }
   static void expect_equal(GradusFrame a, GradusFrame b) {
     for (const uint32_t p : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y,
-                             GRADUS_PASS_VARIANCE, GRADUS_PASS_NORMAL, GRADUS_PASS_DIFFUSE_DIRECT}) {
+                             GRADUS_PASS_VARIANCE, GRADUS_PASS_ERROR, GRADUS_PASS_NORMAL, GRADUS_PASS_DIFFUSE_DIRECT}) {
       EXPECT_EQ(pass(a, p), pass(b, p)) << "pass " << p;
     }
   }

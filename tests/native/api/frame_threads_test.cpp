@@ -20,7 +20,7 @@ TEST(FrameThreads, AreThoseOfItsSettings) {
   ASSERT_OK(gradus_frame_load(device, path.c_str(), &frame));
   std::vector<float> rgba(size_t{4} * size * size);
   const uint64_t process = process_cpu_nanoseconds(), thread = thread_cpu_nanoseconds();
-  ASSERT_OK(gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_L1, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size()));
+  ASSERT_OK(gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_L1, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
   const double own = double(thread_cpu_nanoseconds() - thread), all = double(process_cpu_nanoseconds() - process);
   EXPECT_GT(own, 0.8 * all) << "others have worked";
   EXPECT_OK(gradus_frame_release(frame));

@@ -116,7 +116,7 @@ std::vector<std::function<GradusError(uint64_t)>> handle_functions(uint32_t kind
               },
               [](uint64_t h) {
                 float p[4];
-                return gradus_frame_reconstruct(h, 0, 0.2f, GRADUS_DENOISER_NONE, p, 4);
+                return gradus_frame_reconstruct(h, 0, 0.2f, GRADUS_DENOISER_NONE, p, 4, nullptr);
               },
               [](uint64_t h) {
                 float p[4];
@@ -332,7 +332,7 @@ TEST(G6_Order, RendersOutliveTheirSceneAndDevice) {
   EXPECT_OK(gradus_frame_size(frame, &width, &height));
   EXPECT_EQ(width, 24u);
   std::vector<float> rgba(size_t(width) * height * 4);
-  EXPECT_OK(gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_L1, 0.2f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size()));
+  EXPECT_OK(gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_L1, 0.2f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
   EXPECT_OK(gradus_frame_release(frame));
 }
 

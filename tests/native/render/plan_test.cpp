@@ -59,6 +59,19 @@ TEST(Plan, KeepsThePassesThatAreAskedForAndWhatTheReconstructionReads) {
   EXPECT_TRUE(features_wanted(plan));
 }
 
+// Where the pilot found that gradients do not pay, any reconstruction became none.
+TEST(Plan, WithoutGradientsAReconstructionByFeaturesIsKept) {
+  Plan plan;
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_WEIGHTED}) {
+    plan.reconstruction = reconstruction;
+    EXPECT_EQ(without_gradients(plan), uint32_t{GRADUS_RECONSTRUCTION_NONE});
+  }
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+    plan.reconstruction = reconstruction;
+    EXPECT_EQ(without_gradients(plan), reconstruction);
+  }
+}
+
 // The threshold was taken for 0.1, whatever the setting.
 TEST(Plan, HalfVectorShiftsAreJudgedByTheSettingOfTheThreshold) {
   auto snapshot = std::make_shared<Snapshot>(*empty_snapshot());
@@ -82,6 +95,7 @@ TEST(Plan, ObeysOrRefuses) {
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_METROPOLIS, GRADUS_RECONSTRUCTION_AUTO), GRADUS_ERROR_UNSUPPORTED);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED), GRADUS_OK);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED), GRADUS_ERROR_UNSUPPORTED);
   EXPECT_EQ(refusal(7, GRADUS_RECONSTRUCTION_AUTO), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_NONE), GRADUS_OK);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_WEIGHTED), GRADUS_ERROR_INVALID_ARGUMENT);

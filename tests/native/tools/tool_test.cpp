@@ -1,4 +1,7 @@
 // The command-line tool, as the user guide shows it: what it writes, prints, and ends with.
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <sys/wait.h>
 
 #include <filesystem>
@@ -65,6 +68,18 @@ class Tool : public ::testing::Test {
   fs::path folder;
 };
 
+std::vector<float> channel_of(const fs::path& path, const char* name) {
+  Imf::InputFile file(path.c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+  std::vector<float> values(size_t(width) * size_t(height));
+  Imf::FrameBuffer buffer;
+  buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(), window));
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.min.y, window.max.y);
+  return values;
+}
+
 const char* const kStored = "store/good/ViewLayer/f+0000000.base.exr";
 
 TEST_F(Tool, RendersReconstructsAndCompares) {
@@ -80,6 +95,17 @@ TEST_F(Tool, RendersReconstructsAndCompares) {
   EXPECT_EQ(relative_error("weighted.exr", "combined.exr"), 0.0) << "what the render delivered";
   EXPECT_GT(relative_error("none.exr", "l2.exr"), 0.0);
   EXPECT_EQ(run("compare none.exr l2.exr --fail-above 1e-12").code, 1);
+}
+
+// Of the reconstruction that is written, whatever the frame was rendered for.
+TEST_F(Tool, WritesTheErrorOfWhatItReconstructs) {
+  ASSERT_EQ(run("render good.gradus -o f.exr --samples 16 --integrator gradient --reconstruction l2 --passes error --image l2.exr").code,
+            0);
+  ASSERT_EQ(run("reconstruct f.exr -o again.exr --passes error --reconstruction l2").code, 0);
+  ASSERT_EQ(run("reconstruct f.exr -o none.exr --passes error --reconstruction none").code, 0);
+  const auto error = [&](const char* image) { return channel_of(folder / image, "Error.V"); };
+  EXPECT_EQ(error("l2.exr"), error("again.exr"));
+  EXPECT_NE(error("l2.exr"), error("none.exr"));
 }
 
 TEST_F(Tool, ResumeHasTheBitsOfOneRender) {
@@ -144,6 +170,8 @@ TEST_F(Tool, EndsWithACodeAndACause) {
       {"render good.gradus -o store --stats no/such/folder/stats.jsonl", "no/such/folder/stats.jsonl"},
       {"render good.gradus -o good.gradus/store", "good.gradus/store"},
       {"reconstruct good.gradus -o x.exr", "good.gradus"},
+      {"render good.gradus -o f.exr && " GRADUS_BINARY_DIR "/native/gradus reconstruct f.exr -o x.exr --reconstruction regularized",
+       "no denoising features"},
       {"info err", "neither FILE.gradus nor FILE.exr"}};
   for (const auto& [arguments, cause] : failures) {
     const Outcome outcome = run(arguments);

@@ -1,0 +1,104 @@
+#include "reconstruct/error_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct/rows.h"
+
+namespace gradus {
+namespace {
+
+constexpr double kLeastLeft = 0.25;
+// Windows' Gaussian curves, in pixels: those of 0.7 to 6 under which true errors are likeliest over twelve scenes (docs/method.md). Where
+// two estimates are subtracted it takes more pixels to know the difference.
+constexpr double kSigma = 1.5, kSigmaOfDifference = 2.0;
+// Sums of a few of these are finite.
+constexpr double kLargest = 1e37;
+
+// One plane of squares, and its blur.
+using Plane = std::vector<float>;
+
+Plane squares_of(const std::vector<float>& image, int width, int height, int channels) {
+  Plane squares(size_t(width) * size_t(height));
+  for_rows(height, [&](int y) {
+    for (size_t i = size_t(y) * size_t(width); i < size_t(y + 1) * size_t(width); ++i) {
+      const double square = mean_square(&image[i * size_t(channels)]);
+      squares[i] = static_cast<float>(square < kLargest ? square : kLargest);  // NaN, too
+    }
+  });
+  return squares;
+}
+
+class Window {
+ public:
+  explicit Window(double sigma) : radius_(int(std::ceil(3.0 * sigma))) {
+    for (int i = 0; i <= radius_; ++i) weights_.push_back(float(std::exp(-0.5 * i * i / (sigma * sigma))));
+  }
+
+  // Means of what the window covers of the image.
+  void blur(Plane* plane, int width, int height) const {
+    Plane between(plane->size());
+    for_rows(height, [&](int y) { blur_row(plane->data() + size_t(y) * width, width, between.data() + size_t(y) * width); });
+    for_rows(height, [&](int y) { blur_column(between.data(), width, height, y, plane->data() + size_t(y) * width); });
+  }
+
+ private:
+  void blur_row(const float* from, int width, float* to) const {
+    for (int x = 0; x < width; ++x) {
+      float sum = 0.0f, weights = 0.0f;
+      for (int i = std::max(x - radius_, 0); i <= std::min(x + radius_, width - 1); ++i) {
+        const float weight = weights_[size_t(std::abs(i - x))];
+        sum += weight * from[i];
+        weights += weight;
+      }
+      to[x] = sum / weights;
+    }
+  }
+
+  void blur_column(const float* from, int width, int height, int y, float* to) const {
+    std::fill_n(to, width, 0.0f);
+    float weights = 0.0f;
+    for (int j = std::max(y - radius_, 0); j <= std::min(y + radius_, height - 1); ++j) weights += weights_[size_t(std::abs(j - y))];
+    for (int j = std::max(y - radius_, 0); j <= std::min(y + radius_, height - 1); ++j) {
+      const float weight = weights_[size_t(std::abs(j - y))] / weights, *row = from + size_t(j) * width;
+      for (int x = 0; x < width; ++x) to[x] += weight * row[x];
+    }
+  }
+
+  int radius_;
+  std::vector<float> weights_;  // by distance
+};
+
+}  // namespace
+
+ErrorTerms error_terms(const Frame& frame, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
+                       const CancelTest& cancel) {
+  GradientImages differences = read_half_differences(frame, component);
+  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return {std::move(differences.primal), {}};
+  SolveReport report;
+  ErrorTerms terms{reconstruct(differences, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2) return terms;
+  differences = {};
+  terms.apart = reconstruct(frame, component, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report);
+  for (size_t i = 0; i < terms.apart.size(); ++i) terms.apart[i] = image[i] - terms.apart[i];
+  return terms;
+}
+
+double squared_error(double noise, double apart) { return std::max(noise - apart, kLeastLeft * noise); }
+
+std::vector<float> error_of_pixels(const ErrorTerms& terms, int width, int height, int channels) {
+  const Window window(terms.apart.empty() ? kSigma : kSigmaOfDifference);
+  Plane error = squares_of(terms.noise, width, height, channels);
+  window.blur(&error, width, height);
+  if (terms.apart.empty()) return error;
+  Plane apart = squares_of(terms.apart, width, height, channels);
+  window.blur(&apart, width, height);
+  for (size_t i = 0; i < error.size(); ++i) error[i] = static_cast<float>(squared_error(error[i], apart[i]));
+  return error;
+}
+
+double mean_square(const float* pixel) {
+  return (double(pixel[0]) * pixel[0] + double(pixel[1]) * pixel[1] + double(pixel[2]) * pixel[2]) / 3.0;
+}
+
+}  // namespace gradus

@@ -1,0 +1,61 @@
+#include "reconstruct/reconstruct_frame.h"
+
+#include "base/error.h"
+#include "frame/features.h"
+#include "reconstruct/error_estimate.h"
+#include "reconstruct/regularized.h"
+
+namespace gradus {
+namespace {
+
+void check_readable(const Frame& frame, uint32_t reconstruction) {
+  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return;
+  if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    if (!has_features(frame)) throw invalid_operation("the frame holds no denoising features to reconstruct with: render it with them");
+    return;
+  }
+  if (!frame.gradients) throw invalid_operation("the frame holds no gradients to reconstruct from");
+}
+
+}  // namespace
+
+void add_image(std::vector<float> term, std::vector<float>* sum) {
+  if (sum->empty()) return sum->swap(term);
+  for (size_t i = 0; i < term.size(); ++i) (*sum)[i] += term[i];
+}
+
+Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, bool wants_error,
+                                    const CancelTest& cancel, SolveReport* report) {
+  switch (reconstruction) {
+    case GRADUS_RECONSTRUCTION_NONE:
+      return {read_images(frame, component).primal, {}};
+    case GRADUS_RECONSTRUCTION_REGULARIZED: {
+      Regularized result = regularize(frame, component, cancel, report);
+      if (!wants_error) result.error.clear();
+      return {std::move(result.image), std::move(result.error)};
+    }
+    default:
+      return {reconstruct(frame, component, reconstruction, alpha, cancel, report), {}};
+  }
+}
+
+Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, bool wants_error, const CancelTest& cancel,
+                                SolveReport* report) {
+  check_readable(frame, reconstruction);
+  Reconstructed sum;
+  ErrorTerms terms;
+  for (int component = 0; component < int(frame.components.size()); ++component) {
+    Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, wants_error, cancel, report);
+    if (wants_error && part.error.empty()) {
+      ErrorTerms of_part = error_terms(frame, component, reconstruction, alpha, part.image, cancel);
+      add_image(std::move(of_part.noise), &terms.noise);
+      add_image(std::move(of_part.apart), &terms.apart);
+    }
+    add_image(std::move(part.image), &sum.image);
+    add_image(std::move(part.error), &sum.error);  // as if independent
+  }
+  if (!terms.noise.empty()) sum.error = error_of_pixels(terms, frame.region.width(), frame.region.height(), frame.channels);
+  return sum;
+}
+
+}  // namespace gradus

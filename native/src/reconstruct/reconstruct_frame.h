@@ -1,0 +1,27 @@
+// What a frame becomes: its picture, and what is known of the picture's error.
+#pragma once
+
+#include <vector>
+
+#include "reconstruct/solver.h"
+
+namespace gradus {
+
+struct Reconstructed {
+  std::vector<float> image;  // width·height·channels
+  std::vector<float> error;  // width·height: estimated squared error of the image, mean over RGB; empty unless asked for
+};
+
+// All components, each by its own solver, added up (contract 3.4). reconstruction: never AUTO. Throws invalid_operation for a frame without
+// what it reads.
+Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, bool wants_error, const CancelTest& cancel,
+                                SolveReport* report);
+
+// One component; with its error only where the reconstruction estimates it itself (REGULARIZED), else see error_estimate.h.
+Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, bool wants_error,
+                                    const CancelTest& cancel, SolveReport* report);
+
+// *sum += term, image by image; an empty sum is 0.
+void add_image(std::vector<float> term, std::vector<float>* sum);
+
+}  // namespace gradus

@@ -1,0 +1,88 @@
+// The pass Error through the C API: of a render, of its frame, and of the stored frame.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "api/test_scene.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr uint32_t kWidth = 40, kHeight = 30;
+
+class ErrorOfFrames : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    device = make_device();
+    scene = make_scene(device);
+  }
+  void TearDown() override {
+    EXPECT_OK(gradus_scene_release(scene));
+    EXPECT_OK(gradus_device_release(device));
+  }
+  static GradusSettings settings(uint32_t reconstruction) {
+    GradusSettings s = small_render(kWidth, kHeight, 8);
+    s.integrator = GRADUS_INTEGRATOR_GRADIENT;
+    s.reconstruction = reconstruction;
+    s.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+    return s;
+  }
+  // The frame of a render, and the pass that the render itself gives.
+  GradusFrame render(const GradusSettings& s, std::vector<float>* error) const {
+    GradusRender r = 0;
+    GradusFrame frame = 0;
+    error->resize(size_t{kWidth} * kHeight);
+    EXPECT_OK(gradus_render_start(scene, &s, &r));
+    EXPECT_OK(gradus_render_wait(r, -1.0));
+    EXPECT_OK(gradus_render_read_pass(r, GRADUS_PASS_ERROR, error->data(), error->size()));
+    EXPECT_OK(gradus_render_frame(r, &frame));
+    EXPECT_OK(gradus_render_release(r));
+    return frame;
+  }
+  static std::vector<float> error_of(GradusFrame frame) {
+    std::vector<float> error(size_t{kWidth} * kHeight);
+    EXPECT_OK(gradus_frame_read_pass(frame, GRADUS_PASS_ERROR, error.data(), error.size()));
+    return error;
+  }
+  GradusDevice device = 0;
+  GradusScene scene = 0;
+};
+
+TEST_F(ErrorOfFrames, IsThatOfTheRenderAndSurvivesTheStore) {
+  const std::string path = testing::TempDir() + "/error_of_frames.exr";
+  for (const GradusReconstruction how :
+       {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED, GRADUS_RECONSTRUCTION_L1}) {
+    std::vector<float> of_render;
+    const GradusFrame frame = render(settings(how), &of_render);
+    EXPECT_GT(*std::max_element(of_render.begin(), of_render.end()), 0.0f);
+    EXPECT_EQ(error_of(frame), of_render) << how;
+    EXPECT_OK(gradus_frame_save(frame, path.c_str()));
+    GradusFrame loaded = 0;
+    ASSERT_OK(gradus_frame_load(device, path.c_str(), &loaded));
+    EXPECT_EQ(error_of(loaded), of_render) << how;
+    for (const GradusFrame f : {frame, loaded}) EXPECT_OK(gradus_frame_release(f));
+  }
+  std::filesystem::remove(path);
+}
+
+// A frame that is reconstructed in another way has another error; and it need not be asked for when the frame was rendered.
+TEST_F(ErrorOfFrames, ComesWithAnotherReconstruction) {
+  std::vector<float> of_l2, of_none, rgba(size_t{4} * kWidth * kHeight), error(of_l2.size());
+  const GradusFrame l2 = render(settings(GRADUS_RECONSTRUCTION_L2), &of_l2), none = render(settings(GRADUS_RECONSTRUCTION_NONE), &of_none);
+  error.resize(of_l2.size());
+  EXPECT_OK(gradus_frame_reconstruct(none, GRADUS_RECONSTRUCTION_L2, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
+  EXPECT_EQ(error, of_l2);
+  EXPECT_OK(gradus_frame_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
+  EXPECT_EQ(error, of_none);
+  EXPECT_OK(gradus_frame_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+  auto* misaligned = reinterpret_cast<float*>(reinterpret_cast<char*>(error.data()) + 1);
+  EXPECT_EQ(gradus_frame_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), misaligned),
+            GRADUS_ERROR_INVALID_ARGUMENT);
+  gradus_error(nullptr);
+  for (const GradusFrame f : {l2, none}) EXPECT_OK(gradus_frame_release(f));
+}
+
+}  // namespace
+}  // namespace gradus

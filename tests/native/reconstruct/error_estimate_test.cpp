@@ -1,0 +1,150 @@
+// The estimate of a reconstruction's squared error by pixels.
+#include "reconstruct/error_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "base/error.h"
+#include "frame/pass_planes.h"
+#include "reconstruct/reconstruct_frame.h"
+#include "settings/pass_table.h"
+
+namespace gradus {
+namespace {
+
+const CancelTest kNever = [] { return false; };
+
+// Values that do not differ between the halves, which are then moved apart by what a test likes.
+Frame make_frame(int width, int height, uint32_t samples_a, uint32_t samples_b, bool gradients) {
+  Frame frame(uint32_t(width), uint32_t(height), {0, 0, width, height}, 3, 1, gradients);
+  const size_t pixels = size_t(width) * size_t(height);
+  const uint32_t samples[kHalves] = {samples_a, samples_b};
+  for (int half = 0; half < kHalves; ++half) {
+    frame.count[half].assign(pixels, samples[half]);
+    frame.components[0].primal[half].assign(pixels, Radiance(0.5f, 1.0f, 2.0f, 0.0f) * float(samples[half]));
+    for (auto& count : frame.pair_count[half]) count.assign(gradients ? pixels : 0, float(samples[half]));
+  }
+  return frame;
+}
+
+void add_noise(float sigma, unsigned seed, Frame* frame) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(0.0f, sigma);
+  for (int half = 0; half < kHalves; ++half) {
+    for (Radiance& sum : frame->components[0].primal[half]) {
+      const float x = normal(random), y = normal(random), z = normal(random);
+      sum += Radiance(x, y, z, 0.0f);
+    }
+  }
+}
+
+std::vector<float> error_of(const Frame& frame, uint32_t reconstruction) {
+  SolveReport report;
+  return reconstruct_frame(frame, reconstruction, 0.0f, true, kNever, &report).error;
+}
+
+double mean(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size()); }
+
+constexpr uint32_t kAll[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED,
+                             GRADUS_RECONSTRUCTION_L1};
+
+// One sample in each half, of variance σ²: the mean's is σ²/2.
+TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
+  Frame frame = make_frame(64, 48, 1, 1, false);
+  add_noise(0.3f, 5, &frame);
+  const std::vector<float> error = error_of(frame, GRADUS_RECONSTRUCTION_NONE);
+  ASSERT_EQ(error.size(), 64u * 48u);
+  EXPECT_NEAR(mean(error), 0.5 * 0.09, 0.05 * 0.045);
+  for (const float e : error) {
+    EXPECT_GT(e, 0.3f * 0.045f) << "a pixel's own difference has one degree of freedom";
+    EXPECT_LT(e, 2.5f * 0.045f);
+  }
+}
+
+TEST(ErrorEstimate, IsThereOnlyIfAskedFor) {
+  const Frame frame = make_frame(8, 8, 2, 2, true);
+  SolveReport report;
+  for (const uint32_t reconstruction : kAll) {
+    EXPECT_TRUE(reconstruct_frame(frame, reconstruction, 0.0f, false, kNever, &report).error.empty());
+  }
+}
+
+// Windows that ran over the border took the darkness beyond for pixels without error.
+TEST(ErrorEstimate, IsAsLargeAtTheBorder) {
+  ErrorTerms terms;
+  terms.noise.assign(size_t{3} * 20 * 15, 2.0f);
+  for (const float e : error_of_pixels(terms, 20, 15, 3)) EXPECT_FLOAT_EQ(e, 4.0f);
+}
+
+TEST(ErrorEstimate, FallsWithTheDistanceFromANoisyPixel) {
+  ErrorTerms terms;
+  terms.noise.assign(size_t{3} * 41 * 41, 0.0f);
+  for (int c = 0; c < 3; ++c) terms.noise[3 * (20 * 41 + 20) + size_t(c)] = 10.0f;
+  const std::vector<float> error = error_of_pixels(terms, 41, 41, 3);
+  EXPECT_NEAR(std::accumulate(error.begin(), error.end(), 0.0), 100.0, 0.1);
+  for (int x = 20; x < 24; ++x) {
+    EXPECT_LT(error[20 * 41 + size_t(x) + 1], error[20 * 41 + size_t(x)]);
+    EXPECT_FLOAT_EQ(error[20 * 41 + size_t(x)], error[size_t(x) * 41 + 20]) << "in both directions";
+  }
+  EXPECT_EQ(error[0], 0.0f);
+}
+
+// Of what is known of L2's error the distance from L2's image is taken away, but no more than three quarters.
+TEST(ErrorEstimate, OfABetterImageIsLessThanThatOfL2ByTheirDistance) {
+  EXPECT_EQ(squared_error(4.0, 1.0), 3.0);
+  EXPECT_EQ(squared_error(4.0, 5.0), 1.0);
+  ErrorTerms terms;
+  terms.noise.assign(size_t{3} * 30 * 30, 2.0f);
+  terms.apart.assign(terms.noise.size(), 1.0f);
+  for (const float e : error_of_pixels(terms, 30, 30, 3)) EXPECT_FLOAT_EQ(e, 3.0f);
+}
+
+// Half of a lone sample counted as the difference of two: a picture of one sample looked twice as good as its square.
+TEST(ErrorEstimate, WhereAHalfIsEmptyIsTheSquareOfThePicture) {
+  for (const bool first : {true, false}) {
+    const Frame frame = make_frame(24, 17, first ? 1 : 0, first ? 0 : 1, true);
+    for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
+      for (const float e : error_of(frame, reconstruction)) EXPECT_NEAR(e, (0.25f + 1.0f + 4.0f) / 3.0f, 1e-3f) << reconstruction;
+    }
+  }
+}
+
+TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
+  const int sizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {2, 3}, {37, 23}};
+  for (const auto& [width, height] : sizes) {
+    for (const auto& [a, b] : {std::pair(0u, 0u), std::pair(1u, 0u), std::pair(3u, 2u)}) {
+      for (const float scale : {1.0f, 1e30f}) {
+        Frame frame = make_frame(width, height, a, b, true);
+        if (a + b > 0) add_noise(scale, 3, &frame);
+        for (const uint32_t reconstruction : kAll) {
+          const std::vector<float> error = error_of(frame, reconstruction);
+          ASSERT_EQ(error.size(), size_t(width * height));
+          for (const float e : error) ASSERT_TRUE(std::isfinite(e) && e >= 0.0f) << width << "x" << height << ", " << reconstruction;
+        }
+      }
+    }
+  }
+}
+
+// A frame of what may have been rendered with other settings.
+TEST(ErrorEstimate, AndReconstructionRefuseFramesWithoutWhatTheyRead) {
+  Frame frame = make_frame(8, 8, 2, 2, false);
+  const auto message = [&](uint32_t reconstruction) -> std::string {
+    try {
+      error_of(frame, reconstruction);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message(GRADUS_RECONSTRUCTION_L2).find("no gradients"), std::string::npos);
+  EXPECT_NE(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
+  frame.passes = make_pass_planes(feature_passes(), 64);
+  EXPECT_EQ(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gradus

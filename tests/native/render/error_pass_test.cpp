@@ -1,0 +1,101 @@
+// The pass Error of renders, and of their frames.
+#include <gtest/gtest.h>
+
+#include "plan/plan.h"
+#include "render/combine.h"
+#include "render/fake_integrator.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr uint32_t kSide = 48;
+const Region kAll{0, 0, kSide, kSide};
+
+GradusSettings error_settings(uint32_t integrator, uint32_t reconstruction, uint32_t samples = 16) {
+  GradusSettings settings = small_settings(kSide, kSide, samples);
+  settings.integrator = integrator;
+  settings.reconstruction = reconstruction;
+  settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+  return settings;
+}
+
+// Mean squared error of a pass against the fake scene's truth, mean over RGB.
+double true_error(const std::vector<float>& rgba) {
+  double sum = 0.0;
+  for (int i = 0; i < int(kSide * kSide); ++i) {
+    const float truth = fake_truth(i % int(kSide), i / int(kSide)), factors[3] = {1.0f, 0.5f, 2.0f};
+    for (int c = 0; c < 3; ++c) {
+      const double e = rgba[4 * size_t(i) + size_t(c)] - factors[c] * truth;
+      sum += e * e / 3.0;
+    }
+  }
+  return sum / (kSide * kSide);
+}
+
+double mean(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float v : values) sum += v;
+  return sum / double(values.size());
+}
+
+TEST(ErrorPass, IsThatOfCombined) {
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
+    const auto render = start_and_wait(error_settings(GRADUS_INTEGRATOR_GRADIENT, reconstruction, 64));
+    const double truth = true_error(read(*render, GRADUS_PASS_COMBINED, kAll));
+    const double ratio = mean(read(*render, GRADUS_PASS_ERROR, kAll)) / truth;
+    EXPECT_GT(ratio, 0.75) << reconstruction;
+    EXPECT_LT(ratio, 1.25) << reconstruction;
+  }
+}
+
+TEST(ErrorPass, IsRefusedWhereItWasNotAskedFor) {
+  EXPECT_THROW(read(*start_and_wait(small_settings(kSide, kSide, 4)), GRADUS_PASS_ERROR, kAll), Error);
+}
+
+// By the exposure's square, as the error of what is delivered.
+TEST(ErrorPass, GoesWithTheExposure) {
+  GradusSettings settings = error_settings(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
+  const std::vector<float> plain = read(*start_and_wait(settings), GRADUS_PASS_ERROR, kAll);
+  settings.film_exposure = 3.0f;
+  const std::vector<float> exposed = read(*start_and_wait(settings), GRADUS_PASS_ERROR, kAll);
+  for (size_t i = 0; i < plain.size(); ++i) EXPECT_FLOAT_EQ(exposed[i], 9.0f * plain[i]);
+}
+
+TEST(ErrorPass, OfAPartHasItsPixels) {
+  GradusSettings settings = error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE);
+  const auto frame = rendered(settings);
+  SolveReport report;
+  std::vector<float> whole, part;
+  const auto never = [] { return false; };
+  combine(*frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, kAll, never, &report, &whole);
+  combine(*frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, {7, 11, 30, 29}, never, &report, &part);
+  ASSERT_EQ(part.size(), 23u * 18u);
+  for (size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i], whole[(11 + i / 23) * kSide + 7 + i % 23]);
+}
+
+// What is delivered then is the noisy image.
+TEST(ErrorPass, AfterACancelIsThatOfTheNoisyImage) {
+  auto render = start(error_settings(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED, 1000000));
+  while (render->progress().samples_done < 8) std::this_thread::yield();
+  EXPECT_THROW(read(*render, GRADUS_PASS_ERROR, kAll), Error) << "while sampling";
+  render->cancel();
+  ASSERT_TRUE(render->wait(10.0));
+  const std::vector<float> error = read(*render, GRADUS_PASS_ERROR, kAll);
+  EXPECT_NEAR(mean(error) / true_error(read(*render, GRADUS_PASS_COMBINED, kAll)), 1.0, 0.2);
+}
+
+TEST(ErrorPass, IsSaidToBeSkippedWhereItIs) {
+  const auto skips_error = [](const GradusSettings& settings) {
+    for (const auto& [what, why] : make_plan(settings, *empty_snapshot()).skipped) {
+      if (what.find("passes ") == 0 && (what + ",").find(" Error,") != std::string::npos) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(skips_error(small_settings(kSide, kSide, 4)));
+  EXPECT_FALSE(skips_error(error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE)));
+}
+
+}  // namespace
+}  // namespace gradus

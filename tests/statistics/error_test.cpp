@@ -1,0 +1,121 @@
+// The pass Error against the squared error that pictures have.
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "reconstruct/reconstruct_frame.h"
+#include "settings/options.h"
+#include "support/path_scene.h"
+#include "support/statistics.h"
+
+namespace gradus {
+namespace {
+
+using test::Scenario;
+
+constexpr uint32_t kSize = 48, kPixels = kSize * kSize;
+
+Frame render(const IntegratorContext& scene, bool gradients, uint32_t seed, uint32_t samples) {
+  IntegratorContext context = scene;
+  context.settings.seed = seed;
+  Frame frame = test::make_test_frame(context.settings, gradients);
+  frame.settings = context.settings;
+  test::sample_frame(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &frame);
+  return frame;
+}
+
+// Mean of many samples and its variance, the latter mean over RGB: what it adds to squared distances from it.
+struct Reference {
+  test::Moments images;
+  double squared_distance(size_t pixel, const std::vector<float>& image) const {
+    double sum = 0.0;
+    for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
+      const double e = image[i] - images.mean(i);
+      sum += e * e - images.variance_of_mean(i);
+    }
+    return sum / 3.0;
+  }
+};
+
+Reference make_reference(const IntegratorContext& scene) {
+  std::vector<std::vector<float>> images(32);
+  tbb::parallel_for(size_t{0}, images.size(),
+                    [&](size_t k) { images[k] = read_images(render(scene, false, uint32_t(1000 + k), 64), 0).primal; });
+  Reference reference;
+  for (const auto& image : images) reference.images.add(image);
+  return reference;
+}
+
+// Of the same pixels.
+struct Sums {
+  double estimated = 0.0, actual = 0.0;
+  void add(double e, double a) {
+    estimated += e;
+    actual += a;
+  }
+  double ratio() const { return estimated / actual; }
+};
+
+// Over all pixels, the half of them that is said to be better, and the tenth that is said to be worst.
+struct Parts {
+  Sums all, better_half, worst_tenth;
+};
+
+Parts compare(const std::vector<Reconstructed>& results, const Reference& reference) {
+  Parts parts;
+  std::vector<size_t> order(kPixels);
+  std::iota(order.begin(), order.end(), size_t{0});
+  for (const Reconstructed& result : results) {
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return result.error[a] < result.error[b]; });
+    for (size_t rank = 0; rank < kPixels; ++rank) {
+      const double estimated = result.error[order[rank]], actual = reference.squared_distance(order[rank], result.image);
+      parts.all.add(estimated, actual);
+      if (rank < kPixels / 2) parts.better_half.add(estimated, actual);
+      if (rank >= kPixels * 9 / 10) parts.worst_tenth.add(estimated, actual);
+    }
+  }
+  return parts;
+}
+
+class A8_Error : public testing::TestWithParam<Scenario> {};
+
+// An estimate that is the same everywhere is right for the picture, but for no part of it. In the better half windows reach over the edges
+// of what has no noise at all.
+TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
+  test::PathScene scene;
+  test::build(GetParam(), &scene);
+  GradusSettings settings = test::test_settings(kSize, kSize);
+  settings.independent_sampler = 0;
+  settings.max_bounces = 4;
+  test::sample_at_pixel_centres(&settings);
+  const IntegratorContext context = scene.context(settings);
+  const Reference reference = make_reference(context);
+  const size_t seeds = test::full_run() ? 64 : 16;
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED}) {
+    std::vector<Reconstructed> results(seeds);
+    tbb::parallel_for(size_t{0}, seeds, [&](size_t k) {
+      SolveReport report;
+      const Frame frame = render(context, true, uint32_t(k), 16);
+      results[k] = reconstruct_frame(
+          frame, reconstruction, 0.0f, true, [] { return false; }, &report);
+    });
+    const auto [all, better_half, worst_tenth] = compare(results, reference);
+    const std::string name = choice_name(*find_option("reconstruction"), reconstruction);
+    std::printf("  %s %.3f, better half %.3f, worst tenth %.3f\n", name.c_str(), all.ratio(), better_half.ratio(), worst_tenth.ratio());
+    EXPECT_GT(all.ratio(), 0.7) << name;
+    EXPECT_LT(all.ratio(), 1.3) << name;
+    EXPECT_GT(better_half.ratio(), 0.5) << name;
+    EXPECT_LT(better_half.estimated, 2.0 * better_half.actual + 0.1 * all.actual) << name;
+    EXPECT_GT(worst_tenth.ratio(), 0.5) << name;
+    EXPECT_LT(worst_tenth.ratio(), 2.0) << name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, A8_Error, testing::Values(Scenario::DiffuseArea, Scenario::RoughMetal, Scenario::World),
+                         [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
+
+}  // namespace
+}  // namespace gradus
