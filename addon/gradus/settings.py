@@ -41,16 +41,17 @@ class Setting:
 
 # Identifiers that exist in the library but are refused or unfinished there do not appear: a menu promises what it shows.
 INTEGRATORS = (
-    ("AUTO", "Automatic", "Gradient-domain path tracing with the reconstruction that suits it", 0),
+    ("AUTO", "Automatic", "Path tracing, with differences between neighbouring pixels where they pay", 0),
     ("PATH", "Path", "Plain path tracing: the reference", 1),
     ("GRADIENT", "Gradient", "Path tracing that also samples the differences between neighbouring pixels", 2),
 )
 RECONSTRUCTIONS = (
-    ("AUTO", "Automatic", "Weighted for gradients, none for plain path tracing", 0),
+    ("AUTO", "Automatic", "Regularized; none for plain path tracing, if that is asked for", 0),
     ("NONE", "None", "Deliver the sampled image", 1),
     ("L2", "L2", "Least squares: unbiased; outliers may leave small dipoles, and single values may be negative", 2),
-    ("WEIGHTED", "Weighted", "Least squares by the measured noise of every pixel and difference: least error; consistent", 3),
+    ("WEIGHTED", "Weighted", "Least squares by the measured noise of every pixel and difference; consistent", 3),
     ("L1", "L1", "Least absolute deviations: robust to outliers, without dipoles; biased, it may darken", 4),
+    ("REGULARIZED", "Regularized", "By the features of the surfaces, the samples and their differences: least error; consistent", 5),
 )
 DENOISERS = (
     ("NONE", "None", "Deliver the reconstruction as it is", 0),

@@ -15,8 +15,8 @@ class Mode:
     settings: dict[str, Any] = field(default_factory=dict)
 
 
-def _gradus(integrator: str, reconstruction: str) -> dict[str, Any]:
-    return {"integrator": integrator, "reconstruction": reconstruction}
+def _gradus(integrator: str, reconstruction: str, denoiser: str = "NONE") -> dict[str, Any]:
+    return {"integrator": integrator, "reconstruction": reconstruction, "denoiser": denoiser}
 
 
 # Plain path tracing by both: light tree on; no guiding, clamps, filter glossy, adaptive sampling or denoiser.
@@ -35,6 +35,12 @@ MODES = {
     "gradient-l2": Mode("Gradus G-PT + L2", GRADUS, _gradus("GRADIENT", "L2")),
     "gradient-weighted": Mode("Gradus G-PT + WEIGHTED", GRADUS, _gradus("GRADIENT", "WEIGHTED")),
     "gradient-l1": Mode("Gradus G-PT + L1", GRADUS, _gradus("GRADIENT", "L1")),
+    "path-regularized": Mode("Gradus PT + REGULARIZED", GRADUS, _gradus("PATH", "REGULARIZED")),
+    "gradient-regularized": Mode("Gradus G-PT + REGULARIZED", GRADUS, _gradus("GRADIENT", "REGULARIZED")),
+    "path-denoised": Mode("Gradus PT + denoiser", GRADUS, _gradus("PATH", "NONE", "OIDN")),
+    "regularized-denoised": Mode("Gradus PT + REGULARIZED + denoiser", GRADUS, _gradus("PATH", "REGULARIZED", "OIDN")),
+    "gradient-denoised": Mode("Gradus G-PT + WEIGHTED + denoiser", GRADUS, _gradus("GRADIENT", "WEIGHTED", "OIDN")),
+    "auto-denoised": Mode("Gradus AUTO + AUTO denoiser", GRADUS, _gradus("AUTO", "AUTO", "AUTO")),
     "auto": Mode("Gradus AUTO", GRADUS, _gradus("AUTO", "AUTO")),
     "auto-l2": Mode("Gradus AUTO + L2", GRADUS, _gradus("AUTO", "L2")),
     "cycles": Mode("Cycles", CYCLES, _CYCLES_PLAIN),

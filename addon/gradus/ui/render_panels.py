@@ -38,11 +38,13 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
         column.prop(settings, "reconstruction")
         if settings.reconstruction != "NONE":
             column.prop(settings, "reconstruction_alpha")
-        if settings.integrator == "PATH" and settings.reconstruction not in ("NONE", "AUTO"):
+        if settings.integrator == "PATH" and settings.reconstruction in ("L2", "WEIGHTED", "L1"):
             layout.label(text="Plain paths have no gradients to reconstruct from", icon="ERROR")
         elif settings.denoiser != "NONE":
             layout.label(text="Biased: it is denoised", icon="INFO")
-        elif settings.reconstruction in ("L1", "WEIGHTED") or (settings.reconstruction == "AUTO" and settings.integrator != "PATH"):
+        elif settings.reconstruction in ("L1", "WEIGHTED", "REGULARIZED") or (
+            settings.reconstruction == "AUTO" and settings.integrator != "PATH"
+        ):
             layout.label(text="Consistent", icon="INFO")
         elif settings.noise_threshold > 0.0:
             layout.label(text="Unbiased at threshold 0", icon="INFO")

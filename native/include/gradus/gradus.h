@@ -346,7 +346,7 @@ typedef enum GradusReconstruction {
   GRADUS_RECONSTRUCTION_L2 = 2,
   GRADUS_RECONSTRUCTION_WEIGHTED = 3,
   GRADUS_RECONSTRUCTION_L1 = 4,
-  GRADUS_RECONSTRUCTION_REGULARIZED = 5 /* refused until it works */
+  GRADUS_RECONSTRUCTION_REGULARIZED = 5 /* by features of the surfaces, samples and, where there are any, gradients */
 } GradusReconstruction;
 
 /* The host's: Open Image Denoise, looked for when a render starts (see GradusDeviceSettings.denoiser_path), never brought along. */

@@ -35,6 +35,7 @@ void check_count(size_t count, const Region& region, uint32_t channels) {
 uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
   switch (reconstruction) {
     case GRADUS_RECONSTRUCTION_AUTO:
+      if (has_features(frame)) return GRADUS_RECONSTRUCTION_REGULARIZED;
       return frame.gradients ? GRADUS_RECONSTRUCTION_WEIGHTED : GRADUS_RECONSTRUCTION_NONE;
     case GRADUS_RECONSTRUCTION_NONE:
     case GRADUS_RECONSTRUCTION_L2:
@@ -62,7 +63,7 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
   });
   if (library) {
     if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
-    const std::string failure = denoise_combined(*library, frame, delivered(frame), threads, never, &image);
+    const std::string failure = denoise_combined(*library, frame, resolve(reconstruction, frame), delivered(frame), threads, never, &image);
     if (!failure.empty()) object->device->warnings().add(failure);
   }
   std::copy(image.begin(), image.end(), rgba);

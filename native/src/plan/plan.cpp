@@ -24,10 +24,15 @@ bool needs_gradients(uint32_t reconstruction) {
 // Light that comes straight from lamps has little noise; plain paths are two to three times as fast.
 bool is_direct_only(const GradusSettings& settings) { return settings.max_bounces == 0; }
 
-void choose_automatically(const GradusSettings& settings, Plan* plan) {
+void choose_automatically(const GradusSettings& settings, bool denoises, Plan* plan) {
   if (!needs_gradients(settings.reconstruction) && is_direct_only(settings)) {
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     plan->chosen.emplace_back("integrator path", "automatic: direct light alone has little noise");
+    return;
+  }
+  if (denoises && !needs_gradients(settings.reconstruction)) {
+    plan->integrator = GRADUS_INTEGRATOR_PATH;
+    plan->chosen.emplace_back("integrator path", "automatic: the denoiser makes more of more paths than of differences");
     return;
   }
   plan->integrator = GRADUS_INTEGRATOR_GRADIENT;
@@ -35,14 +40,14 @@ void choose_automatically(const GradusSettings& settings, Plan* plan) {
   plan->chosen.emplace_back("integrator gradient", plan->pilot ? "automatic: wherever it pays" : "automatic: its passes are asked for");
 }
 
-void choose_integrator(const GradusSettings& settings, Plan* plan) {
+void choose_integrator(const GradusSettings& settings, bool denoises, Plan* plan) {
   switch (settings.integrator) {
     case GRADUS_INTEGRATOR_BIDIRECTIONAL:
       throw unsupported("integrator bidirectional does not work yet: use gradient, path or auto");
     case GRADUS_INTEGRATOR_METROPOLIS:
       throw unsupported("integrator metropolis does not work yet: use gradient, path or auto");
     case GRADUS_INTEGRATOR_AUTO:
-      choose_automatically(settings, plan);
+      choose_automatically(settings, denoises, plan);
       break;
     default:
       plan->integrator = settings.integrator;
@@ -55,25 +60,24 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
 
 void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   const uint32_t asked = settings.reconstruction;
-  if (asked == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    throw unsupported("reconstruction regularized does not work yet: use weighted, l2, l1, none or auto");
-  }
   if (needs_gradients(asked) && !plan->gradients) {
     throw invalid_argument("reconstruction " + choice_of("reconstruction", asked) + " needs gradients, but the integrator is path: use " +
                            "integrator gradient or reconstruction none");
   }
   plan->reconstruction = asked;
-  if (asked == GRADUS_RECONSTRUCTION_AUTO) {
-    plan->reconstruction = plan->gradients ? GRADUS_RECONSTRUCTION_WEIGHTED : GRADUS_RECONSTRUCTION_NONE;
+  if (asked == GRADUS_RECONSTRUCTION_AUTO) {  // whoever asks for plain paths wants to see them
+    const bool plain = settings.integrator == GRADUS_INTEGRATOR_PATH;
+    plan->reconstruction = plain ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_REGULARIZED;
   }
   plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
-  const char* why =
-      asked != GRADUS_RECONSTRUCTION_AUTO ? "set by the user" : "automatic: every difference and pixel counts by its measured noise";
+  const char* why = asked != GRADUS_RECONSTRUCTION_AUTO ? "set by the user"
+                                                        : "automatic: features of the surfaces and all samples, by their measured noise";
   if (plan->solves) {
     plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
   } else {
-    plan->skipped.emplace_back("reconstruction",
-                               plan->gradients ? "reconstruction is none: the noisy image is delivered" : "there are no gradients");
+    plan->skipped.emplace_back("reconstruction", asked == GRADUS_RECONSTRUCTION_AUTO
+                                                     ? "the integrator is path: the noisy image is delivered"
+                                                     : "reconstruction is none: the noisy image is delivered");
   }
 }
 
@@ -149,7 +153,7 @@ uint32_t first_check(const GradusSettings& settings) {
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser) {
   check_settings(settings);
   Plan plan;
-  choose_integrator(settings, &plan);
+  choose_integrator(settings, !denoiser.name.empty(), &plan);
   choose_reconstruction(settings, &plan);
   list_denoiser(settings, denoiser, &plan);
   choose_region(settings, &plan);

@@ -19,6 +19,10 @@ constexpr int kNoiseRadius = 7;
 constexpr float kOwnShare = 0.3f;
 // Noise that is not told from none: a share of the light around, and one of the image's median luminance.
 constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
+// A pixel's own value counts by the noise around it and for this share, since the mean of windows is better than its parts; for less where
+// it stands out, and where noise is above a tenth of the light: there both halves may have met the same firefly. kLeastVariance: of what
+// shows none.
+constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kLeastVariance = 1e-10f;
 // Light around a pixel, by which residuals are measured.
 constexpr int kLightRadius = 3;
 // Side of squares that share a bound on outliers.
@@ -46,16 +50,28 @@ Field make_field(int width, int height, const Function& function) {
   return field;
 }
 
-Field weigh_pixels(const HalvedImage& image) {
+// Of pixels: their weights in windows, and 1/variance.
+struct PixelWeights {
+  Field in_windows, own;
+};
+
+PixelWeights weigh_pixels(const HalvedImage& image) {
   const int w = image.mean.width(), h = image.mean.height();
   const Field own = make_field(w, h, [&](int x, int y) { return std::sqrt(mean_of_squares(image.half_difference, x, y)); });
   const Field noise = box_mean(own, kNoiseRadius);
   const Field light = box_mean(make_field(w, h, [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); }), kNoiseRadius);
-  return make_field(w, h, [&](int x, int y) {
-    const float around = noise.row(y)[x] + kShareOfLight * light.row(y)[x];
-    const float deviation = std::max(around, kOwnShare * own.row(y)[x]) + kShareOfMedian;
-    return 1.0f / (deviation * deviation);
-  });
+  return {make_field(w, h,
+                     [&](int x, int y) {
+                       const float around = noise.row(y)[x] + kShareOfLight * light.row(y)[x];
+                       const float deviation = std::max(around, kOwnShare * own.row(y)[x]) + kShareOfMedian;
+                       return 1.0f / (deviation * deviation);
+                     }),
+          make_field(w, h, [&](int x, int y) {
+            const float usual = noise.row(y)[x], seen = own.row(y)[x], excess = usual > 0.0f ? std::max(1.0f, seen / usual) : 1.0f;
+            const float relative = usual / (kVisible * light.row(y)[x] + kLeastVariance),
+                        doubt = excess * excess * (1.0f + relative * relative);
+            return kOwnTrust / (usual * usual * doubt * doubt + kLeastVariance);
+          })};
 }
 
 // Median of the depths that are there; 1 without any.
@@ -158,15 +174,16 @@ Field limit_outliers(const Field& residual, const Field& weights) {
 
 }  // namespace
 
-FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel)
-    : by_features_(basis_of(features), weigh_pixels(image), kByFeatures) {
+FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel) {
+  PixelWeights weights = weigh_pixels(image);
+  by_features_ = LocalRegression(basis_of(features), std::move(weights.in_windows), std::move(weights.own), kByFeatures);
   RegressionResult first = by_features_.estimate(image.mean, image.half_difference, cancel);
   const Field by_light = weigh_by_light(first.mean);
   Field residual = difference(image.mean, first.mean), of_noise = difference(image.half_difference, first.noise);
   kept_ = limit_outliers(residual, by_light);
   scale_by(kept_, &residual);
   scale_by(kept_, &of_noise);
-  of_residual_ = LocalRegression(albedo_of(features), by_light, kOfResidual);
+  of_residual_ = LocalRegression(albedo_of(features), by_light, Field(residual.width(), residual.height(), 1), kOfResidual);
   const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
   image_ = std::move(first.mean);
   add(second.mean, &image_);

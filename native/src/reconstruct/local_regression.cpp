@@ -42,7 +42,7 @@ void store(const Lanes& lanes, float* to) { std::memcpy(to, &lanes, sizeof(lanes
 
 // What a tile reads and writes. `values` have C channels: three means and three half differences when η is estimated, else one.
 struct Task {
-  const Field *features, *weights, *values;
+  const Field *features, *weights, *own, *values;
   const RegressionSettings* settings;
   const Field* confidence;  // where it is known already
   Field *new_confidence, *result, *bias;
@@ -313,17 +313,20 @@ class Tile {
     read_basis(y);
     const int at = slot(y, kSaid), begin = x0_ - first_, n = x1_ - x0_;
     const float* all = sums_[at + kConfidence] + begin;
+    const float* own = task_.own->row(y) + x0_;
     for (int c = 0; c < C; ++c) {
       float* to = task_.result->row(y, c) + x0_;
+      const float* value = task_.values->row(y, c) + x0_;
       for (int x = 0; x < n; ++x) {
         float sum = 0.0f;
         for (int i = 0; i < P; ++i) sum += sums_[at + C * i + c][begin + x] * basis_[i][begin + x];
-        to[x] = all[x] > 0.0f ? sum / all[x] : 0.0f;
+        const float total = all[x] + own[x];
+        to[x] = total > 0.0f ? (sum + own[x] * value[x]) / total : 0.0f;
       }
     }
     if constexpr (Estimates) {
       const float* bias = sums_[at + kBias] + begin;
-      for (int x = 0; x < n; ++x) task_.bias->row(y)[x0_ + x] = all[x] > 0.0f ? bias[x] / all[x] : 0.0f;
+      for (int x = 0; x < n; ++x) task_.bias->row(y)[x0_ + x] = all[x] > 0.0f ? bias[x] / (all[x] + own[x]) : 0.0f;
     }
     for (int i = 0; i < kSaid; ++i) std::fill_n(sums_[at + i], sums_.width(), 0.0f);
   }
@@ -360,9 +363,10 @@ void run_features(const Task& task, const CancelTest& cancel) {
 
 }  // namespace
 
-LocalRegression::LocalRegression(Field features, Field weights, RegressionSettings settings)
+LocalRegression::LocalRegression(Field features, Field weights, Field own, RegressionSettings settings)
     : features_(std::move(features)),
       weights_(std::move(weights)),
+      own_(std::move(own)),
       settings_(std::move(settings)),
       confidence_(weights_.width(), weights_.height(), int(settings_.radii.size())) {}
 
@@ -376,7 +380,7 @@ RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_
     }
   }
   RegressionResult result{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
-  run_features<6, true>({&features_, &weights_, &both, &settings_, nullptr, &confidence_, &fits, &result.bias}, cancel);
+  run_features<6, true>({&features_, &weights_, &own_, &both, &settings_, nullptr, &confidence_, &fits, &result.bias}, cancel);
   for (int y = 0; y < h; ++y) {
     for (int c = 0; c < 3; ++c) {
       std::copy_n(fits.row(y, c), w, result.mean.row(y, c));
@@ -388,7 +392,7 @@ RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_
 
 Field LocalRegression::apply(const Field& values, const CancelTest& cancel) const {
   Field result(values.width(), values.height(), 1);
-  run_features<1, false>({&features_, &weights_, &values, &settings_, &confidence_, nullptr, &result, nullptr}, cancel);
+  run_features<1, false>({&features_, &weights_, &own_, &values, &settings_, &confidence_, nullptr, &result, nullptr}, cancel);
   return result;
 }
 

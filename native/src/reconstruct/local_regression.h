@@ -1,7 +1,8 @@
 // First-order regression in windows. Around every pixel q, for every radius r, the image is taken to be linear in the features:
 //   a_q = argmin Σ_{p in window} w_p (I_p − a·φ_p)² + λ Σw |a|²     (λ not for the constant)
 // and a pixel's value is the mean of what all windows that hold it say, those with little error first:
-//   x_p = Σ_q η_q a_q·φ_p / Σ_q η_q,     η = 1/(windows' pixels · estimated squared error).
+//   x_p = (Σ_q η_q a_q·φ_p + I_p/v_p) / (Σ_q η_q + 1/v_p),     η = 1/(windows' pixels · estimated squared error).
+// The pixel itself, of variance v_p, is the smallest window: as noise vanishes the image becomes what was sampled, features or not.
 // Moon, Carr, Yoon 2014 and Bitterli et al. 2016 (NFOR) regress on features; here weights belong to pixels, not to pairs of them, so that
 // windows are sums that slide (as of the guided filter: He, Sun, Tang 2010), and several radii take the place of weights by distance.
 //
@@ -32,9 +33,10 @@ struct RegressionResult {
 
 class LocalRegression {
  public:
-  // features: 7 channels with coordinates, or 3 without, in about [−1, 1]; weights: one channel, 0 where a pixel does not count.
+  // features: 7 channels with coordinates, or 3 without, in about [−1, 1]; weights: one channel, 0 where a pixel does not count; own: 1/v,
+  // one channel.
   LocalRegression() = default;
-  LocalRegression(Field features, Field weights, RegressionSettings settings);
+  LocalRegression(Field features, Field weights, Field own, RegressionSettings settings);
 
   // Regresses three channels, given half the difference of the halves, and freezes η. Deterministic for any number of threads.
   RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelTest& cancel);
@@ -42,7 +44,7 @@ class LocalRegression {
   Field apply(const Field& values, const CancelTest& cancel) const;
 
  private:
-  Field features_, weights_;
+  Field features_, weights_, own_;
   RegressionSettings settings_;
   Field confidence_;  // η by radius
 };

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "denoise/denoise.h"
 #include "frame/features.h"
+#include "render/pass_read.h"
 
 namespace gradus {
 namespace {
@@ -14,6 +15,10 @@ namespace {
 // Deviation of a guide's pixels, root mean square over the image, up to which it is taken as it is. Above, the network over it takes 2 to
 // 20 % off the result's error; below, less than what its time buys in samples (docs/method.md).
 constexpr double kCleanAlbedo = 0.01, kCleanNormal = 0.02;
+
+// Of the mean of a regression on features and of what the network makes of the noisy image: they err in different places, and their mean
+// errs less than either (docs/method.md).
+constexpr float kShareOfNetwork = 0.5f;
 
 double deviation(const FeatureImage& image) {
   double sum = 0.0;
@@ -55,7 +60,7 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
   return library;
 }
 
-std::string denoise_combined(const OidnLibrary& library, const Frame& frame, const Region& region, uint32_t threads,
+std::string denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region, uint32_t threads,
                              const std::function<bool()>& cancel, std::vector<float>* rgba) {
   GuideImage albedo, normal;
   if (has_features(frame)) {
@@ -64,10 +69,20 @@ std::string denoise_combined(const OidnLibrary& library, const Frame& frame, con
       normal = read_guide(frame, GRADUS_PASS_DENOISING_NORMAL, region, kCleanNormal);
     });
   }
-  const NoisyPicture picture{region.width(), region.height(), rgba->data(), 4, albedo.guide(), normal.guide()};
+  const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
+  std::vector<float> noisy;
+  if (blends) {
+    noisy.resize(rgba->size());
+    read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, region, noisy.data());
+  }
+  const NoisyPicture picture{region.width(), region.height(), blends ? noisy.data() : rgba->data(), 4, albedo.guide(), normal.guide()};
+  const float share = blends ? kShareOfNetwork : 1.0f;
   try {
     const std::vector<float> image = denoise(library, picture, threads, cancel);
-    for (size_t i = 0; i < image.size(); ++i) (*rgba)[i / 3 * 4 + i % 3] = image[i];
+    for (size_t i = 0; i < image.size(); ++i) {
+      float& value = (*rgba)[i / 3 * 4 + i % 3];
+      value += share * (image[i] - value);
+    }
   } catch (const Error& e) {
     if (e.code() == GRADUS_ERROR_CANCELLED) throw;
     return std::string("the picture was not denoised: ") + e.what();

@@ -101,7 +101,8 @@ Benefit benefit_of(const PilotSums& sums, bool is_l2) { return is_l2 ? estimate_
 
 // Which squares are to have differences. L2 has one error for the picture, and outliers in one part of it outweigh all else; where rows go
 // by their noise every part is for itself.
-std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& sums, bool is_l2) {
+std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& sums, uint32_t reconstruction) {
+  const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   std::vector<Benefit> benefits;
   for (const PilotSums& around : spread_out(squares, sums)) benefits.push_back(benefit_of(around, is_l2));
   if (is_l2) {
@@ -109,8 +110,9 @@ std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& 
     for (const Region& square : squares.cells) pixels.push_back(double(square.area()));
     return choose_parts(benefits, pixels);
   }
+  const double limit = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kPaysBesideFeatures : kPays;
   std::vector<bool> chosen;
-  for (const Benefit& benefit : benefits) chosen.push_back(benefit.pays());
+  for (const Benefit& benefit : benefits) chosen.push_back(benefit.pays(limit));
   return chosen;
 }
 
@@ -151,7 +153,7 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
     sums[i].shift_rays = double(counters.rays_shift);
     sums[i].shift_shadow_rays = double(counters.rays_shift_shadow);
   });
-  const std::vector<bool> chosen = choose(squares, sums, is_l2);
+  const std::vector<bool> chosen = choose(squares, sums, reconstruction);
   GradientMap map;
   map.pixels.assign(size_t(region.area()), 0);
   PilotSums total;

@@ -37,8 +37,8 @@ constexpr Option kOptions[] = {
     OPTION(integrator, kEnum, GRADUS_INTEGRATOR_AUTO, 0, 4, kIntegrators, kSampling,
            "How light is sampled; auto: the planner decides. bidirectional and metropolis are refused until they work"),
     OPTION(reconstruction, kEnum, GRADUS_RECONSTRUCTION_AUTO, 0, 5, kReconstructions, kOther,
-           "How the image is reconstructed from samples and gradients; l2 is unbiased; weighted (auto) goes by the "
-           "measured noise and l1 is robust: both consistent. regularized is refused until it works"),
+           "How the image is reconstructed from samples and gradients; l2 is unbiased; weighted goes by the "
+           "measured noise and l1 is robust; regularized (auto) goes by features of the surfaces as well: all consistent"),
     OPTION(reconstruction_alpha, kFloat, 0.0, 0.0, 1e3, "", kOther, "Weight of the primal image against the gradients; 0 = automatic: 0.4 for L2, 0.2 for L1 and for the means of weighted"),
     OPTION(denoiser, kEnum, GRADUS_DENOISER_NONE, 0, 2, kDenoisers, kOther,
            "What takes the rest of the noise out of the result; oidn: the host's Open Image Denoise, an error where there is none; auto: "

@@ -27,6 +27,12 @@ GradusSettings with_features(uint32_t samples) {
   return settings;
 }
 
+GradusSettings without_features(uint32_t samples) {
+  GradusSettings settings = small_settings(40, 30, samples);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;
+  return settings;
+}
+
 // A frame that keeps them though nobody asked for them, as the plan may have it.
 Frame with_unasked_features() {
   Frame frame = *rendered(with_features(6));
@@ -70,7 +76,7 @@ TEST(Features, OneHalfAloneHasNoVariance) {
 }
 
 TEST(Features, FramesWithoutThemSaySo) {
-  const auto frame = rendered(small_settings(40, 30, 2));
+  const auto frame = rendered(without_features(2));
   EXPECT_FALSE(has_features(*frame));
   EXPECT_THROW(read_features(*frame), Error);
   EXPECT_THROW(read_feature(*rendered(with_features(2)), GRADUS_PASS_NORMAL), Error) << "not kept in halves";
@@ -107,10 +113,10 @@ TEST(L3_Resume, FeaturesHaveTheSameBits) {
 
 // A reconstruction that reads them would have met half of the samples, or none.
 TEST(L3_Resume, RefusesFramesThatLackWhatTheReconstructionReads) {
-  const GradusSettings settings = small_settings(40, 30, 16);
+  const GradusSettings settings = without_features(16);
   Plan plan = make_plan(settings, *empty_snapshot());
   const uint64_t scene = empty_snapshot()->content_key;
-  Frame frame = *rendered(small_settings(40, 30, 8));
+  Frame frame = *rendered(without_features(8));
   EXPECT_NO_THROW(check_resumable(frame, settings, plan, scene));
   plan.passes |= feature_passes();
   EXPECT_THROW(check_resumable(frame, settings, plan, scene), Error);

@@ -56,7 +56,7 @@ TEST(B1_Regression, KeepsWhatTheFeaturesExplain) {
     const Field image = make_field(w, h, 3, [](int x, int y, int c) {
       return 5.0f + 0.03f * float(x) - 0.02f * float(y) + 0.5f * feature(x, y, c) - 0.25f * feature(x, y, 6);
     });
-    LocalRegression regression(features(w, h), ones(w, h), kSettings);
+    LocalRegression regression(features(w, h), ones(w, h), Field(w, h, 1), kSettings);
     const RegressionResult result = regression.estimate(image, Field(w, h, 3), never);
     // The ridge takes a little of each coefficient, most of it where windows are small.
     EXPECT_LT(largest_difference(result.mean, image), 0.01) << w << "x" << h;
@@ -67,7 +67,7 @@ TEST(B1_Regression, KeepsWhatTheFeaturesExplain) {
 TEST(B2_Regression, IsTheFrozenOperatorThatItApplies) {
   const int w = 170, h = 140;
   const Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2), other = noise(w, h, 2.0f, 3);
-  LocalRegression regression(features(w, h), ones(w, h), kSettings);
+  LocalRegression regression(features(w, h), ones(w, h), Field(w, h, 1), kSettings);
   const RegressionResult result = regression.estimate(image, half, never);
   for (int c = 0; c < 3; ++c) {
     EXPECT_LT(largest_difference(regression.apply(channel_of(image, c), never), channel_of(result.mean, c)), 1e-4);
@@ -83,7 +83,7 @@ TEST(B2_Regression, HasTheSameBitsForAnyNumberOfThreads) {
   const int w = 170, h = 140;
   const Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2);
   expect_same_bits_for_any_number_of_threads([&] {
-    LocalRegression regression(features(w, h), ones(w, h), kSettings);
+    LocalRegression regression(features(w, h), ones(w, h), Field(w, h, 1), kSettings);
     const Field mean = regression.estimate(image, half, never).mean;
     std::vector<float> values;
     for (int y = 0; y < h; ++y) values.insert(values.end(), mean.row(y, 1), mean.row(y, 1) + w);
@@ -100,7 +100,7 @@ TEST(B2_Regression, KnowsItsNoise) {
     const auto truth = [](int x, int y, int c) { return 2.0f + 0.5f * feature(x, y, c); };
     const Field image = make_field(w, h, 3, [&](int x, int y, int c) { return truth(x, y, c) + 0.5f * (a.row(y, c)[x] + b.row(y, c)[x]); });
     const Field half = make_field(w, h, 3, [&](int x, int y, int c) { return 0.5f * (a.row(y, c)[x] - b.row(y, c)[x]); });
-    LocalRegression regression(features(w, h), ones(w, h), kSettings);
+    LocalRegression regression(features(w, h), ones(w, h), Field(w, h, 1), kSettings);
     const RegressionResult result = regression.estimate(image, half, never);
     for (int y = 0; y < h; ++y) {
       for (int c = 0; c < 3; ++c) {
@@ -121,7 +121,7 @@ TEST(B2_Regression, AShelfStaysDarkFarFromTheTilesCentre) {
   const int w = 160, h = 120;
   const Field image = make_field(w, h, 3, [](int, int y, int) { return y % 20 < 3 ? 0.3f : 30.0f; });
   const Field none = make_field(w, h, 7, [](int, int, int c) { return c == 1 ? 1.0f : 0.0f; });
-  LocalRegression regression(none, ones(w, h), kSettings);
+  LocalRegression regression(none, ones(w, h), Field(w, h, 1), kSettings);
   const RegressionResult result = regression.estimate(image, Field(w, h, 3), never);
   for (int x = 8; x < w - 8; ++x) {
     for (const int y : {21, 41, 61, 81, 101}) EXPECT_NEAR(result.mean.row(y)[x], 0.3f, 0.1f) << x << " " << y;
@@ -139,7 +139,7 @@ TEST(B2_Regression, LeavesOutPixelsWithoutWeight) {
       for (int c = 0; c < 3; ++c) image.row(y, c)[x] = 1e4f;
     }
   }
-  LocalRegression regression(features(w, h), weights, kSettings);
+  LocalRegression regression(features(w, h), weights, Field(w, h, 1), kSettings);
   EXPECT_LT(largest_difference(regression.estimate(image, Field(w, h, 3), never).mean, truth), 0.03);
 }
 

@@ -31,6 +31,8 @@ GradusSettings settings_with(uint32_t denoiser) {
   GradusSettings settings = small_settings(40, 30, 4);
   settings.denoiser = denoiser;
   settings.film_transparent = 1;
+  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
   return settings;
 }
 
@@ -98,6 +100,7 @@ TEST_F(DenoisedRender, IsSaidInStatsPlanAndFrame) {
 TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;
   const uint32_t region[] = {10, 5, 30, 20};
   const Region part{10, 5, 30, 20};
   const auto whole = read(*finished(settings), GRADUS_PASS_COMBINED, kAll);
@@ -106,6 +109,19 @@ TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
   for (int y = 0; y < 15; ++y) {
     for (int x = 0; x < 80; ++x) ASSERT_NEAR(image[size_t(y) * 80 + size_t(x)], whole[size_t(y + 5) * 160 + size_t(x + 40)], 1e-4);
   }
+}
+
+// A network makes nothing more of what is smooth: it looks at the noisy image, and the mean of both is delivered.
+TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  const auto plain = finished(settings, 1.0f);
+  settings.denoiser = GRADUS_DENOISER_OIDN;
+  const auto render = finished(settings, 1.0f);
+  std::vector<float> expected = denoised(read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll), *render->frame(), 0.5f);
+  const auto regularized = read(*plain, GRADUS_PASS_COMBINED, kAll);
+  for (size_t i = 0; i < expected.size(); ++i) expected[i] = i % 4 == 3 ? regularized[i] : 0.5f * (expected[i] + regularized[i]);
+  expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
 }
 
 // The picture was there.

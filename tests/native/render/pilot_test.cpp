@@ -43,11 +43,11 @@ TEST(Benefit, ComparesErrorWithCost) {
   PilotSums sums = quiet_sums();
   EXPECT_NEAR(estimate_benefit(sums).cost, 1.885, 1e-12);
   EXPECT_NEAR(estimate_benefit(sums).error, reconstructed_variance(16.0) + 0.1, 1e-12);
-  EXPECT_TRUE(estimate_benefit(sums).pays());
+  EXPECT_TRUE(estimate_benefit(sums).pays(kPays));
   sums.difference_deviation = 1600.0;
-  EXPECT_FALSE(estimate_benefit(sums).pays());
+  EXPECT_FALSE(estimate_benefit(sums).pays(kPays));
   sums.pixel_deviation = 0.0;
-  EXPECT_FALSE(estimate_benefit(sums).pays()) << "no noise, nothing to gain";
+  EXPECT_FALSE(estimate_benefit(sums).pays(kPays)) << "no noise, nothing to gain";
 }
 
 // In a thicket of leaves smaller than pixels all shifts fail. A difference is then that of the pixels' own samples, as noisy as they are;
@@ -57,9 +57,9 @@ TEST(Benefit, DifferencesOfThePixelsOwnSamplesAreWorthNothing) {
   sums.difference_deviation = 400.0 * std::sqrt(2.0);
   sums.l2_roots = {150.0, 120.0, 98.0};
   EXPECT_GT(estimate_benefit(sums).error, 0.9);
-  EXPECT_FALSE(estimate_benefit(sums).pays());
+  EXPECT_FALSE(estimate_benefit(sums).pays(kPays));
   sums.l2_roots = {150.0, 60.0, 98.0};  // at its best weight L2 gains
-  EXPECT_TRUE(estimate_benefit(sums).pays());
+  EXPECT_TRUE(estimate_benefit(sums).pays(kPays));
 }
 
 // Unpaired paths stand in the differences as they stand in the pixel, and L2 gives back what they were. The pilot judged differences by
@@ -232,7 +232,7 @@ TEST(Pilot, AutoDecidesAndSaysWhy) {
   EXPECT_EQ(frame->pair_count[0][kRight][200], 0.0f);
   const nlohmann::json none = stats_of(0, GRADUS_INTEGRATOR_AUTO, &frame);
   EXPECT_EQ(none["integrator"], "path");
-  EXPECT_EQ(none["reconstruction"], "none");
+  EXPECT_EQ(none["reconstruction"], "regularized") << "features are there all the same";
   EXPECT_FALSE(frame->gradients);
   EXPECT_NE(none["plan"]["skipped"]["gradients"].get<std::string>().find("pilot"), std::string::npos);
   // What the user says is obeyed.

@@ -87,12 +87,12 @@ TEST_F(Tool, RendersReconstructsAndCompares) {
   ASSERT_EQ(rendered.code, 0) << rendered.err;
   EXPECT_NE(rendered.out.find(kStored), std::string::npos);
   EXPECT_NE(text("stats.jsonl").find("\"integrator\":\"gradient\""), std::string::npos);
-  for (const char* how : {"weighted", "l2", "l1", "none"}) {
+  for (const char* how : {"regularized", "weighted", "l2", "l1", "none"}) {
     const Outcome made = run(std::string("reconstruct ") + kStored + " -o " + how + ".exr --passes noisy_image --reconstruction " + how);
     EXPECT_EQ(made.code, 0) << made.err;
     EXPECT_LT(relative_error(std::string(how) + ".exr", "combined.exr"), 0.1);
   }
-  EXPECT_EQ(relative_error("weighted.exr", "combined.exr"), 0.0) << "what the render delivered";
+  EXPECT_EQ(relative_error("regularized.exr", "combined.exr"), 0.0) << "what the render delivered";
   EXPECT_GT(relative_error("none.exr", "l2.exr"), 0.0);
   EXPECT_EQ(run("compare none.exr l2.exr --fail-above 1e-12").code, 1);
 }
@@ -137,7 +137,7 @@ TEST_F(Tool, Denoises) {
 }
 
 TEST_F(Tool, SaysThatTheDenoiserHasNoGuides) {
-  ASSERT_EQ(run("render good.gradus -o frame.exr").code, 0);
+  ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction weighted").code, 0);
   const Outcome made = run(std::string("reconstruct frame.exr -o image.exr") + kFakeDenoiser);
   EXPECT_EQ(made.code, 0);
   EXPECT_NE(made.err.find("warning: the frame holds no features"), std::string::npos) << made.err;
@@ -170,7 +170,7 @@ TEST_F(Tool, EndsWithACodeAndACause) {
       {"render good.gradus -o store --stats no/such/folder/stats.jsonl", "no/such/folder/stats.jsonl"},
       {"render good.gradus -o good.gradus/store", "good.gradus/store"},
       {"reconstruct good.gradus -o x.exr", "good.gradus"},
-      {"render good.gradus -o f.exr && " GRADUS_BINARY_DIR "/native/gradus reconstruct f.exr -o x.exr --reconstruction regularized",
+      {"render good.gradus -o f.exr --reconstruction none && " GRADUS_BINARY_DIR "/native/gradus reconstruct f.exr -o x.exr --reconstruction regularized",
        "no denoising features"},
       {"info err", "neither FILE.gradus nor FILE.exr"}};
   for (const auto& [arguments, cause] : failures) {
@@ -182,7 +182,7 @@ TEST_F(Tool, EndsWithACodeAndACause) {
 
 // EXR was written under the name of a PNG, with exit code 0.
 TEST_F(Tool, RefusesImagesThatAreNotExr) {
-  ASSERT_EQ(run("render good.gradus -o frame.exr").code, 0);
+  ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction weighted").code, 0);
   std::ofstream(folder / "x.png") << "PNG";
   for (const char* arguments : {"reconstruct frame.exr -o l1.png", "render good.gradus -o store --image l1.png", "compare x.png frame.exr",
                                 "compare frame.exr x.png"}) {
