@@ -23,8 +23,8 @@ struct PilotSums {
   void add(const PilotSums& other, double weight);
 };
 
-// In doubt yes: a few samples miss the outliers, which differences take away, too. (With 1 half of a picture behind glass went without, which
-// had twice the error at equal time.)
+// In doubt yes: a few samples miss the outliers, which differences take away, too. (With 1 half of a picture behind glass went without,
+// which had twice the error at equal time.)
 inline constexpr double kPays = 1.25;
 // Where features do most of the work, what is left has to be little: of twelve scenes differences gained on the three where it was
 // (docs/method.md).

@@ -60,8 +60,8 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
   return library;
 }
 
-std::string denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region, uint32_t threads,
-                             const std::function<bool()>& cancel, std::vector<float>* rgba) {
+std::string denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
+                             uint32_t threads, const std::function<bool()>& cancel, std::vector<float>* rgba) {
   GuideImage albedo, normal;
   if (has_features(frame)) {
     tbb::task_arena(arena_size(threads)).execute([&] {

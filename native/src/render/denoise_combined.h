@@ -18,9 +18,9 @@ class Device;
 std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Device* device, std::string* why_not);
 
 // rgba: of `region`, what `reconstruction` has made of the frame; alpha stays. What comes out is that denoised, but the mean of it and of
-// the noisy image denoised where it is REGULARIZED: a network makes nothing more of what is smooth. What it gives is empty, or says what went wrong: then rgba is as it was. Throws Error CANCELLED. Call it
-// from outside of TBB's arenas.
-std::string denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region, uint32_t threads,
-                             const std::function<bool()>& cancel, std::vector<float>* rgba);
+// the noisy image denoised where it is REGULARIZED: a network makes nothing more of what is smooth. What it gives is empty, or says what
+// went wrong: then rgba is as it was. Throws Error CANCELLED. Call it from outside of TBB's arenas.
+std::string denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
+                             uint32_t threads, const std::function<bool()>& cancel, std::vector<float>* rgba);
 
 }  // namespace gradus

@@ -293,7 +293,8 @@ void RenderLoop::denoise_frame() {
   const uint64_t cpu = process_cpu_nanoseconds();
   const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
   std::vector<float> rgba = combined_;
-  const std::string failure = denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel, &rgba);
+  const std::string failure =
+      denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel, &rgba);
   if (failure.empty()) stats_.denoiser = denoiser_->name();
   if (!failure.empty()) stats_.warnings.push_back(failure);
   stats_.seconds.denoise = clock_.seconds() - began;

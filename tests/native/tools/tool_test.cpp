@@ -170,7 +170,8 @@ TEST_F(Tool, EndsWithACodeAndACause) {
       {"render good.gradus -o store --stats no/such/folder/stats.jsonl", "no/such/folder/stats.jsonl"},
       {"render good.gradus -o good.gradus/store", "good.gradus/store"},
       {"reconstruct good.gradus -o x.exr", "good.gradus"},
-      {"render good.gradus -o f.exr --reconstruction none && " GRADUS_BINARY_DIR "/native/gradus reconstruct f.exr -o x.exr --reconstruction regularized",
+      {"render good.gradus -o f.exr --reconstruction none && " GRADUS_BINARY_DIR
+       "/native/gradus reconstruct f.exr -o x.exr --reconstruction regularized",
        "no denoising features"},
       {"info err", "neither FILE.gradus nor FILE.exr"}};
   for (const auto& [arguments, cause] : failures) {
