@@ -50,10 +50,12 @@ std::vector<Picture> pictures() {
   add_scenarios(&list);
   list.push_back({"box L1", whole_box, [](GradusSettings* s) { s->reconstruction = GRADUS_RECONSTRUCTION_L1; }});
   list.push_back({"box WEIGHTED", whole_box, [](GradusSettings* s) { s->reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED; }});
-  list.push_back({"box automatic", whole_box, [](GradusSettings* s) {
+  list.push_back({"box automatic", whole_box,
+                  [](GradusSettings* s) {
                     s->integrator = GRADUS_INTEGRATOR_AUTO;
                     s->reconstruction = GRADUS_RECONSTRUCTION_AUTO;
-                  }});
+                  },
+                  true});
   list.push_back({"box behind a lens", behind_a_lens, nothing});
   list.push_back({"box orthographic", from_the_side, nothing});
   list.push_back({"box with a transparent film", [](PathScene* scene) { test::build(Scenario::World, scene); },

@@ -15,6 +15,8 @@ struct Picture {
   std::string name;
   std::function<void(test::PathScene*)> build;
   std::function<void(GradusSettings*)> change;  // from small defaults
+  // Its mean depends on the number of samples: what is stored of it has as many as what is compared with it.
+  bool is_biased = false;
 };
 
 std::vector<Picture> pictures();
