@@ -27,7 +27,9 @@ def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Pas
             scene.render.resolution_percentage = 30
             for name in muted:
                 tree(scene).nodes[name].mute = True
-            done[muted] = images.render(scene, tmp_path_factory.mktemp("composite"), frame=12, samples=8, noise_threshold=0.0)
+            done[muted] = images.render(
+                scene, tmp_path_factory.mktemp("composite"), frame=12, samples=8, noise_threshold=0.0, reconstruction="WEIGHTED"
+            )
         return done[muted]
 
     return passes
