@@ -51,6 +51,8 @@ INSTANTIATE_TEST_SUITE_P(All, PlannedBytes, ::testing::ValuesIn([] {
                              for (const bool transparent : {false, true}) {
                                all.push_back({"Path", path, GRADUS_RECONSTRUCTION_NONE, adaptive, transparent, false});
                                all.push_back({"Noisy", gradient, GRADUS_RECONSTRUCTION_NONE, adaptive, transparent, false});
+                               all.push_back({"PathRegularized", path, GRADUS_RECONSTRUCTION_REGULARIZED, adaptive, transparent, false});
+                               all.push_back({"Regularized", gradient, GRADUS_RECONSTRUCTION_REGULARIZED, adaptive, transparent, false});
                                all.push_back({"L2", gradient, GRADUS_RECONSTRUCTION_L2, adaptive, transparent, false});
                                all.push_back({"L2WithGaps", gradient, GRADUS_RECONSTRUCTION_L2, adaptive, transparent, true});
                                all.push_back({"L1", gradient, GRADUS_RECONSTRUCTION_L1, adaptive, transparent, false});

@@ -195,11 +195,10 @@ uint64_t solve_floats(uint64_t channels) { return solver_floats(channels) + 4 * 
 // Where a pilot leaves differences out, L2 iterates (reconstruct/l2_with_gaps.h).
 bool l2_iterates(const Plan& plan) { return plan.pilot; }
 
-// REGULARIZED: the images, seven channels of features and their variances, and what comes out.
-uint64_t regularized_floats(const Plan& plan) {
-  const uint64_t c = uint64_t(plan.channels), features = 14;
-  return (plan.gradients ? 3 * c : c) + features + c;
-}
+// REGULARIZED, as measured (reconstruct/feature_regression.h): features with their variances and as a basis, the image and half the
+// difference of its halves, weights, what both steps make of them; with differences the images and the solve, while the regression is
+// there.
+uint64_t regularized_floats(const Plan& plan) { return plan.gradients ? 80 + 4 * uint64_t(plan.channels) : 76; }
 
 // What the reconstruction takes beside the frame, floats per pixel: its result, and until it is there
 uint64_t reconstruction_floats(const Plan& plan) {
