@@ -10,16 +10,8 @@ namespace {
 
 using namespace test;
 
-class L1_Determinism : public ::testing::TestWithParam<uint32_t> {
+class L1_Determinism : public WithScene<::testing::TestWithParam<uint32_t>> {
  protected:
-  void SetUp() override {
-    device = make_device();
-    scene = make_scene(device);
-  }
-  void TearDown() override {
-    EXPECT_OK(gradus_scene_release(scene));
-    EXPECT_OK(gradus_device_release(device));
-  }
   GradusSettings settings(uint32_t samples) const {
     GradusSettings s = small_render(70, 50, samples);
     s.integrator = GetParam();
@@ -50,8 +42,6 @@ class L1_Determinism : public ::testing::TestWithParam<uint32_t> {
       EXPECT_EQ(pass(a, p), pass(b, p)) << "pass " << p;
     }
   }
-  GradusDevice device = 0;
-  GradusScene scene = 0;
 };
 
 TEST_P(L1_Determinism, SameBitsForAnyNumberOfThreads) {

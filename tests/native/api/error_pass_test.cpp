@@ -12,16 +12,8 @@ using namespace test;
 
 constexpr uint32_t kWidth = 40, kHeight = 30;
 
-class ErrorOfFrames : public ::testing::Test {
+class ErrorOfFrames : public WithScene<> {
  protected:
-  void SetUp() override {
-    device = make_device();
-    scene = make_scene(device);
-  }
-  void TearDown() override {
-    EXPECT_OK(gradus_scene_release(scene));
-    EXPECT_OK(gradus_device_release(device));
-  }
   static GradusSettings settings(uint32_t reconstruction) {
     GradusSettings s = small_render(kWidth, kHeight, 8);
     s.integrator = GRADUS_INTEGRATOR_GRADIENT;
@@ -46,8 +38,6 @@ class ErrorOfFrames : public ::testing::Test {
     EXPECT_OK(gradus_frame_read_pass(frame, GRADUS_PASS_ERROR, error.data(), error.size()));
     return error;
   }
-  GradusDevice device = 0;
-  GradusScene scene = 0;
 };
 
 TEST_F(ErrorOfFrames, IsThatOfTheRenderAndSurvivesTheStore) {

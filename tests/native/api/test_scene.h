@@ -115,6 +115,22 @@ inline GradusScene make_scene(GradusDevice device) {
   return scene;
 }
 
+// A test, plain or with a parameter, that has a device and the scene.
+template <class Test = ::testing::Test>
+class WithScene : public Test {
+ protected:
+  void SetUp() override {
+    device = make_device();
+    scene = make_scene(device);
+  }
+  void TearDown() override {
+    EXPECT_OK(gradus_scene_release(scene));
+    EXPECT_OK(gradus_device_release(device));
+  }
+  GradusDevice device = 0;
+  GradusScene scene = 0;
+};
+
 inline GradusSettings small_render(uint32_t width = 24, uint32_t height = 16, uint32_t samples = 4) {
   GradusSettings s = sized<GradusSettings>();
   EXPECT_OK(gradus_settings_default(&s));
