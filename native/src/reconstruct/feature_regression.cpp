@@ -5,7 +5,8 @@
 
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
-#include "reconstruct/rows.h"
+#include "reconstruct/field_values.h"
+#include "reconstruct/solver_planes.h"
 #include "reconstruct/twicing.h"
 
 namespace gradus {
@@ -44,9 +45,7 @@ float mean_of(const Field& field, int x, int y) {
 template <class Function>
 Field make_field(int width, int height, const Function& function) {
   Field field(width, height, 1);
-  for_rows(height, [&](int y) {
-    for (int x = 0; x < width; ++x) field.row(y)[x] = function(x, y);
-  });
+  for_values(&field, [&](float& value, int x, int y, int) { value = function(x, y); });
   return field;
 }
 
@@ -78,10 +77,7 @@ PixelWeights weigh_pixels(const HalvedImage& image) {
 float median_depth(const std::vector<float>& depths) {
   std::vector<float> there;
   std::copy_if(depths.begin(), depths.end(), std::back_inserter(there), [](float d) { return is_finite(d) && d > 0.0f; });
-  if (there.empty()) return 1.0f;
-  const auto middle = there.begin() + ptrdiff_t(there.size() / 2);
-  std::nth_element(there.begin(), middle, there.end());
-  return *middle;
+  return median_or_one(&there);
 }
 
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
@@ -90,25 +86,20 @@ float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 
 Field basis_of(const Features& features) {
   const float median = median_depth(features.depth.values);
   Field basis(features.width, features.height, 7);
-  for_rows(features.height, [&](int y) {
-    for (int x = 0; x < features.width; ++x) {
-      const size_t i = size_t(y) * size_t(features.width) + size_t(x);
-      for (int c = 0; c < 3; ++c) basis.row(y, c)[x] = bounded(features.normal.values[3 * i + c]);
-      for (int c = 0; c < 3; ++c) basis.row(y, 3 + c)[x] = bounded(features.albedo.values[3 * i + c]);
-      const float depth = features.depth.values[i];
-      basis.row(y, 6)[x] = depth > 0.0f ? bounded(depth / (depth + median)) : 0.0f;
-    }
+  for_values(&basis, [&](float& value, int x, int y, int c) {
+    const size_t i = size_t(y) * size_t(features.width) + size_t(x);
+    const float depth = features.depth.values[i];
+    value = c < 3   ? bounded(features.normal.values[3 * i + size_t(c)])
+            : c < 6 ? bounded(features.albedo.values[3 * i + size_t(c - 3)])
+                    : (depth > 0.0f ? bounded(depth / (depth + median)) : 0.0f);
   });
   return basis;
 }
 
 Field albedo_of(const Features& features) {
   Field albedo(features.width, features.height, 3);
-  for_rows(features.height, [&](int y) {
-    for (int x = 0; x < features.width; ++x) {
-      for (int c = 0; c < 3; ++c)
-        albedo.row(y, c)[x] = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(x)) + c]);
-    }
+  for_values(&albedo, [&](float& value, int x, int y, int c) {
+    value = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(x)) + size_t(c)]);
   });
   return albedo;
 }
@@ -125,28 +116,16 @@ Field weigh_by_light(const Field& image) {
 
 Field difference(const Field& a, const Field& b) {
   Field result = a;
-  for_rows(a.height(), [&](int y) {
-    for (int c = 0; c < a.channels(); ++c) {
-      for (int x = 0; x < a.width(); ++x) result.row(y, c)[x] -= b.row(y, c)[x];
-    }
-  });
+  for_values(&result, [&](float& value, int x, int y, int c) { value -= b.row(y, c)[x]; });
   return result;
 }
 
 void add(const Field& other, Field* to) {
-  for_rows(to->height(), [&](int y) {
-    for (int c = 0; c < to->channels(); ++c) {
-      for (int x = 0; x < to->width(); ++x) to->row(y, c)[x] += other.row(y, c)[x];
-    }
-  });
+  for_values(to, [&](float& value, int x, int y, int c) { value += other.row(y, c)[x]; });
 }
 
 void scale_by(const Field& factors, Field* to) {
-  for_rows(to->height(), [&](int y) {
-    for (int c = 0; c < to->channels(); ++c) {
-      for (int x = 0; x < to->width(); ++x) to->row(y, c)[x] *= factors.row(y)[x];
-    }
-  });
+  for_values(to, [&](float& value, int x, int y, int) { value *= factors.row(y)[x]; });
 }
 
 // Share of each residual that lies within the bound of its square (reconstruct/twicing.h), relative to the light around it.
@@ -156,16 +135,7 @@ Field limit_outliers(const Field& residual, const Field& weights) {
   for_rows((h + kSquare - 1) / kSquare,
            [&](int j) {
              for (int i = 0; i < (w + kSquare - 1) / kSquare; ++i) {
-               const int x1 = std::min(w, (i + 1) * kSquare), y1 = std::min(h, (j + 1) * kSquare);
-               std::vector<float> squares;
-               for (int y = j * kSquare; y < y1; ++y) squares.insert(squares.end(), share.row(y) + i * kSquare, share.row(y) + x1);
-               const float bound = outlier_bound_squared(&squares);
-               for (int y = j * kSquare; y < y1; ++y) {
-                 for (int x = i * kSquare; x < x1; ++x) {
-                   float& value = share.row(y)[x];
-                   value = value > bound ? std::sqrt(bound / value) : 1.0f;
-                 }
-               }
+               limit_square(i * kSquare, std::min(w, (i + 1) * kSquare), j * kSquare, std::min(h, (j + 1) * kSquare), &share);
              }
            },
            1);

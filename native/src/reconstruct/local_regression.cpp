@@ -258,7 +258,6 @@ class Tile {
       for (int c = 0; c < C; ++c) solution[c] -= at_x * solution[C * kX + c] + at_y * solution[C * kY + c];
     }
     for (int i = 0; i < kSides; ++i) store(eta * solution[i], said_[said + i] + x);
-    store(eta, said_[said + kConfidence] + x);
     store(eta * bias, said_[said + kBias] + x);
   }
 

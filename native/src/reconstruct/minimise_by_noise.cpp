@@ -100,6 +100,12 @@ void weigh_by_noise(const GradientImages& images, float scale, Field* data, Sten
   });
 }
 
+void solve_by_noise(const SolverPlanes& planes, const CancelTest& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report) {
+  const CgReport solve = system->solve(planes, kGoal, kMostSteps, cancel, x);
+  ++report->outer_steps;
+  add_solve(solve, report);
+}
+
 Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel, SolveReport* report) {
   const int channels = std::min(images.channels, 3);
   const PoissonPlanes interleaved = planes_of(images, 0);
@@ -108,9 +114,7 @@ Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel
                  start_from_l2(interleaved, images.width, images.height, channels, kUnknownAlpha)};
   weigh_by_noise(images, robust_scale(planes.primal), &result.system.data_weights(), &result.system.matrix());
   result.system.update();
-  const CgReport solve = result.system.solve(planes, kGoal, kMostSteps, cancel, &result.solution);
-  ++report->outer_steps;
-  add_solve(solve, report);
+  solve_by_noise(planes, cancel, &result.system, &result.solution, report);
   return result;
 }
 

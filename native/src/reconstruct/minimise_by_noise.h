@@ -15,4 +15,7 @@ Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel
 // 0; one whose noise is unknown, that of `unknown`.
 void weigh_by_noise(const GradientImages& images, float scale, Field* data, Stencil* matrix);
 
+// Solves with such weights, from x on, as exactly as the noise asks for.
+void solve_by_noise(const SolverPlanes& planes, const CancelTest& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report);
+
 }  // namespace gradus

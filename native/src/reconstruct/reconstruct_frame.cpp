@@ -30,9 +30,9 @@ Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t 
     case GRADUS_RECONSTRUCTION_NONE:
       return {read_images(frame, component).primal, {}};
     case GRADUS_RECONSTRUCTION_REGULARIZED: {
-      Regularized result = regularize(frame, component, cancel, report);
-      if (!wants_error) result.error.clear();
-      return {std::move(result.image), std::move(result.error)};
+      Reconstructed result = regularize(frame, component, cancel, report);
+      if (!wants_error) result.error = {};
+      return result;
     }
     default:
       return {reconstruct(frame, component, reconstruction, alpha, cancel, report), {}};

@@ -1,16 +1,10 @@
 // What a frame becomes: its picture, and what is known of the picture's error.
 #pragma once
 
-#include <vector>
-
+#include "reconstruct/reconstructed.h"
 #include "reconstruct/solver.h"
 
 namespace gradus {
-
-struct Reconstructed {
-  std::vector<float> image;  // width·height·channels
-  std::vector<float> error;  // width·height: estimated squared error of the image, mean over RGB; empty unless asked for
-};
 
 // All components, each by its own solver, added up (contract 3.4). reconstruction: never AUTO. Throws invalid_operation for a frame without
 // what it reads.

@@ -5,8 +5,8 @@
 
 #include "base/types.h"
 #include "reconstruct/feature_regression.h"
+#include "reconstruct/field_values.h"
 #include "reconstruct/minimise_by_noise.h"
-#include "reconstruct/rows.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/weighted_least_squares.h"
 
@@ -20,8 +20,6 @@ constexpr float kSharedDifference = 0.5f;
 constexpr float kLeastError = 1e-12f;
 // Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
 constexpr float kMost = 1e12f;
-constexpr CgGoal kGoal{.row_error = 1e-2f};
-constexpr int kMostSteps = 60;
 
 // The mean and half the difference of the halves, in units of the image; what is not finite is 0.
 HalvedImage read_halves(const Frame& frame, int component) {
@@ -50,22 +48,11 @@ HalvedImage read_halves(const Frame& frame, int component) {
 
 // Into units of the median luminance, within bounds.
 void normalise(float scale, Field* field) {
-  for_rows(field->height(), [&](int y) {
-    for (int c = 0; c < field->channels(); ++c) {
-      for (int x = 0; x < field->width(); ++x) {
-        float& value = field->row(y, c)[x];
-        value = std::clamp(value / scale, -kMost, kMost);
-      }
-    }
-  });
+  for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMost, kMost); });
 }
 
 void multiply(float factor, Field* field) {
-  for_rows(field->height(), [&](int y) {
-    for (int c = 0; c < field->channels(); ++c) {
-      for (int x = 0; x < field->width(); ++x) field->row(y, c)[x] *= factor;
-    }
-  });
+  for_values(field, [factor](float& value, int, int, int) { value *= factor; });
 }
 
 // Mean of two estimates of a difference, by their weights: the regression's takes the place of a sampled one that is absent.
@@ -106,22 +93,20 @@ Field fuse(const GradientImages& images, float scale, const FeatureRegression& r
   blend_differences(regression.image(), of_differences, 0, 1, &planes.dy, &system.matrix().up);
   system.update();
   Field x = regression.image();
-  const CgReport solve = system.solve(planes, kGoal, kMostSteps, cancel, &x);
-  ++report->outer_steps;
-  add_solve(solve, report);
+  solve_by_noise(planes, cancel, &system, &x, report);
   return x;
 }
 
 }  // namespace
 
-Regularized regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
+Reconstructed regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
   const int w = frame.region.width(), h = frame.region.height(), channels = frame.channels;
   HalvedImage image = read_halves(frame, component);
   const float scale = robust_scale(image.mean);
   normalise(scale, &image.mean);
   normalise(scale, &image.half_difference);
   const FeatureRegression regression(read_features(frame), image, cancel);
-  Regularized result{std::vector<float>(size_t(w) * size_t(h) * size_t(channels)), std::vector<float>(size_t(w) * size_t(h))};
+  Reconstructed result{std::vector<float>(size_t(w) * size_t(h) * size_t(channels)), std::vector<float>(size_t(w) * size_t(h))};
   Field solution = regression.image();
   if (frame.gradients) {
     GradientImages images = read_images(frame, component);

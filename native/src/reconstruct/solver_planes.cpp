@@ -29,6 +29,13 @@ SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int
   return result;
 }
 
+float median_or_one(std::vector<float>* values) {
+  if (values->empty()) return 1.0f;
+  const auto middle = values->begin() + ptrdiff_t(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
 float robust_scale(const Field& image) {
   const size_t pixels = size_t(image.width()) * image.height(), step = std::max<size_t>(1, pixels / kMedianSamples);
   std::vector<float> values;
@@ -42,10 +49,7 @@ float robust_scale(const Field& image) {
     }
     if (is_finite(v) && v > 0.0f) values.push_back(v);
   }
-  if (values.empty()) return 1.0f;
-  const auto middle = values.begin() + ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median_or_one(&values);
 }
 
 void store_channel(const Field& from, int channel, size_t stride, float* out) {

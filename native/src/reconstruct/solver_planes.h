@@ -15,6 +15,8 @@ struct SolverPlanes {
 
 // Takes channels [0, channels) from interleaved planes.
 SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int channels);
+// The middle one; 1 of none. Reorders them.
+float median_or_one(std::vector<float>* values);
 // Scale of the image: the median of the luminances that are not 0; 1 for a black image. Residuals and noise are measured in it.
 float robust_scale(const Field& image);
 // Whether a row's value is there in all of some channels, interleaved.

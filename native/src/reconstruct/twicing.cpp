@@ -56,21 +56,21 @@ Twicing::Twicing(const GradientImages& images, const Field& estimate, float alph
       square_count(h),
       [&](int row) {
         for (int i = 0; i < square_count(w); ++i) {
-          limit_square(square_begin(w, i), square_begin(w, i + 1), square_begin(h, row), square_begin(h, row + 1));
+          limit_square(square_begin(w, i), square_begin(w, i + 1), square_begin(h, row), square_begin(h, row + 1), &weights_);
         }
       },
       1);
 }
 
-void Twicing::limit_square(int x0, int x1, int y0, int y1) {
+void limit_square(int x0, int x1, int y0, int y1, Field* field) {
   std::vector<float> squares;
   for (int y = y0; y < y1; ++y) {
-    std::copy_if(weights_.row(y) + x0, weights_.row(y) + x1, std::back_inserter(squares), [](float e) { return is_finite(e); });
+    std::copy_if(field->row(y) + x0, field->row(y) + x1, std::back_inserter(squares), [](float e) { return is_finite(e); });
   }
   const float bound = outlier_bound_squared(&squares);
   for (int y = y0; y < y1; ++y) {
     for (int x = x0; x < x1; ++x) {
-      float& value = weights_.row(y)[x];
+      float& value = field->row(y)[x];
       value = !is_finite(value) ? 0.0f : value > bound ? std::sqrt(bound / value) : 1.0f;
     }
   }

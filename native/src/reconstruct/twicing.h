@@ -18,9 +18,6 @@ class Twicing {
   void apply(const PoissonPlanes& planes, float* values) const;
 
  private:
-  // Fills the weights of the square [x0, x1) × [y0, y1), which holds squared residuals, by their bound.
-  void limit_square(int x0, int x1, int y0, int y1);
-
   Field weights_;  // W; 0 where I is not finite
   PoissonDct dct_;
   float data_weight_;
@@ -30,5 +27,9 @@ class Twicing {
 // tuning-free Huber regression"). For noise of deviation σ it is σ√(n/ln n): what the mean of n such values loses by it stays below that
 // mean's own deviation, while up to ln n values of any size hardly move it. Reorders `squares`; infinite where n < 2.
 float outlier_bound_squared(std::vector<float>* squares);
+
+// A field's squared residuals in the square [x0, x1) × [y0, y1) become the shares of the residuals that lie within its bound, W above; what
+// is not finite, 0.
+void limit_square(int x0, int x1, int y0, int y1, Field* field);
 
 }  // namespace gradus

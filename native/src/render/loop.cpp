@@ -295,8 +295,11 @@ void RenderLoop::denoise_frame() {
   std::vector<float> rgba = combined_;
   const std::string failure =
       denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel, &rgba);
-  if (failure.empty()) stats_.denoiser = denoiser_->name();
-  if (!failure.empty()) stats_.warnings.push_back(failure);
+  if (failure.empty()) {
+    stats_.denoiser = denoiser_->name();
+  } else {
+    stats_.warnings.push_back(failure);
+  }
   stats_.seconds.denoise = clock_.seconds() - began;
   stats_.cpu_seconds.denoise = 1e-9 * double(process_cpu_nanoseconds() - cpu);
   const std::lock_guard lock(mutex_);

@@ -23,7 +23,7 @@ std::vector<float> noisy(const Frame& frame) { return read_images(frame, 0).prim
 
 void expect_finite_and_bounded(const Frame& frame, float bound) {
   SolveReport report;
-  const Regularized result = regularize(frame, 0, never, &report);
+  const Reconstructed result = regularize(frame, 0, never, &report);
   for (const float v : result.image) ASSERT_LE(std::fabs(v), bound);
   for (const float v : result.error) ASSERT_TRUE(v >= 0.0f && v <= std::numeric_limits<float>::max()) << v;
 }
@@ -104,7 +104,7 @@ TEST(B2_Regularized, EstimatesItsError) {
   double estimated = 0.0, actual = 0.0;
   for (description.seed = 1; description.seed <= 4; ++description.seed) {
     SolveReport report;
-    const Regularized result = regularize(make_feature_frame(description), 0, never, &report);
+    const Reconstructed result = regularize(make_feature_frame(description), 0, never, &report);
     for (const float v : result.error) estimated += v / double(result.error.size());
     actual += std::pow(rms_difference(result.image, description.truth), 2.0);
   }

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+namespace gradus {
+
+// What a frame, or a component of one, becomes: its picture, and what is known of the picture's error.
+struct Reconstructed {
+  std::vector<float> image;  // width·height·channels
+  std::vector<float> error;  // width·height: estimated squared error of the image, mean over RGB; empty unless asked for
+};
+
+}  // namespace gradus
