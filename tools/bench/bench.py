@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 from agreement import SHARE, share_and_ratio
-from metrics import all_errors
-from modes import MITSUBA, MODES, REFERENCES
+from metrics import all_errors, relative_to
+from modes import ESTIMATES_ERROR, MITSUBA, MODES, REFERENCES
 from references import reference
 from renderers import RefusedError, Renderers
 from scenes import QUICK, ROOT, Scene, select
@@ -100,8 +100,15 @@ class SceneBench:
             row |= self._errors(job, image)
         if job.seed == 0:  # counts hardly differ between seeds
             row |= {"peak_memory_bytes": answer["peak_memory_bytes"]} | answer.get("stats", {})
+            if job.bounces is None and job.mode in ESTIMATES_ERROR:
+                row["estimated"] = self._estimated_error(job)
         append(row)
         print(f"{self.scene.name:18} {job.mode:17} {job.samples:5} spp seed {job.seed}: {row['cpu']:8.2f} CPU-s", flush=True)
+
+    def _estimated_error(self, job: Job) -> float:
+        """relMSE as the pass Error has it."""
+        error = self.renderers.estimated_error(job.mode, job.samples, job.seed)
+        return float((error / relative_to(self.reference(job.mode)[0])).mean())
 
     def _errors(self, job: Job, image: np.ndarray) -> dict[str, Any]:
         mean, variance = self.reference(job.mode)

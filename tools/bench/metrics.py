@@ -17,8 +17,12 @@ def relative_squared_error(image: np.ndarray, reference: np.ndarray, reference_v
     squared = (image - reference) ** 2
     if reference_variance is not None:
         squared = squared - reference_variance
-    gray = reference.mean(axis=2)
-    return squared.mean(axis=2) / (EPSILON + gray**2)
+    return squared.mean(axis=2) / relative_to(reference)
+
+
+def relative_to(reference: np.ndarray) -> np.ndarray:
+    """What squared errors are divided by, shape (height, width)."""
+    return EPSILON + reference.mean(axis=2) ** 2
 
 
 def rel_mse(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None) -> float:

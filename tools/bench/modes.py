@@ -50,6 +50,8 @@ MODES = {
 }
 REFERENCES = {GRADUS: "path", CYCLES: "cycles", MITSUBA: "mitsuba"}  # each engine against its own converged image
 
+ESTIMATES_ERROR = {name for name, mode in MODES.items() if mode.settings.get("denoiser") == "NONE"}  # of the image that is compared
+
 _CYCLES_OWN = {name for mode in MODES.values() if mode.engine == CYCLES for name in mode.settings}
 
 

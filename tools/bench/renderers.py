@@ -61,11 +61,19 @@ class Renderers:
         self._compiled: set[int] = set()
 
     def render(self, mode: str, samples: int, seed: int, bounces: int | None = None) -> tuple[np.ndarray, dict]:
-        out = Path(self._folder.name) / "image.npy"
-        job = {"mode": mode, "samples": samples, "seed": seed, "out": str(out)}
+        job = {"mode": mode, "samples": samples, "seed": seed}
         if bounces is not None:
             job["bounces"] = bounces
-        worker = self._blender
+        return self._ask(job)
+
+    def estimated_error(self, mode: str, samples: int, seed: int) -> np.ndarray:
+        """The pass Error (height, width) of the same image, rendered again: it takes time of its own."""
+        return self._ask({"mode": mode, "samples": samples, "seed": seed, "error": True})[0][:, :, 3]
+
+    def _ask(self, job: dict) -> tuple[np.ndarray, dict]:
+        out = Path(self._folder.name) / "image.npy"
+        job["out"] = str(out)
+        worker, mode, samples = self._blender, job["mode"], job["samples"]
         if MODES[mode].engine == MITSUBA:
             worker = self._mitsuba_worker()
             if samples not in self._compiled:  # not counted: its kernels are compiled for each number of samples, once

@@ -105,6 +105,21 @@ class SceneResults:
         more = [1e6 * (p.median("cpu") - plain[p.samples]) / n for p, n in zip(points, pixels, strict=True)]
         return float(np.median(more)) if more else None
 
+    def same_samples_ratios(self, mode: str, other: str) -> dict[int, float]:
+        """relMSE over that of another mode at the same samples, median over the seeds that both have."""
+        found = {}
+        for point in self.points.get(mode, []):
+            theirs = {row["seed"]: row["relmse"] for p in self.points.get(other, []) if p.samples == point.samples for row in p.rows}
+            ratios = [row["relmse"] / theirs[row["seed"]] for row in point.rows if row["seed"] in theirs]
+            if ratios:
+                found[point.samples] = float(np.median(ratios))
+        return found
+
+    def estimate_ratio(self, mode: str) -> float | None:
+        """Error that a mode estimates over the true one of the same images, median over the counts."""
+        rows = [row for point in self.points.get(mode, []) for row in point.rows if "estimated" in row]
+        return float(np.median([row["estimated"] / row["relmse"] for row in rows])) if rows else None
+
     def cost_ratio(self, mode: str, other: str) -> float | None:
         ours, theirs = self.sample_cost(mode), self.sample_cost(other)
         return ours / theirs if ours and theirs else None

@@ -15,7 +15,7 @@ from speed import HOSTS, Host
 from version import cpu_name, version_of_build
 
 RESULTS = ROOT / "docs" / "benchmark" / "solve.jsonl"
-MODES = ("gradient-l2", "gradient-weighted", "gradient-l1")
+MODES = ("gradient-l2", "gradient-weighted", "gradient-l1", "path-regularized", "gradient-regularized")
 SIZE = (1920, 1080)
 SAMPLES = 2
 

@@ -3,6 +3,7 @@
 Reads one JSON job per line from standard input, answers with one JSON line prefixed by RESULT:
   {"mode": "gradient-l2", "samples": 16, "seed": 3, "out": "x.npy"}  ->  {"cpu": 1.2, "wall": 0.7, "peak_memory_bytes": …, "stats": {…}}
   {"twin": "x.npz"}  ->  {} once the scene is written as arrays (twin.py)
+A job with "error" stores in its file the pass Error besides the image, whose time then counts for nothing, as a fourth channel.
 A job with "bounces" replaces all bounce limits of the file. What cannot be done is answered by {"error": "why"}.
 The image is stored as float32 (height, width, 3), top row first. CPU seconds are those of the whole process during the operator:
 export, build, sampling, reconstruction or denoising, and writing a small file.
@@ -41,12 +42,16 @@ def prepare(path: str, width: int, height: int) -> dict[str, int]:
     render.use_persistent_data = False
     render.use_compositing = render.use_sequencer = False
     render.use_motion_blur = False
-    if hasattr(render.image_settings, "media_type"):
-        render.image_settings.media_type = "IMAGE"
-    render.image_settings.file_format = "OPEN_EXR"
-    render.image_settings.color_mode = "RGB"
-    render.image_settings.color_depth = "32"
     return {name: getattr(bpy.context.scene.cycles, name) for name in BOUNCES}
+
+
+def choose_file(layers: bool) -> None:
+    """With all layers of the view, or the image alone."""
+    settings = bpy.context.scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE" if layers else "IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER" if layers else "OPEN_EXR"
+    settings.color_mode, settings.color_depth = "RGB", "32"
 
 
 def render(job: dict, folder: Path, bounces: dict[str, int]) -> dict:
@@ -55,6 +60,9 @@ def render(job: dict, folder: Path, bounces: dict[str, int]) -> dict:
     is_gradus = scene.render.engine == modes.GRADUS
     for name, limit in bounces.items():
         setattr(scene.gradus if is_gradus else scene.cycles, name, job.get("bounces", limit))
+    wants_error = job.get("error", False)
+    bpy.context.view_layer.gradus.use_pass_error = wants_error
+    choose_file(layers=wants_error)
     target = folder / "image.exr"
     scene.render.filepath = str(target.with_suffix(""))
     memory.reset_peak()
@@ -64,16 +72,18 @@ def render(job: dict, folder: Path, bounces: dict[str, int]) -> dict:
     if is_gradus:
         stats = store.summaries[(scene.name, bpy.context.view_layer.name)]
         answer["stats"] = {name: stats[name] for name in STATS}
-    np.save(job["out"], read_exr(target))
+    layer = bpy.context.view_layer.name
+    channels = [f"{layer}.Combined.{c}" for c in "RGB"] + [f"{layer}.Error.X"] if wants_error else list("RGB")
+    np.save(job["out"], read_exr(target, channels))
     return answer
 
 
-def read_exr(path: Path) -> np.ndarray:
+def read_exr(path: Path, names: list[str]) -> np.ndarray:
     import OpenEXR
 
     with OpenEXR.File(str(path), separate_channels=True) as file:
         channels = file.channels()
-        return np.stack([np.asarray(channels[c].pixels, dtype=np.float32) for c in "RGB"], axis=2)
+        return np.stack([np.asarray(channels[name].pixels, dtype=np.float32) for name in names], axis=2)
 
 
 def write_twin(job: dict) -> dict:
