@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
+import behind  # noqa: E402
+import crops  # noqa: E402
 import document  # noqa: E402
 import metrics  # noqa: E402
 import modes  # noqa: E402
+import results  # noqa: E402
 import seeds  # noqa: E402
 import suite  # noqa: E402
 
@@ -69,6 +72,41 @@ def test_bias_and_variance_are_told_apart(tmp_path: Path, monkeypatch: pytest.Mo
     assert variance == pytest.approx(deviation**2 * weight, rel=0.1)
 
 
+def test_seeds_tell_bias_from_variance() -> None:
+    none = np.zeros_like(REFERENCE)
+    images = np.stack([noisy(0.2, seed) + 0.1 for seed in range(16)])
+    spread = behind.Spread(images, (REFERENCE, none))
+    bias, variance = spread.parts()
+    assert spread.variance_map().mean() == pytest.approx(variance, rel=1e-3)
+    assert spread.bias_map().mean() == pytest.approx(bias + variance / 16, rel=1e-3)
+
+
+def test_crops_are_where_the_modes_differ() -> None:
+    errors = [np.full((180, 320), 0.5) for _ in range(3)]
+    errors[0][90:135, 160:240] = 0.3
+    errors[1][0:45, 0:80] = 0.1
+    errors[2][:, 300] = 1e6  # counts as 1
+    assert crops.choose_crops(errors) == [(0, 0), (160, 90)]
+
+
+def rows_of(mode: str, errors: list[float], samples: int = 16, **more: float) -> list[dict]:
+    return [{"scene": "hero", "mode": mode, "samples": samples, "seed": i, "relmse": error} | more for i, error in enumerate(errors)]
+
+
+def test_modes_are_compared_at_the_same_samples_and_seed() -> None:
+    ours = [*rows_of("path", [1.0, 4.0, 9.0]), *rows_of("path", [3.0], samples=64), *rows_of("path", [1.0], samples=4)]
+    theirs = [*rows_of("gradient-l2", [2.0, 2.0, 2.0, 0.1]), *rows_of("gradient-l2", [1.0], samples=64)]
+    scene = results.SceneResults("hero", [*ours, *theirs])
+    assert scene.same_samples_ratios("path", "gradient-l2") == {16: 2.0, 64: 3.0}
+    assert scene.same_samples_ratios("path", "auto") == {}
+
+
+def test_estimates_are_compared_with_the_error_of_their_own_image() -> None:
+    scene = results.SceneResults("hero", [*rows_of("auto", [2.0], estimated=3.0), *rows_of("auto", [1.0], samples=64)])
+    assert scene.estimate_ratio("auto") == 1.5
+    assert scene.estimate_ratio("path") is None
+
+
 def test_ratios_of_curves() -> None:
     """Twice as good at every time is twice as fast at every error, for errors that fall like 1/t."""
     ours = [(t, 0.5 / t) for t in (1.0, 4.0, 16.0)]
@@ -87,6 +125,22 @@ def test_slope_is_that_of_the_last_decade() -> None:
 def test_every_mode_has_a_reference() -> None:
     for mode in modes.MODES.values():
         assert modes.REFERENCES[mode.engine] in modes.MODES
+
+
+def test_a_slider_offers_all_pictures_and_crops() -> None:
+    slider = document.Slider(
+        {"pictures": {"a": "a.webp", "b": "b.webp"}, "errors": {"error of a": "a-error.webp"}},
+        "Caption.",
+        ("a", "error of a"),
+        [document.Crop(0.25, 0.5, 4.0)],
+        "scale.svg",
+    )
+    page = slider.as_html()
+    assert page.count('<option value="a-error.webp"') == 2
+    assert '<option value="a-error.webp" selected>' in page
+    assert '<option value="scale(4) translate(-25%, -50%)">crop 1</option>' in page
+    for file in ("a.webp", "b.webp", "a-error.webp", "scale.svg"):
+        assert f"({file})" in slider.as_markdown()
 
 
 def test_both_forms_of_the_report_say_the_same() -> None:

@@ -57,32 +57,57 @@ class Figure:
 
 
 @dataclass
-class Slider:
-    """Two of several pictures, one over the other, with a border that can be moved. In Markdown: all of them in a row."""
+class Crop:
+    """Its upper left corner as shares of the picture's width and height, and how much it is magnified."""
 
-    pictures: dict[str, str]  # label -> file
+    x: float
+    y: float
+    zoom: float
+
+
+@dataclass
+class Slider:
+    """Two of several pictures, one over the other, with a border that can be moved, whole or a crop. In Markdown: all of them in rows."""
+
+    groups: dict[str, dict[str, str]]  # heading -> label -> file
     caption: str
     shown: tuple[str, str]
+    crops: list[Crop] = field(default_factory=list)
+    legend: str = ""  # file, of colours
 
     def as_markdown(self) -> str:
-        row = [f"![{label}]({file})" for label, file in self.pictures.items()]
-        return f"{self.caption}\n\n{Table(list(self.pictures), [row]).as_markdown()}"
+        rows = [Table(list(files), [[f"![{label}]({file})" for label, file in files.items()]]) for files in self.groups.values()]
+        legend = [f"![colours]({self.legend})"] if self.legend else []
+        return "\n\n".join([self.caption, *(row.as_markdown() for row in rows), *legend])
 
     def as_html(self) -> str:
-        def choice(chosen: str) -> str:
-            options = "".join(
-                f'<option value="{file}"{" selected" if label == chosen else ""}>{html.escape(label)}</option>'
-                for label, file in self.pictures.items()
-            )
-            return f"<select>{options}</select>"
-
-        left, right = (self.pictures[label] for label in self.shown)
+        left, right = (next(files[label] for files in self.groups.values() if label in files) for label in self.shown)
+        legend = f'<img class="legend" src="{self.legend}" alt="colours">' if self.legend else ""
         return (
-            f'<figure class="slider"><div class="choices">{choice(self.shown[0])}{choice(self.shown[1])}</div>'
-            f'<div class="pair"><img src="{right}" alt="right"><img class="over" src="{left}" alt="left"><span class="border"></span>'
+            f'<figure class="slider"><div class="choices">{self._choice(self.shown[0])}{self._crops()}{self._choice(self.shown[1])}</div>'
+            f'<div class="pair"><span><img src="{right}" alt="right"></span><span class="over"><img src="{left}" alt="left"></span>'
+            f'<span class="border"></span>'
             f'<input type="range" min="0" max="1000" value="500" aria-label="border between the pictures"></div>'
-            f"<figcaption>{inline(self.caption)}</figcaption></figure>"
+            f"{legend}<figcaption>{inline(self.caption)}</figcaption></figure>"
         )
+
+    def _choice(self, chosen: str) -> str:
+        def option(label: str, file: str) -> str:
+            return f'<option value="{file}"{" selected" if label == chosen else ""}>{html.escape(label)}</option>'
+
+        groups = (
+            f'<optgroup label="{html.escape(heading)}">{"".join(option(*item) for item in files.items())}</optgroup>'
+            for heading, files in self.groups.items()
+        )
+        return f'<select class="picture">{"".join(groups)}</select>'
+
+    def _crops(self) -> str:
+        views = {"whole": Crop(0.0, 0.0, 1.0)} | {f"crop {i}": crop for i, crop in enumerate(self.crops, 1)}
+        options = (
+            f'<option value="scale({crop.zoom:g}) translate({-100 * crop.x:g}%, {-100 * crop.y:g}%)">{name}</option>'
+            for name, crop in views.items()
+        )
+        return f'<select class="view">{"".join(options)}</select>'
 
 
 @dataclass
