@@ -33,7 +33,7 @@ test-addon:     ## only those in Blender 3.4, 4.5 and 5.0: HOSTS=bpy45 TESTS=tes
 stress:         ## numerical stability: hard scenes, their dropped samples and failed shifts as a table
 	@tools/test.sh stress
 
-faults:         ## twelve kinds of faults put into a copy of the sources: do the tests catch them? docs/faults.md; 10 minutes
+faults:         ## faults put into a copy of the sources, one at a time: do the tests catch them? docs/faults.md; half an hour
 	@tools/setup/setup test
 	@/usr/bin/python3 tests/faults/faults.py
 

@@ -1,4 +1,4 @@
-"""The twelve seeded faults (M4), and which tests must catch them.
+"""The seeded faults (M4), and which tests must catch them: twelve kinds in the renderer, and those in the reconstruction.
 
 A fault is an edit of the sources that compiles and looks harmless. Its old text must be there exactly once, or the tool stops: a fault that
 no longer applies proves nothing.
@@ -6,49 +6,14 @@ no longer applies proves nothing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True)
-class Test:
-    """A few tests of one program, or of one file in Blender 3.4."""
-
-    program: str  # native, statistics, stress, memory, regression: GoogleTest; else a file of pytest
-    choice: str  # filter of GoogleTest, or expression of pytest's -k
-
-    @property
-    def name(self) -> str:
-        return f"{self.program}: {self.choice}"
-
-    @property
-    def is_native(self) -> bool:
-        return not self.program.endswith(".py")
-
-
-@dataclass(frozen=True)
-class Fault:
-    number: int
-    name: str  # as in the catalogue of tests
-    meaning: str
-    file: str
-    old: str
-    new: str
-    tests: tuple[Test, ...]  # each of them must fail
-
-
-def native(choice: str) -> Test:
-    return Test("native", choice)
-
-
-def statistics(choice: str) -> Test:
-    return Test("statistics", choice)
-
+from fault import Fault, Test, native, statistics
+from reconstruction import RECONSTRUCTION
 
 LAMBERT = "native/src/bsdf/lobe.h"
 PIXELS = "native/src/integrator/pixel_loop.cpp"
 LOOP = "native/src/render/loop.cpp"
 
-FAULTS = (
+RENDERER = (
     Fault(
         1,
         "cosine dropped",
@@ -180,8 +145,8 @@ FAULTS = (
         "flipped normal",
         "of meshes that lie in the top level",
         "native/src/scene/surface.cpp",
-        "instance.mirrored ? -plane.normal : plane.normal",
-        "instance.mirrored ? plane.normal : -plane.normal",
+        "instance.mirrored ? -triangle.plane.normal : triangle.plane.normal",
+        "instance.mirrored ? triangle.plane.normal : -triangle.plane.normal",
         (native("SurfacePoint.*:D8_*"),),
     ),
     Fault(
@@ -212,3 +177,5 @@ FAULTS = (
         (native("K2_Cancel.EndsWithinAQuarterSecondAndStaysReadable"),),
     ),
 )
+
+FAULTS = (*RENDERER, *RECONSTRUCTION)

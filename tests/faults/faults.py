@@ -18,7 +18,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from catalogue import FAULTS, Fault, Test
+from catalogue import FAULTS
+from fault import Fault, Test
 
 ROOT = Path(__file__).resolve().parents[2]
 COPY = ROOT / "build-faults"
@@ -105,7 +106,7 @@ def row(fault: Fault, caught: dict[Test, bool]) -> str:
 
 HEAD = """# Seeded faults
 
-Written by `make faults`. The faults of tests/faults/catalogue.py are put into a copy of the sources, one at a time; these tests, which pass
+Written by `make faults`. The faults of tests/faults are put into a copy of the sources, one at a time; these tests, which pass
 without them, fail with them.
 
 | | fault | where | seeded in | caught by |

@@ -64,6 +64,16 @@ TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
   }
 }
 
+// Noise that no reconstruction takes away, in halves of different size.
+TEST(ErrorEstimate, OfHalvesApartIsTheSquareOfHalfTheirDistance) {
+  Frame frame = make_frame(40, 30, 3, 2, true);
+  for (Radiance& sum : frame.components[0].primal[0]) sum += Radiance(3.0f * 0.7f);
+  for (Radiance& sum : frame.components[0].primal[1]) sum += Radiance(2.0f * -0.7f);
+  for (const uint32_t reconstruction : kAll) {
+    for (const float e : error_of(frame, reconstruction)) ASSERT_NEAR(e, 0.49f, 0.005f) << reconstruction;
+  }
+}
+
 TEST(ErrorEstimate, IsThereOnlyIfAskedFor) {
   const Frame frame = make_frame(8, 8, 2, 2, true);
   SolveReport report;

@@ -67,7 +67,7 @@ TEST(B1_Regression, KeepsWhatTheFeaturesExplain) {
 TEST(B2_Regression, IsTheFrozenOperatorThatItApplies) {
   const int w = 170, h = 140;
   const Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2), other = noise(w, h, 2.0f, 3);
-  LocalRegression regression(features(w, h), ones(w, h), Field(w, h, 1), kSettings);
+  LocalRegression regression(features(w, h), ones(w, h), ones(w, h), kSettings);
   const RegressionResult result = regression.estimate(image, half, never);
   for (int c = 0; c < 3; ++c) {
     EXPECT_LT(largest_difference(regression.apply(channel_of(image, c), never), channel_of(result.mean, c)), 1e-4);
@@ -113,6 +113,51 @@ TEST(B2_Regression, KnowsItsNoise) {
   }
   EXPECT_NEAR(estimated / actual, 1.0, 0.15);
   EXPECT_LT(actual, 0.15 * 4.0 * 3.0 * w * h * 0.125);  // of the noise of the mean, 0.5²/2
+}
+
+// Windows count by the inverse of their squared error, which is known here: no feature but the coordinates tells anything, so that of a
+// chequered picture all is bias, of chequered noise next to nothing passes, and of noise that is the same everywhere all does.
+struct KnownError {
+  float picture, chequered_noise, common_noise;
+  double error() const { return picture * picture - chequered_noise * chequered_noise + common_noise * common_noise; }
+};
+
+float chequer(int x, int y) { return (x + y) % 2 ? 1.0f : -1.0f; }
+
+LocalRegression regress(const KnownError& known, float own, RegressionResult* result) {
+  const int w = 96, h = 80;
+  const Field image = make_field(w, h, 3, [&](int x, int y, int) { return 5.0f + known.picture * chequer(x, y); });
+  const Field half = make_field(w, h, 3, [&](int x, int y, int) { return known.common_noise + known.chequered_noise * chequer(x, y); });
+  const Field own_weights = make_field(w, h, 1, [&](int, int, int) { return own; });
+  LocalRegression regression(Field(w, h, 7), ones(w, h), own_weights, kSettings);
+  *result = regression.estimate(image, half, never);
+  return regression;
+}
+
+// Mean of function(x, y) over pixels that no window at the border holds.
+template <class Function>
+double inner_mean(const Field& field, const Function& function) {
+  double sum = 0.0;
+  int count = 0;
+  for (int y = 8; y < field.height() - 8; ++y) {
+    for (int x = 8; x < field.width() - 8; ++x, ++count) sum += function(x, y);
+  }
+  return sum / count;
+}
+
+TEST(B2_Regression, PixelsAndWindowsCountByTheirErrors) {
+  for (const KnownError known : {KnownError{2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}, {2.0f, 0.0f, 2.0f}, {3.0f, 2.0f, 1.0f}}) {
+    const auto own = static_cast<float>(kSettings.radii.size() / known.error());  // as much as all windows have
+    RegressionResult result;
+    const LocalRegression with = regress(known, own, &result), without = regress(known, 0.0f, &result);
+    const Field probe = make_field(result.bias.width(), result.bias.height(), 1, [](int x, int y, int) { return chequer(x, y); });
+    const Field blended = with.apply(probe, never), of_windows = without.apply(probe, never);
+    const double share = inner_mean(
+        probe, [&](int x, int y) { return (blended.row(y)[x] - of_windows.row(y)[x]) / (probe.row(y)[x] - of_windows.row(y)[x]); });
+    EXPECT_NEAR(share, 0.5, 0.02) << known.picture << ", " << known.chequered_noise << ", " << known.common_noise;
+    const double bias = inner_mean(probe, [&](int x, int y) { return result.bias.row(y)[x]; });
+    EXPECT_NEAR(bias, known.error() - known.common_noise * known.common_noise, 0.02 * known.error());
+  }
 }
 
 // A shelf of three dark rows between bright ones, far from the tile's centre, was as bright as a tenth of them: slopes of hundreds with a

@@ -14,16 +14,46 @@ using namespace test;
 
 constexpr int kWidth = 72, kHeight = 50;
 
-std::vector<float> solve(const Frame& frame) {
+Reconstructed solve_with_error(const Frame& frame) {
   SolveReport report;
-  return regularize(frame, 0, never, &report).image;
+  return regularize(frame, 0, never, &report);
 }
 
+std::vector<float> solve(const Frame& frame) { return solve_with_error(frame).image; }
 std::vector<float> noisy(const Frame& frame) { return read_images(frame, 0).primal; }
 
+// Halves that lie `apart` above and below the truth everywhere: of such noise no window takes anything away, so its share in all that is
+// estimated is known.
+Frame with_common_noise(FeatureFrame description, float apart) {
+  description.sigma = [](size_t) { return 0.0f; };
+  Frame frame = make_feature_frame(description);
+  for (int half = 0; half < kHalves; ++half) {
+    for (Radiance& pixel : frame.components[0].primal[half]) pixel += Radiance(half == 0 ? apart : -apart);
+  }
+  return frame;
+}
+
+float chequer(int x, int y) { return (x + y) % 2 ? 1.0f : -1.0f; }
+
+// A chequer that no feature knows: for windows it is bias.
+FeatureFrame chequered(float level, float amplitude) {
+  FeatureFrame frame{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
+  frame.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return level + amplitude * chequer(x, y); });
+  return frame;
+}
+
+// Of the chequer, how much there is left far from the border.
+double amplitude_of(const std::vector<float>& image) {
+  double sum = 0.0;
+  int count = 0;
+  for (int y = 12; y < kHeight - 12; ++y) {
+    for (int x = 12; x < kWidth - 12; ++x, ++count) sum += chequer(x, y) * image[3 * (size_t(y) * kWidth + size_t(x))];
+  }
+  return sum / count;
+}
+
 void expect_finite_and_bounded(const Frame& frame, float bound) {
-  SolveReport report;
-  const Reconstructed result = regularize(frame, 0, never, &report);
+  const Reconstructed result = solve_with_error(frame);
   for (const float v : result.image) ASSERT_LE(std::fabs(v), bound);
   for (const float v : result.error) ASSERT_TRUE(v >= 0.0f && v <= std::numeric_limits<float>::max()) << v;
 }
@@ -75,20 +105,27 @@ TEST(B2_Regularized, KeepsDetailThatHasNoNoise) {
 }
 
 TEST(B2_Regularized, ScalesWithTheImage) {
-  FeatureFrame description = room(kWidth, kHeight);
-  std::vector<float> small = solve(make_feature_frame(description));
-  for (float& v : description.truth) v *= 1024.0f;
-  description.sigma = [](size_t) { return 1024.0f * 0.4f; };
-  const std::vector<float> large = solve(make_feature_frame(description));
-  for (float& v : small) v *= 1024.0f;
-  EXPECT_LT(max_difference(small, large), 1e-2 * 1024.0);
+  for (const bool gradients : {false, true}) {
+    FeatureFrame description = room(kWidth, kHeight);
+    description.gradients = gradients;
+    Reconstructed small = solve_with_error(make_feature_frame(description));
+    for (float& v : description.truth) v *= 1024.0f;
+    description.sigma = [](size_t) { return 1024.0f * 0.4f; };
+    const Reconstructed large = solve_with_error(make_feature_frame(description));
+    for (float& v : small.image) v *= 1024.0f;
+    EXPECT_LT(max_difference(small.image, large.image), 1e-2 * 1024.0);
+    EXPECT_NEAR(mean(large.error) / mean(small.error), 1024.0 * 1024.0, 0.01 * 1024.0 * 1024.0);
+  }
 }
 
-// Alpha, which is an eighth of red in these frames, goes through the weights of the colours.
+// Alpha, which is an eighth of red in these frames, goes through the weights of the colours, those of outliers, too.
 TEST(B2_Regularized, AlphaGoesThroughTheSameWeights) {
-  const FeatureFrame description = room(kWidth, kHeight);
-  const std::vector<float> rgba = solve(make_feature_frame(description, 4));
-  for (size_t i = 0; i < rgba.size(); i += 4) ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 2e-3f) << i / 4;
+  for (const float firefly : {0.0f, 800.0f}) {
+    Frame frame = make_feature_frame(room(kWidth, kHeight), 4);
+    frame.components[0].primal[0][size_t(20 * kWidth + 30)] += Radiance(firefly, firefly, firefly, firefly / 8.0f);
+    const std::vector<float> rgba = solve(frame);
+    for (size_t i = 0; i < rgba.size(); i += 4) ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 2e-3f) << i / 4;
+  }
 }
 
 TEST(B2_Regularized, HasTheSameBitsForAnyNumberOfThreads) {
@@ -103,13 +140,99 @@ TEST(B2_Regularized, EstimatesItsError) {
   FeatureFrame description = room(160, 120);
   double estimated = 0.0, actual = 0.0;
   for (description.seed = 1; description.seed <= 4; ++description.seed) {
-    SolveReport report;
-    const Reconstructed result = regularize(make_feature_frame(description), 0, never, &report);
+    const Reconstructed result = solve_with_error(make_feature_frame(description));
     for (const float v : result.error) estimated += v / double(result.error.size());
     actual += std::pow(rms_difference(result.image, description.truth), 2.0);
   }
   EXPECT_GT(estimated / actual, 0.7);
   EXPECT_LT(estimated / actual, 1.7);
+}
+
+// Noise that windows cannot take away is in it whole, and so is what no feature explains.
+TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
+  for (const float amplitude : {0.0f, 0.5f}) {
+    for (const float apart : {1.0f, 2.0f}) {
+      const Reconstructed result = solve_with_error(with_common_noise(chequered(1.0f, amplitude), apart));
+      const double expected = apart * apart + amplitude * amplitude;
+      EXPECT_NEAR(mean(result.error), expected, 0.03 * expected) << amplitude << ", " << apart;
+    }
+  }
+}
+
+// Normals, albedos and depths of these frames jump from pixel to pixel: those of any other pixel explain nothing.
+TEST(B2_Regularized, KeepsWhatTheFeaturesExplain) {
+  FeatureFrame description{kWidth, kHeight, {}, {}, [](int x, int y, int channel, int) {
+                             const float wave = std::sin(0.9f * float(x * (channel + 1)) + 0.37f * float(y * y * (channel + 2)));
+                             return channel < 6 ? wave : wave > 0.0f ? 3.0f : 1.0f;
+                           }};
+  for (int explained = 0; explained < 7; ++explained) {
+    description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return 5.0f + description.feature(x, y, explained, 0); });
+    EXPECT_LT(rms_difference(solve(with_common_noise(description, 1.0f)), description.truth), 0.02) << explained;
+  }
+}
+
+// Half the difference of the halves says how far a pixel's own value is to be believed. Where windows are off by five times its square,
+// it has a third of all weight.
+TEST(B2_Regularized, BelievesPixelsByTheirVariance) {
+  const double share = amplitude_of(solve(with_common_noise(chequered(100.0f, 2.0f), 1.0f))) / 2.0;
+  EXPECT_GT(share, 0.2);
+  EXPECT_LT(share, 0.5);
+}
+
+// One sample in sixteen carries all light: windows take it for outliers, and the first step loses nearly all of it. The second gives it
+// back, by the albedo. As one half alone has such samples, all of it may be chance, and the error knows.
+TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
+  const auto albedo = [](int x) { return (x / 6) % 2 ? 0.8f : 0.2f; };
+  FeatureFrame description{kWidth,
+                           kHeight,
+                           {},
+                           [](size_t) { return 0.0f; },
+                           [&](int x, int, int channel, int) { return channel < 3 || channel > 5 ? 1.0f : albedo(x); }};
+  description.truth.assign(size_t{3} * kWidth * kHeight, 0.0f);
+  Frame frame = make_feature_frame(description);
+  for (int y = 0; y < kHeight; y += 4) {
+    for (int x = y / 4 % 4; x < kWidth; x += 4) frame.components[0].primal[0][size_t(y * kWidth + x)] = Radiance(32.0f * albedo(x));
+  }
+  const auto [image, error] = solve_with_error(frame);
+  double light = 0.0, beside_edges = 0.0, squares = 0.0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const double pixel = image[3 * (size_t(y) * kWidth + size_t(x))], value = pixel / albedo(x) / kHeight;
+      squares += pixel * pixel / (kWidth * kHeight);
+      light += value / kWidth;
+      if (x % 12 == 0 || x % 12 == 5) beside_edges += value / (kWidth / 6);  // dark, beside bright
+    }
+  }
+  EXPECT_NEAR(light, 1.0, 0.15);
+  EXPECT_NEAR(beside_edges, 1.0, 0.25);
+  EXPECT_NEAR(mean(error), squares, 0.05 * squares);
+}
+
+TEST(B2_Regularized, DifferencesThatWereNotSampledAreTheRegressions) {
+  FeatureFrame description = room(kWidth, kHeight);
+  const std::vector<float> without = solve(make_feature_frame(description));
+  description.gradients = true;
+  Frame frame = make_feature_frame(description);
+  for (auto& half : frame.pair_count) {
+    for (auto& count : half) std::fill(count.begin(), count.end(), 0.0f);
+  }
+  EXPECT_LT(rms_difference(solve(frame), without), 2e-3);
+}
+
+// Sampled differences whose variance is that of the regression's own have as much to say: they bring half of the chequer back.
+TEST(B2_Regularized, DifferencesCountByTheirVariance) {
+  FeatureFrame description = chequered(1.0f, 0.5f);
+  const double error = 1.25, variance = 0.5 * error;
+  EXPECT_LT(std::abs(amplitude_of(solve(with_common_noise(description, 1.0f)))), 0.05);
+  description.gradients = true;
+  Frame frame = with_common_noise(description, 1.0f);
+  for (int half = 0; half < kHalves; ++half) {
+    for (const Offset offset : {kRight, kUp}) {
+      for (Radiance& sum : frame.components[0].gradient[half][offset])
+        sum += Radiance(float((half == 0 ? 1.0 : -1.0) * std::sqrt(variance)));
+    }
+  }
+  EXPECT_NEAR(amplitude_of(solve(frame)), 0.25, 0.06);
 }
 
 TEST(BadInput_Regularized, ConstantFeatures) {

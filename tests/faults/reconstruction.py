@@ -1,0 +1,288 @@
+"""Faults in reconstruction by features: halves, features, variances, and the frozen operator."""
+
+from __future__ import annotations
+
+from fault import Fault, native
+
+REGULARIZED = "native/src/reconstruct/regularized.cpp"
+FEATURE_REGRESSION = "native/src/reconstruct/feature_regression.cpp"
+LOCAL_REGRESSION = "native/src/reconstruct/local_regression.cpp"
+ERROR_ESTIMATE = "native/src/reconstruct/error_estimate.cpp"
+FEATURES = "native/src/frame/features.cpp"
+READ = "native/src/frame/read.cpp"
+
+OF_FEATURES = (native("Features.HalvesAverageToThePass"),)
+KEEPS_FEATURES = (native("B2_Regularized.KeepsWhatTheFeaturesExplain"),)
+OF_ERROR = (native("B2_Regularized.ErrorIsVarianceAndSquaredBias"),)
+OF_SHARES = (native("B2_Regression.PixelsAndWindowsCountByTheirErrors"),)
+OF_PIXELS = (native("B2_Regularized.BelievesPixelsByTheirVariance"),)
+OF_DIFFERENCES = (native("B2_Regularized.DifferencesCountByTheirVariance"),)
+GIVES_BACK = (native("B2_Regularized.GivesBackTheLightOfRareSamples"),)
+OF_ALPHA = (native("B2_Regularized.AlphaGoesThroughTheSameWeights"),)
+OF_ESTIMATE = (native("ErrorEstimate.OfHalvesApartIsTheSquareOfHalfTheirDistance"),)
+
+HALVES = "halves mixed"
+SHIFT = "features shifted"
+VARIANCE = "variance off by 4"
+SECOND_STEP = "second step dropped"
+FROZEN = "alpha beside the operator"
+
+RECONSTRUCTION = (
+    Fault(
+        13,
+        HALVES,
+        "A is read in place of B: there is no noise",
+        REGULARIZED,
+        "read_primal_row(frame, component, {1, 2}, y, b.data());",
+        "read_primal_row(frame, component, {0, 1}, y, b.data());",
+        (native("B2_Regularized.TakesMostOfTheNoise"), *OF_ERROR),
+    ),
+    Fault(13, HALVES, "their sum in place of their difference", REGULARIZED, "0.5f * (a[i] - b[i])", "0.5f * (a[i] + b[i])", OF_ERROR),
+    Fault(
+        13,
+        HALVES,
+        "the mean is regressed as if it were the difference",
+        LOCAL_REGRESSION,
+        "std::copy_n(half_difference.row(y, c), w, both.row(y, 3 + c));",
+        "std::copy_n((c < 3 ? mean : half_difference).row(y, c), w, both.row(y, 3 + c));",
+        (native("B2_Regression.KnowsItsNoise"), *OF_SHARES),
+    ),
+    Fault(
+        13,
+        HALVES,
+        "the residual's noise counts as bias, not against it",
+        LOCAL_REGRESSION,
+        "sign = !Estimates || c < C / 2 ? 1.0f : -1.0f;",
+        "sign = 1.0f;",
+        OF_SHARES,
+    ),
+    Fault(
+        13,
+        HALVES,
+        "the second step takes the image for its noise",
+        FEATURE_REGRESSION,
+        "of_noise = difference(image.half_difference, first.noise);",
+        "of_noise = difference(image.mean, first.noise);",
+        OF_ERROR,
+    ),
+    Fault(
+        13,
+        HALVES,
+        "of a feature, half A is summed twice",
+        FEATURES,
+        "sum += plane.values[h][plane.channels * pixel + c];",
+        "sum += plane.values[0][plane.channels * pixel + c];",
+        OF_FEATURES,
+    ),
+    Fault(
+        13,
+        HALVES,
+        "of a feature, half B is divided by the samples of A",
+        FEATURES,
+        "plane.values[1][i] / static_cast<float>(b)",
+        "plane.values[1][i] / static_cast<float>(a)",
+        OF_FEATURES,
+    ),
+    Fault(
+        13,
+        HALVES,
+        "their sum in place of their difference, of samples and differences",
+        READ,
+        "row[i] = 0.5f * (row[i] - other[i]);",
+        "row[i] = 0.5f * (row[i] + other[i]);",
+        OF_ESTIMATE,
+    ),
+    Fault(
+        13,
+        HALVES,
+        "the error of L2 is that of the image, not of the difference",
+        ERROR_ESTIMATE,
+        "ErrorTerms terms{reconstruct(differences, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};",
+        "ErrorTerms terms{reconstruct(frame, component, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};",
+        OF_ESTIMATE,
+    ),
+    Fault(
+        14,
+        SHIFT,
+        "by one pixel, all of them",
+        FEATURE_REGRESSION,
+        "const size_t i = size_t(y) * size_t(features.width) + size_t(x);",
+        "const size_t i = size_t(y) * size_t(features.width) + size_t(std::min(x + 1, features.width - 1));",
+        KEEPS_FEATURES,
+    ),
+    Fault(
+        14,
+        SHIFT,
+        "by one pixel, the albedo of the second step",
+        FEATURE_REGRESSION,
+        "features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(x)) + size_t(c)]",
+        "features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(std::max(x - 1, 0))) + size_t(c)]",
+        GIVES_BACK,
+    ),
+    Fault(
+        14,
+        SHIFT,
+        "by one row, in windows",
+        LOCAL_REGRESSION,
+        "std::copy_n(task_.features->row(y, c) + begin,",
+        "std::copy_n(task_.features->row(std::max(y - 1, 0), c) + begin,",
+        (native("B1_Regression.KeepsWhatTheFeaturesExplain"), *KEEPS_FEATURES),
+    ),
+    Fault(
+        14,
+        SHIFT,
+        "by one pixel, as they are read",
+        FEATURES,
+        "read_mean(frame, *plane, halves, i, image.values.data() + i * image.channels);",
+        "read_mean(frame, *plane, halves, i > 0 ? i - 1 : 0, image.values.data() + i * image.channels);",
+        (*OF_FEATURES, *KEEPS_FEATURES),
+    ),
+    Fault(15, VARIANCE, "four times, of the image", REGULARIZED, "0.5f * (a[i] - b[i])", "a[i] - b[i]", OF_ERROR),
+    Fault(15, VARIANCE, "a quarter, of the image", REGULARIZED, "0.5f * (a[i] - b[i])", "0.25f * (a[i] - b[i])", OF_ERROR),
+    Fault(
+        15,
+        VARIANCE,
+        "four times, of a pixel's own value",
+        FEATURE_REGRESSION,
+        "kOwnTrust / (usual * usual * doubt * doubt + kLeastVariance)",
+        "kOwnTrust / (4.0f * usual * usual * doubt * doubt + kLeastVariance)",
+        OF_PIXELS,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "a quarter, of a pixel's own value",
+        FEATURE_REGRESSION,
+        "kOwnTrust / (usual * usual * doubt * doubt + kLeastVariance)",
+        "kOwnTrust / (0.25f * usual * usual * doubt * doubt + kLeastVariance)",
+        OF_PIXELS,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "four times, of what windows say",
+        LOCAL_REGRESSION,
+        "(noise > zero ? unit * noise : zero)",
+        "(noise > zero ? 4.0f * unit * noise : zero)",
+        OF_SHARES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "a quarter, of what windows say",
+        LOCAL_REGRESSION,
+        "(noise > zero ? unit * noise : zero)",
+        "(noise > zero ? 0.25f * unit * noise : zero)",
+        OF_SHARES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "four times, of windows' bias",
+        LOCAL_REGRESSION,
+        "bias = residual > zero ? unit * residual : zero;",
+        "bias = residual > zero ? 4.0f * unit * residual : zero;",
+        OF_SHARES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "four times, of the regression beside sampled differences",
+        REGULARIZED,
+        "const float error = regression.error().row(y)[x] + kLeastError;",
+        "const float error = 4.0f * regression.error().row(y)[x] + kLeastError;",
+        OF_DIFFERENCES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "a quarter, of sampled differences",
+        READ,
+        "rows.sampled[x] ? 0.5f * std::sqrt(sum / 3.0f)",
+        "rows.sampled[x] ? 0.25f * std::sqrt(sum / 3.0f)",
+        OF_DIFFERENCES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "four times, of a feature",
+        FEATURES,
+        "const float half = 0.5f * (plane.values[0]",
+        "const float half = (plane.values[0]",
+        OF_FEATURES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "a quarter, of a feature",
+        FEATURES,
+        "const float half = 0.5f * (plane.values[0]",
+        "const float half = 0.25f * (plane.values[0]",
+        OF_FEATURES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "in Error: the scale is not squared",
+        REGULARIZED,
+        "multiply(scale * scale, &error);",
+        "multiply(scale, &error);",
+        (native("B2_Regularized.ScalesWithTheImage"),),
+    ),
+    Fault(15, VARIANCE, "in Error: bias is left out", FEATURE_REGRESSION, "  add(first.bias, &error_);\n", "", OF_ERROR),
+    Fault(
+        15,
+        VARIANCE,
+        "in Error: noise of the second step is left out",
+        FEATURE_REGRESSION,
+        "  add(second.noise, &noise);\n",
+        "",
+        GIVES_BACK,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "in Error of L2: a half's difference is not halved",
+        READ,
+        "row[i] = 0.5f * (row[i] - other[i]);",
+        "row[i] = row[i] - other[i];",
+        OF_ESTIMATE,
+    ),
+    Fault(16, SECOND_STEP, "of the image", FEATURE_REGRESSION, "  add(second.mean, &image_);\n", "", GIVES_BACK),
+    Fault(
+        16,
+        SECOND_STEP,
+        "of what else goes through the weights",
+        FEATURE_REGRESSION,
+        "  add(of_residual_.apply(residual, cancel), &result);\n",
+        "",
+        OF_ALPHA,
+    ),
+    Fault(
+        17,
+        FROZEN,
+        "it stays as noisy as it was sampled",
+        REGULARIZED,
+        "store_channel(regression.apply(alpha, cancel), 0, 4,",
+        "store_channel(alpha, 0, 4,",
+        OF_ALPHA,
+    ),
+    Fault(
+        17,
+        FROZEN,
+        "its outliers keep all of their light",
+        FEATURE_REGRESSION,
+        "Field residual = difference(values, result);\n  scale_by(kept_, &residual);\n",
+        "Field residual = difference(values, result);\n",
+        OF_ALPHA,
+    ),
+    Fault(
+        17,
+        FROZEN,
+        "its pixels' own values count for nothing",
+        LOCAL_REGRESSION,
+        "(sum + own[x] * value[x]) / total",
+        "(sum + (Estimates ? own[x] * value[x] : 0.0f)) / total",
+        (native("B2_Regression.IsTheFrozenOperatorThatItApplies"), *OF_ALPHA),
+    ),
+)
