@@ -270,6 +270,9 @@ class _Display:
         self.refresh = self.FIRST_REFRESH
         self.next_refresh = self.start + self.refresh
         self.version = 0
+        self.is_watched = not bpy.app.background
+        if self.is_watched:
+            _read(job, handle, frozenset((passes.Pass.COMBINED,)))  # there is nothing yet, but the library knows then that somebody looks
 
     def show(self, progress: native.Progress) -> None:
         engine, now = self.job.engine, time.monotonic()
@@ -278,7 +281,7 @@ class _Display:
             self.next_text = now + self.TEXT_SECONDS
             engine.update_stats("", self._text(progress))
             engine.update_memory_stats(memory_used=progress.memory_bytes / 2**20, memory_peak=progress.peak_memory_bytes / 2**20)
-        if not bpy.app.background and progress.version != self.version and now >= self.next_refresh:
+        if self.is_watched and progress.version != self.version and now >= self.next_refresh:
             self.version = progress.version
             self._picture()
             self.next_refresh = time.monotonic() + self.refresh

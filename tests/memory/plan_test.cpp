@@ -14,12 +14,13 @@ struct Case {
   const char* name;
   uint32_t integrator, reconstruction;
   bool adaptive, transparent, gaps, error = false;
+  bool watched = false;
 };
 
 class PlannedBytes : public ::testing::TestWithParam<Case> {};
 
 GradusSettings settings_of(const Case& c) {
-  GradusSettings settings = test::small_settings(kWidth, kHeight, c.adaptive ? 20 : 2);
+  GradusSettings settings = test::small_settings(kWidth, kHeight, c.adaptive ? 20 : c.watched ? 8 : 2);
   settings.threads = 1;
   settings.integrator = c.gaps ? uint32_t{GRADUS_INTEGRATOR_AUTO} : c.integrator;  // a pilot
   settings.reconstruction = c.reconstruction;
@@ -33,11 +34,18 @@ GradusSettings settings_of(const Case& c) {
 // What the estimate of noise reads was left out, as were alpha's solve and those of L2 after a pilot: up to 230 bytes of 555 per pixel.
 TEST_P(PlannedBytes, AreThoseOfTheRendersPeak) {
   const GradusSettings settings = settings_of(GetParam());
-  const auto factory = test::fake_factory([](test::FakeIntegrator* fake) { fake->pairs_until = GetParam().gaps ? 350 : INT32_MAX; });
+  const auto factory = test::fake_factory([](test::FakeIntegrator* fake) {
+    fake->pairs_until = GetParam().gaps ? 350 : INT32_MAX;
+    if (GetParam().watched) fake->before = [](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
+  });
+  std::vector<float> seen(GetParam().watched ? 4 * size_t{kWidth} * kHeight : 0);
   const uint64_t planned = planned_bytes(make_plan(settings, *test::empty_snapshot()));
   const int64_t before = live_bytes();
   forget_peak();
-  test::start(settings, factory)->wait(-1.0);
+  const auto render = test::start(settings, factory);
+  do {
+    if (!seen.empty()) render->read_pass(GRADUS_PASS_COMBINED, seen.data(), seen.size());
+  } while (!render->wait(seen.empty() ? -1.0 : 0.02));
   const double taken = double(peak_bytes() - before), pixels = kWidth * kHeight;
   std::printf("  %.0f bytes per pixel, planned %.0f\n", taken / pixels, double(planned) / pixels);
   EXPECT_GE(double(planned), 0.97 * taken);
@@ -66,6 +74,9 @@ INSTANTIATE_TEST_SUITE_P(All, PlannedBytes, ::testing::ValuesIn([] {
                              all.push_back({"L2WithGapsError", gradient, GRADUS_RECONSTRUCTION_L2, false, transparent, true, true});
                              all.push_back({"WeightedError", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, false, transparent, false, true});
                            }
+                           all.push_back({"WatchedL2", gradient, GRADUS_RECONSTRUCTION_L2, false, false, false, false, true});
+                           all.push_back({"WatchedError", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, false, true, false, true, true});
+                           all.push_back({"Watched", path, GRADUS_RECONSTRUCTION_REGULARIZED, false, false, false, false, true});
                            return all;
                          }()),
                          [](const ::testing::TestParamInfo<Case>& info) {

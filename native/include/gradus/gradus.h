@@ -478,7 +478,7 @@ typedef struct GradusProgress {
   float fraction;                  /* 0..1, never falls */
   float seconds;
   uint32_t samples_done;           /* of settings.samples, completed for every pixel */
-  uint32_t version;                /* counts images that can be read: changes when there is something new to show */
+  uint32_t version;                /* counts images that can be read: changes when there is something new to show in Combined */
   uint64_t memory_bytes;           /* of the frame and the picture, now */
   uint64_t peak_memory_bytes;
 } GradusProgress;
@@ -490,14 +490,14 @@ GRADUS_API GradusError gradus_render_start(GradusScene scene, const GradusSettin
  * 64 at once. settings.samples counts from the beginning. The frame itself does not change. */
 GRADUS_API GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFrame frame, GradusRender* render);
 GRADUS_API GradusError gradus_render_poll(GradusRender render, GradusProgress* progress);
-/* Asks it to stop; what was sampled stays readable. */
+/* Asks it to stop. What was sampled stays readable; Combined is the last reconstruction of it that was shown, or the noisy image. */
 GRADUS_API GradusError gradus_render_cancel(GradusRender render);
 /* Blocks until done, cancelled or failed, or for at most `seconds` (negative: no limit). OK when it has ended well, CANCELLED or the
  * failure's code otherwise; INVALID_OPERATION while still running. */
 GRADUS_API GradusError gradus_render_wait(GradusRender render, double seconds);
 GRADUS_API GradusError gradus_render_release(GradusRender render);
-/* Copies a pass of the region, width·height·channels floats (`count` must match exactly); never waits for samples. While sampling, Combined
- * and Noisy Image are the noisy image so far; other passes can be read afterwards, INVALID_OPERATION before. */
+/* Copies a pass of the region, width·height·channels floats (`count` must match exactly); never waits for samples. While sampling: Noisy Image so
+ * far, and Combined, which whoever reads it once then sees reconstructed, first at a quarter of the size; others INVALID_OPERATION until later. */
 GRADUS_API GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* pixels, size_t count);
 /* The stats object of the finished frame as JSON (contract 7.1) without the fields that only the host knows. Valid until release. */
 GRADUS_API GradusError gradus_render_stats(GradusRender render, const char** json);

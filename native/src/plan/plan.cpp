@@ -239,6 +239,15 @@ uint64_t denoiser_bytes(const Plan& plan) {
   return 22 * sizeof(float) * area + 800 * tile + (32 << 20);
 }
 
+bool reconstructs(const Plan& plan) { return plan.solves || plan.denoises; }
+
+// The frame of the picture that a watcher sees first (render/quarter_picture.h), and its reconstruction.
+uint64_t quarter_bytes(const Plan& plan) {
+  const auto side = [](int32_t size) { return uint64_t(size) / 4 + 3; };
+  const uint64_t frame = kHalves * (sizeof(Radiance) + sizeof(uint32_t)) + pass_bytes_per_pixel(feature_passes());
+  return (frame + (4 + regularized_floats(plan)) * sizeof(float)) * side(plan.delivered.width()) * side(plan.delivered.height());
+}
+
 }  // namespace
 
 uint64_t planned_bytes(const Plan& plan) {
@@ -247,15 +256,19 @@ uint64_t planned_bytes(const Plan& plan) {
   bytes += kHalves * (sizeof(uint32_t) + (plan.gradients ? kOffsets * sizeof(float) : 0));
   bytes += pass_bytes_per_pixel(plan.passes);
   if (wants(plan.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
-  bytes += 4 * sizeof(float);  // what is shown meanwhile
+  bytes += 4 * sizeof(float);  // the noisy image that is shown meanwhile
   uint64_t floats = reconstruction_floats(plan);
+  if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is
   if (wants(plan.passes, GRADUS_PASS_ERROR)) floats = std::max(floats, error_floats(plan)) + 1;
+  // A reconstruction that is shown stays until the next one is there.
+  if (reconstructs(plan)) bytes += (wants(plan.passes, GRADUS_PASS_ERROR) ? 5 : 4) * sizeof(float);
   if (plan.adaptive) {
     floats = std::max(floats, noise_floats(plan));
     bytes += 2 * sizeof(uint32_t);  // where the samples of a batch go
   }
   const uint64_t area = uint64_t(plan.sampled.area());
-  return bytes * area + std::max(floats * sizeof(float) * area, plan.denoises ? denoiser_bytes(plan) : 0);
+  return bytes * area +
+         std::max({floats * sizeof(float) * area, plan.denoises ? denoiser_bytes(plan) : 0, reconstructs(plan) ? quarter_bytes(plan) : 0});
 }
 
 }  // namespace gradus

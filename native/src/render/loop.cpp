@@ -1,21 +1,18 @@
 #include "render/loop.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <chrono>
 #include <cmath>
 
 #include "base/device.h"
+#include "base/error.h"
 #include "base/fpu.h"
-#include "frame/cells.h"
 #include "frame/pass_planes.h"
 #include "render/batches.h"
 #include "render/combine.h"
 #include "render/denoise_combined.h"
 #include "render/pass_read.h"
 #include "render/resume.h"
-#include "settings/options.h"
+#include "render/tiles.h"
 #include "settings/pass_table.h"
 
 namespace gradus {
@@ -33,16 +30,26 @@ void read_error_of_noisy(const Frame& frame, const Region& region, float* pixels
   std::copy(error.begin(), error.end(), pixels);
 }
 
-uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow; }
+// From here on every pixel has samples of both halves: there is something to reconstruct.
+constexpr uint32_t kBothHalves = 2;
 
 }  // namespace
+
+std::unique_ptr<Integrator> LoopInput::make_integrator(const GradusSettings& its_settings, uint32_t integrator) const {
+  IntegratorContext context;
+  context.snapshot = snapshot;
+  context.camera = Camera(snapshot->camera, its_settings.width, its_settings.height);
+  context.settings = its_settings;
+  return factory(context, integrator);
+}
 
 RenderLoop::RenderLoop(LoopInput input)
     : input_(std::move(input)),
       denoiser_(choose_denoiser(input_.settings.denoiser, input_.device.get(), &why_no_denoiser_)),
       plan_(make_plan(input_.settings, *input_.snapshot, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
-      tiles_(make_cells(plan_.sampled, tile_side(plan_.sampled, input_.threads))),
       arena_(arena_size(input_.threads)),
+      picture_(plan_.delivered),
+      live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_),
       process_cpu_start_(process_cpu_nanoseconds()) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
   const uint64_t bytes = planned_bytes(plan_), available = machine_memory_bytes();
@@ -73,8 +80,6 @@ void RenderLoop::render() {
   prepare();
   set_phase(GRADUS_PHASE_SAMPLING);
   sample();
-  stats_.cpu_seconds.sample += 1e-9 * double(sample_cpu_.load());
-  stats_.seconds.sample = clock_.seconds() - sampling_began_;
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
   reconstruct_frame();
@@ -82,23 +87,19 @@ void RenderLoop::render() {
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
 }
 
-IntegratorContext RenderLoop::integrator_context(const GradusSettings& settings) const {
-  IntegratorContext context;
-  context.snapshot = input_.snapshot;
-  context.camera = Camera(input_.snapshot->camera, settings.width, settings.height);
-  context.settings = settings;
-  return context;
-}
-
 GradientMap RenderLoop::choose_gradients() {
   GradientMap map;
   map.share = plan_.gradients ? 1.0 : 0.0;
   if (!plan_.pilot) return map;
   const GradusSettings settings = pilot_settings(input_.settings);
+  // A reconstruction that needs differences may turn out not to come.
+  Interruption quarter;
+  quarter.is_due = [this] { return !input_.resumed && live_view_.quarter_is_due(without_gradients(plan_)); };
+  quarter.run = [this] { live_view_.show_quarter(); };
   const uint64_t cpu = process_cpu_nanoseconds();
-  const auto integrator = input_.factory(integrator_context(settings), plan_.integrator);
-  arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_); });
-  stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  const auto integrator = input_.make_integrator(settings, plan_.integrator);
+  arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_, quarter); });
+  stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu) - live_view_.cpu_seconds();
   // A pilot that was cut short has found nothing out.
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
   return map;
@@ -129,13 +130,11 @@ void RenderLoop::prepare() {
   frame->frame_number = settings.frame;
   stats_.warnings = input_.snapshot->warnings;
 
-  integrator_ = input_.factory(integrator_context(frame->settings), integrator);
-  {
-    const std::lock_guard lock(mutex_);
-    frame_ = std::move(frame);
-    combined_.assign(4 * size_t(plan_.delivered.area()), 0.0f);
-  }
-  if (input_.resumed) show(plan_.delivered);
+  integrator_ = input_.make_integrator(frame->settings, integrator);
+  picture_.expect_tiles();
+  if (input_.resumed) picture_.show_tile(*frame, plan_.delivered);
+  const std::lock_guard lock(mutex_);
+  frame_ = std::move(frame);
 }
 
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
@@ -151,7 +150,7 @@ uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
   if (!(limit > 0.0)) return kLongestBatch;
   const uint32_t taken = begin - first_begin_;
   if (taken == 0) return 1;
-  const double elapsed = std::max(clock_.seconds() - sampling_began_, 1e-9);
+  const double elapsed = std::max(sampling_.seconds(), 1e-9);
   return static_cast<uint32_t>(std::clamp((limit - elapsed) / elapsed * taken + 0.5, 0.0, double(kLongestBatch)));
 }
 
@@ -168,18 +167,22 @@ void RenderLoop::judge() {
 
 // In adaptive renders `begin` and `end` count the samples of pixels on average over the cells that go on.
 void RenderLoop::sample() {
-  sampling_began_ = clock_.seconds();
+  sampling_.start();
   const auto cancel = [this] { return stop_.load(std::memory_order_relaxed); };
   const bool adaptively = input_.settings.noise_threshold > 0.0f;  // a render that is too short to be so may go on as one that is
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
   if (adaptively) adaptive_ = std::make_unique<AdaptiveSampling>(*frame_, input_.settings.noise_threshold, plan_.first_check);
   first_begin_ = begin;
+  sampler_ = std::make_unique<TileSampler>(*integrator_, make_cells(plan_.sampled, tile_side(plan_.sampled, input_.threads)), gradients_,
+                                           adaptive_.get(), stop_, frame_.get());
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
     if (adaptive_ && begin >= kLongestBatch && (begin % kLongestBatch == 0 || begin == first_begin_)) judge();
     if (cancel() || is_done()) break;
+    if (show_is_due(begin)) show(begin);
+    if (cancel()) break;
     if (adaptive_) adaptive_->start_batch(end - begin);
     frame_->samples.add({first + begin, first + (adaptive_ ? adaptive_->most_taken() : end)});
     frame_->shared = {};
@@ -187,85 +190,56 @@ void RenderLoop::sample() {
     if (cancel()) break;
     if (adaptive_) frame_->shared = adaptive_->state(end);
     tracker_.set_samples(end);
-    tracker_.new_image();
+    if (!picture_.is_reconstructed()) tracker_.new_image();
   }
   stats_.stopped = cancel() ? "cancelled" : is_done() ? "noise" : begin < input_.settings.samples ? "time" : "samples";
   tracker_.raise_to(ProgressTracker::kSamplingShare);
+  stats_.cpu_seconds.sample += sampler_->cpu_seconds();
+  stats_.seconds.sample = sampling_.seconds();
+  stats_.cpu_seconds.preview = live_view_.cpu_seconds();
+  stats_.seconds.preview = live_view_.seconds();
 }
 
 void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
-  arena_.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, tiles_.size(), 1),
-        [&](const tbb::blocked_range<size_t>& range) {
-          for (size_t i = range.begin(); i < range.end(); ++i) sample_tile(i, begin, end);
-        },
-        tbb::simple_partitioner());
-  });
+  const auto after_tile = [&](const Region& tile, uint64_t pixel_samples) {
+    tile_done(tile, pixel_samples);
+    return show_is_due(begin);
+  };
+  sampler_->start_batch(begin, end);
+  for (;;) {
+    bool is_whole = false;
+    arena_.execute([&] { is_whole = sampler_->run(after_tile); });
+    if (is_whole || stop_.load(std::memory_order_relaxed)) return;
+    show(begin);
+  }
 }
 
-void RenderLoop::sample_tile(size_t tile, uint32_t begin, uint32_t end) {
-  if (stop_.load(std::memory_order_relaxed)) return;
-  const FlushDenormals flush;
-  WorkUnit unit;
-  unit.tile = tiles_[tile];
-  unit.first_sample = input_.settings.first_sample + begin;
-  unit.count = end - begin;
-  if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
-  Counters counters;
-  const uint64_t cpu = thread_cpu_nanoseconds();
-  if (adaptive_) {
-    counters = sample_cells(unit);
+bool RenderLoop::show_is_due(uint32_t begin) const {
+  const uint32_t reconstruction = frame_->settings.reconstruction;
+  if (begin < kBothHalves) return live_view_.quarter_is_due(reconstruction);
+  return live_view_.refresh_is_due(reconstruction, sampling_.seconds(), tracker_.fraction() / ProgressTracker::kSamplingShare);
+}
+
+void RenderLoop::show(uint32_t begin) {
+  sampling_.stop();
+  if (begin < kBothHalves) {
+    live_view_.show_quarter();
   } else {
-    integrator_->sample(unit, frame_.get(), &counters, stop_);
+    live_view_.refresh(*frame_, sampling_.seconds());
   }
-  show(unit.tile);
-  sample_cpu_ += thread_cpu_nanoseconds() - cpu;
-  {
-    const std::lock_guard lock(counters_mutex_);
-    frame_->counters.add(counters);
-  }
-  tile_done(uint64_t(unit.tile.area()) * unit.count);
+  sampling_.start();
 }
 
-// Cell by cell, so that the cost of each is known.
-Counters RenderLoop::sample_cells(WorkUnit unit) {
-  unit.first_map = &adaptive_->batch().first;
-  unit.count_map = &adaptive_->batch().count;
-  Counters sum;
-  for (const Region& cell : make_cells(unit.tile)) {
-    unit.tile = cell;
-    Counters counters;
-    integrator_->sample(unit, frame_.get(), &counters, stop_);
-    adaptive_->add_rays(cell, rays_of(counters));
-    sum.add(counters);
-  }
-  return sum;
-}
-
-// What the tile has now becomes what is seen of it. Readers take the picture from here: they wait for no sampler, whose batch may take
-// long, and see no half of one.
-void RenderLoop::show(const Region& tile) {
-  const Region &all = plan_.delivered, part = intersection(tile, all);
-  if (part.width() <= 0 || part.height() <= 0) return;
-  std::vector<float> rgba(4 * size_t(part.area()));
-  read_frame_pass(*frame_, GRADUS_PASS_NOISY_IMAGE, part, rgba.data());
-  const size_t row = 4 * size_t(part.width());
-  const std::lock_guard lock(mutex_);
-  for (int32_t y = part.y0; y < part.y1; ++y) {
-    const size_t to = 4 * (size_t(y - all.y0) * size_t(all.width()) + size_t(part.x0 - all.x0));
-    std::copy_n(rgba.data() + size_t(y - part.y0) * row, row, combined_.data() + to);
-  }
-}
-
-void RenderLoop::tile_done(uint64_t pixel_samples) {
+void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
+  picture_.show_tile(*frame_, tile);
   const uint64_t done = work_done_ += pixel_samples;
   const double whole = double(plan_.sampled.area()) * input_.settings.samples;
   double fraction = double(done) / whole;
-  const double now = clock_.seconds();
-  if (input_.settings.time_limit > 0.0f) fraction = std::max(fraction, (now - sampling_began_) / input_.settings.time_limit);
+  const double sampled = sampling_.seconds();
+  if (input_.settings.time_limit > 0.0f) fraction = std::max(fraction, sampled / input_.settings.time_limit);
   tracker_.raise_to(ProgressTracker::kSamplingShare * static_cast<float>(std::min(fraction, 1.0)));
-  const auto ms = static_cast<int64_t>(1e3 * now);
+  if (picture_.is_reconstructed()) return;  // tiles are not seen
+  const auto ms = static_cast<int64_t>(1e3 * sampled);
   int64_t last = last_image_ms_.load(std::memory_order_relaxed);
   if (ms - last >= kImageIntervalMs && last_image_ms_.compare_exchange_strong(last, ms)) tracker_.new_image();
 }
@@ -283,16 +257,14 @@ void RenderLoop::reconstruct_frame() {
   stats_.seconds.reconstruct = clock_.seconds() - began;
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
-  const std::lock_guard lock(mutex_);
-  combined_ = std::move(rgba);
-  error_ = std::move(error);
+  picture_.show(std::move(rgba), std::move(error));
 }
 
 void RenderLoop::denoise_frame() {
   const double began = clock_.seconds();
   const uint64_t cpu = process_cpu_nanoseconds();
   const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
-  std::vector<float> rgba = combined_;
+  std::vector<float> rgba = picture_.combined();
   const std::string failure =
       denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel, &rgba);
   if (failure.empty()) {
@@ -302,13 +274,13 @@ void RenderLoop::denoise_frame() {
   }
   stats_.seconds.denoise = clock_.seconds() - began;
   stats_.cpu_seconds.denoise = 1e-9 * double(process_cpu_nanoseconds() - cpu);
-  const std::lock_guard lock(mutex_);
-  combined_ = std::move(rgba);
+  picture_.show_denoised(std::move(rgba));
 }
 
 void RenderLoop::set_phase(GradusPhase phase) {
   const std::lock_guard lock(mutex_);
   phase_ = phase;
+  if (!is_sampling()) picture_.end_tiles();
 }
 
 void RenderLoop::end(GradusError code, const std::string& text) noexcept {
@@ -319,6 +291,8 @@ void RenderLoop::end(GradusError code, const std::string& text) noexcept {
     stats_.process_cpu = 1e-9 * double(process_cpu_nanoseconds() - process_cpu_start_);
     code_ = code;
     phase_ = code == GRADUS_OK ? GRADUS_PHASE_DONE : code == GRADUS_ERROR_CANCELLED ? GRADUS_PHASE_CANCELLED : GRADUS_PHASE_FAILED;
+    picture_.end_tiles();
+    if (code != GRADUS_OK) picture_.forget_preview();
     if (code == GRADUS_OK) tracker_.raise_to(1.0f);
     tracker_.new_image();
     text_ = text;
@@ -352,7 +326,7 @@ GradusProgress RenderLoop::progress() const {
     p.fraction = tracker_.fraction();
     p.seconds = static_cast<float>(stats_.total_seconds);
   }
-  p.memory_bytes = (frame_ ? frame_->memory_bytes() : 0) + (combined_.size() + error_.size()) * sizeof(float);
+  p.memory_bytes = (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes();
   return p;
 }
 
@@ -364,20 +338,18 @@ GradusError RenderLoop::outcome(std::string* text) const {
 }
 
 void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
-  const bool is_image = pass_info(pass).kind == PassKind::Image;
+  if (pass == GRADUS_PASS_COMBINED) live_view_.watch();
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_sampling() && pass_info(pass).kind != PassKind::Image) {
+      throw invalid_operation("pass " + std::string(pass_info(pass).name) + " comes when sampling has ended");
+    }
+  }
+  if (picture_.read(pass, pixels)) return;
   std::shared_ptr<const Frame> frame;
   {
     const std::lock_guard lock(mutex_);
-    if (is_sampling() && !is_image) throw invalid_operation("pass " + std::string(pass_info(pass).name) + " comes when sampling has ended");
-    if (!combined_.empty() && (is_sampling() || pass == GRADUS_PASS_COMBINED)) {
-      std::copy(combined_.begin(), combined_.end(), pixels);
-      return;
-    }
-    if (pass == GRADUS_PASS_ERROR && !error_.empty()) {
-      std::copy(error_.begin(), error_.end(), pixels);
-      return;
-    }
-    frame = frame_;
+    if (!is_sampling()) frame = frame_;
   }
   if (frame && pass == GRADUS_PASS_ERROR && wants(plan_.passes, pass)) return read_error_of_noisy(*frame, plan_.delivered, pixels);
   if (frame) return read_frame_pass(*frame, pass, plan_.delivered, pixels);

@@ -10,28 +10,20 @@
 
 #include <tbb/task_arena.h>
 
-#include "base/clock.h"
-#include "base/error.h"
+#include "base/stopwatch.h"
 #include "denoise/oidn_library.h"
 #include "frame/frame.h"
 #include "plan/plan.h"
 #include "render/adaptive_sampling.h"
+#include "render/live_view.h"
+#include "render/loop_input.h"
+#include "render/picture.h"
 #include "render/pilot.h"
-#include "render/render.h"
 #include "render/stats.h"
-#include "render/tiles.h"
+#include "render/tile_sampler.h"
 #include "render/tracker.h"
 
 namespace gradus {
-
-struct LoopInput {
-  std::shared_ptr<Device> device;
-  std::shared_ptr<const Snapshot> snapshot;
-  GradusSettings settings{};
-  std::shared_ptr<const Frame> resumed;
-  IntegratorFactory factory;
-  uint32_t threads = 1;
-};
 
 class RenderLoop {
  public:
@@ -52,7 +44,6 @@ class RenderLoop {
  private:
   void render();
   void prepare();
-  IntegratorContext integrator_context(const GradusSettings& settings) const;
   // Whether gradients pay, and where; all of the picture if that is not asked.
   GradientMap choose_gradients();
   void sample();
@@ -64,10 +55,10 @@ class RenderLoop {
   // Finds out which cells are done and where the next samples go.
   void judge();
   void run_batch(uint32_t begin, uint32_t end);
-  void sample_tile(size_t tile, uint32_t begin, uint32_t end);
-  Counters sample_cells(WorkUnit unit);
-  void show(const Region& tile);
-  void tile_done(uint64_t pixel_samples);
+  void tile_done(const Region& tile, uint64_t pixel_samples);
+  // What a watcher is shown (render/live_view.h), before the samples from `begin` on are taken or between two of their tiles.
+  bool show_is_due(uint32_t begin) const;
+  void show(uint32_t begin);
   bool is_done() const { return adaptive_ && adaptive_->all_done(); }  // by noise
   bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
   bool is_sampling() const { return phase_ < GRADUS_PHASE_RECONSTRUCTING; }
@@ -78,10 +69,11 @@ class RenderLoop {
   std::string why_no_denoiser_;
   const std::shared_ptr<const OidnLibrary> denoiser_;
   const Plan plan_;
-  const std::vector<Region> tiles_;
   mutable tbb::task_arena arena_;
   std::atomic<bool> stop_{false};
   ProgressTracker tracker_;
+  Picture picture_;
+  mutable LiveView live_view_;  // readers are its watchers
   const WallClock clock_;
   const uint64_t process_cpu_start_;
 
@@ -91,11 +83,11 @@ class RenderLoop {
   GradientMap gradients_;
   std::unique_ptr<AdaptiveSampling> adaptive_;  // where the plan is
 
+  std::unique_ptr<TileSampler> sampler_;
+
   std::atomic<uint64_t> work_done_{0};  // pixel samples
-  std::atomic<uint64_t> sample_cpu_{0};
   std::atomic<int64_t> last_image_ms_{0};
-  std::mutex counters_mutex_;
-  double sampling_began_ = 0.0;
+  Stopwatch sampling_;        // without what a watcher is shown meanwhile
   uint32_t first_begin_ = 0;  // samples that were resumed
   RenderStats stats_;
 
@@ -104,8 +96,6 @@ class RenderLoop {
   GradusPhase phase_ = GRADUS_PHASE_WAITING;
   GradusError code_ = GRADUS_OK;
   std::string text_;
-  std::vector<float> combined_;  // RGBA of the delivered region: the noisy image, tile by tile, until it is reconstructed
-  std::vector<float> error_;     // of what is reconstructed, if asked for
 };
 
 }  // namespace gradus

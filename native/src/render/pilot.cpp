@@ -1,7 +1,5 @@
 #include "render/pilot.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "frame/cells.h"
 #include "plan/l2_noise.h"
 #include "reconstruct/solver.h"
+#include "render/pausable_loop.h"
 #include "sampling/hash.h"
 
 namespace gradus {
@@ -128,14 +127,17 @@ GradusSettings pilot_settings(GradusSettings settings) {
 }
 
 GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction, const Region& region,
-                      int channels, const std::atomic<bool>& stop) {
+                      int channels, const std::atomic<bool>& stop, const Interruption& interruption) {
   const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
+  const auto is_stopped = [&stop] { return stop.load(std::memory_order_relaxed); };
   // Squares at the region's border are judged by those beyond, too; L2's by all.
   const CellGrid squares(is_l2 ? full : grown_to_squares(grown(region, 2 * kSquare, full), full), kSquare);
   const L2Noises l2 = l2_noises(settings, reconstruction);
   std::vector<PilotSums> sums(squares.cells.size());
-  tbb::parallel_for(size_t{0}, sums.size(), [&](size_t i) {
+  std::vector<uint8_t> done(sums.size(), 0);
+  const auto look_at = [&](size_t i) {
+    if (is_stopped()) return true;
     const FlushDenormals flush;
     Counters counters;
     Frame frame(settings.width, settings.height, grown(squares.cells[i], 1, full), channels, 1, true);
@@ -147,12 +149,18 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
     unit.count = kSamples;
     unit.pixel_map = &map;
     integrator.sample(unit, &frame, &counters, stop);
-    if (stop.load(std::memory_order_relaxed)) return;
+    if (is_stopped()) return true;
     for (const size_t pixel : pixels) add_pixel(frame, pixel, l2, &sums[i]);
     sums[i].plain_rays = double(counters.rays_primary + counters.rays_bounce + counters.rays_shadow);
     sums[i].shift_rays = double(counters.rays_shift);
     sums[i].shift_shadow_rays = double(counters.rays_shift_shadow);
-  });
+    done[i] = 1;
+    return interruption.is_due();
+  };
+  while (!run_until_pause(&done, look_at)) {
+    if (is_stopped()) return {};
+    interruption.run();
+  }
   const std::vector<bool> chosen = choose(squares, sums, reconstruction);
   GradientMap map;
   map.pixels.assign(size_t(region.area()), 0);

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "integrator/integrator.h"
@@ -27,10 +28,16 @@ struct GradientMap {
 // The settings that a pilot's integrator is made for.
 GradusSettings pilot_settings(GradusSettings settings);
 
+// What a pilot makes way for.
+struct Interruption {
+  std::function<bool()> is_due = [] { return false; };  // asked on any thread
+  std::function<void()> run = [] {};
+};
+
 // Runs in the caller's arena. `integrator`: samples gradients, made for pilot_settings().
 // reconstruction: the one that will run, never AUTO.
 GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction, const Region& region,
-                      int channels, const std::atomic<bool>& stop);
+                      int channels, const std::atomic<bool>& stop, const Interruption& interruption = {});
 
 // Says what was decided, and why.
 void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped);

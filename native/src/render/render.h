@@ -34,8 +34,8 @@ class Render {
   // False: still running after `seconds` (negative: no limit). Rethrows nothing; see outcome().
   bool wait(double seconds);
   GradusError outcome(std::string* text) const;  // OK, CANCELLED or the failure, once ended
-  // The delivered region. While sampling, Combined and Noisy Image are the noisy image so far, each tile as of its last batch that ended, 0
-  // before the first one, and never waited for; all other passes come afterwards, invalid_operation before.
+  // The delivered region. While sampling, Noisy Image is the noisy image so far, each tile as of its last batch that ended, 0 before the first
+  // one; so is Combined until its reader, a watcher, is shown more (render/live_view.h). Never waits. Others: invalid_operation until then.
   void read_pass(uint32_t pass, float* pixels, size_t count) const;
   // Throw invalid_operation while running.
   std::string stats_json() const;

@@ -50,7 +50,9 @@ double mean_samples(const Frame& frame) {
   return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
 }
 
-json phases(const PhaseTimes& t) { return {{"sample", t.sample}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0}}; }
+json phases(const PhaseTimes& t) {
+  return {{"sample", t.sample}, {"preview", t.preview}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0}};
+}
 
 }  // namespace
 
@@ -76,7 +78,8 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["seconds"] = phases(stats.seconds);
   j["seconds"]["total"] = stats.total_seconds;
   j["cpu_seconds"] = phases(stats.cpu_seconds);
-  j["cpu_seconds"]["total"] = stats.cpu_seconds.sample + stats.cpu_seconds.reconstruct + stats.cpu_seconds.denoise;
+  const PhaseTimes& cpu = stats.cpu_seconds;
+  j["cpu_seconds"]["total"] = cpu.sample + cpu.preview + cpu.reconstruct + cpu.denoise;
   j["process_cpu"] = stats.process_cpu;
   j["rays"] = rays(frame.counters);
   j["shifts"] = shifts(frame.counters);

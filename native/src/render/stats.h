@@ -12,13 +12,14 @@ namespace gradus {
 
 struct PhaseTimes {
   double sample = 0.0;
+  double preview = 0.0;  // what a watcher saw meanwhile
   double reconstruct = 0.0;
   double denoise = 0.0;
 };
 
 struct RenderStats {
-  // CPU time of samples is that of our threads, by tiles; that of the pilot, of estimates of noise, of solves and of the denoiser is the
-  // whole process's meanwhile, what the host does in these moments included.
+  // CPU time of samples is that of our threads, by tiles; that of the pilot, of previews, of estimates of noise, of solves and of the
+  // denoiser is the whole process's meanwhile, what the host does in these moments included.
   PhaseTimes seconds, cpu_seconds;
   double total_seconds = 0.0;
   double process_cpu = 0.0;

@@ -1,0 +1,20 @@
+// A smaller picture of a frame, brought to the frame's own size.
+#pragma once
+
+#include <vector>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+struct FrameSize {
+  uint32_t width = 0, height = 0;
+};
+
+// Pixels of the frame `small` between whose centres those of `region`, a part of the frame `full`, lie.
+Region covering(const Region& region, FrameSize full, FrameSize small);
+
+// Bilinear. rgba: the pixels covering(region, full, small). Runs in the caller's arena.
+std::vector<float> enlarge(const std::vector<float>& rgba, const Region& region, FrameSize full, FrameSize small);
+
+}  // namespace gradus

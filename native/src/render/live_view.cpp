@@ -1,0 +1,75 @@
+#include "render/live_view.h"
+
+#include "base/clock.h"
+#include "render/combine.h"
+#include "render/quarter_picture.h"
+#include "settings/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// Adds what passes while it lives.
+class Bill {
+ public:
+  Bill(double* seconds, double* cpu_seconds) : seconds_(seconds), cpu_seconds_(cpu_seconds) {}
+  ~Bill() {
+    *seconds_ += clock_.seconds();
+    *cpu_seconds_ += 1e-9 * double(process_cpu_nanoseconds() - cpu_);
+  }
+  Bill(const Bill&) = delete;
+  Bill& operator=(const Bill&) = delete;
+  double seconds() const { return clock_.seconds(); }
+
+ private:
+  double *const seconds_, *const cpu_seconds_;
+  const WallClock clock_;
+  const uint64_t cpu_ = process_cpu_nanoseconds();
+};
+
+}  // namespace
+
+LiveView::LiveView(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
+                   ProgressTracker* tracker)
+    : input_(input), plan_(plan), stop_(stop), arena_(arena), picture_(picture), tracker_(tracker) {}
+
+// The denoiser's network takes tens of times as long as a regression on the features that are there for it anyway.
+uint32_t LiveView::shown(uint32_t reconstruction) const {
+  return reconstruction == GRADUS_RECONSTRUCTION_NONE && plan_.denoises ? uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED} : reconstruction;
+}
+
+bool LiveView::quarter_is_due(uint32_t reconstruction) const {
+  return is_watched() && !has_quarter_ && shown(reconstruction) != GRADUS_RECONSTRUCTION_NONE;
+}
+
+bool LiveView::refresh_is_due(uint32_t reconstruction, double sampled, double fraction) const {
+  return is_watched() && shown(reconstruction) != GRADUS_RECONSTRUCTION_NONE && rule_.is_due(sampled, fraction);
+}
+
+void LiveView::show_quarter() {
+  has_quarter_ = true;
+  const Bill bill(&seconds_, &cpu_seconds_);
+  const auto integrator = input_.make_integrator(quarter_settings(input_.settings), GRADUS_INTEGRATOR_PATH);
+  QuarterPicture quarter;
+  arena_->execute([&] { quarter = render_quarter(*integrator, input_.settings, plan_.delivered, plan_.channels, stop_); });
+  if (is_stopped()) return;
+  rule_.expect(quarter.seconds_per_pixel * double(plan_.sampled.area()));
+  picture_->show_preview(std::move(quarter.rgba));
+  tracker_->new_image();
+}
+
+void LiveView::refresh(const Frame& frame, double sampled) {
+  const Bill bill(&seconds_, &cpu_seconds_);
+  const CancelTest cancel = [this] { return is_stopped(); };
+  const uint32_t reconstruction = shown(frame.settings.reconstruction);
+  SolveReport report;
+  std::vector<float> rgba, error;
+  std::vector<float>* wanted = wants(plan_.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
+  arena_->execute(
+      [&] { rgba = combine(frame, reconstruction, frame.settings.reconstruction_alpha, plan_.delivered, cancel, &report, wanted); });
+  if (cancel()) return;
+  picture_->show(std::move(rgba), std::move(error));
+  tracker_->new_image();
+  rule_.done(sampled, bill.seconds());
+}
+
+}  // namespace gradus

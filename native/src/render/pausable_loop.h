@@ -1,0 +1,31 @@
+// A parallel loop that something else can come in between.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+namespace gradus {
+
+// Calls body(i) for each i that is not done, on all threads of the caller's arena, until one of them says to pause. The body sets done[i],
+// or leaves it to be called again, and says whether to pause. True: all are done.
+template <class Body>
+bool run_until_pause(std::vector<uint8_t>* done, Body&& body) {
+  std::atomic<bool> pause{false};
+  tbb::parallel_for(
+      tbb::blocked_range<size_t>(0, done->size(), 1),
+      [&](const tbb::blocked_range<size_t>& range) {
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          if ((*done)[i] != 0 || pause.load(std::memory_order_relaxed)) continue;
+          if (body(i)) pause.store(true, std::memory_order_relaxed);
+        }
+      },
+      tbb::simple_partitioner());
+  return std::all_of(done->begin(), done->end(), [](uint8_t is_done) { return is_done != 0; });
+}
+
+}  // namespace gradus

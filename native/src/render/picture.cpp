@@ -1,0 +1,83 @@
+#include "render/picture.h"
+
+#include <algorithm>
+
+#include "frame/cells.h"
+#include "render/pass_read.h"
+
+namespace gradus {
+
+void Picture::expect_tiles() {
+  std::vector<float> black(4 * size_t(region_.area()), 0.0f);
+  const std::lock_guard lock(mutex_);
+  noisy_ = std::move(black);
+}
+
+void Picture::show_tile(const Frame& frame, const Region& tile) {
+  const Region part = intersection(tile, region_);
+  if (part.width() <= 0 || part.height() <= 0) return;
+  std::vector<float> rgba(4 * size_t(part.area()));
+  read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, part, rgba.data());
+  const size_t row = 4 * size_t(part.width());
+  const std::lock_guard lock(mutex_);
+  for (int32_t y = part.y0; y < part.y1; ++y) {
+    const size_t to = 4 * (size_t(y - region_.y0) * size_t(region_.width()) + size_t(part.x0 - region_.x0));
+    std::copy_n(rgba.data() + size_t(y - part.y0) * row, row, noisy_.data() + to);
+  }
+}
+
+void Picture::show(std::vector<float> rgba, std::vector<float> error) {
+  const std::lock_guard lock(mutex_);
+  combined_ = std::move(rgba);
+  error_ = std::move(error);
+  is_preview_ = false;
+}
+
+void Picture::show_denoised(std::vector<float> rgba) {
+  const std::lock_guard lock(mutex_);
+  combined_ = std::move(rgba);
+}
+
+void Picture::show_preview(std::vector<float> rgba) {
+  const std::lock_guard lock(mutex_);
+  combined_ = std::move(rgba);
+  is_preview_ = true;
+}
+
+void Picture::forget_preview() {
+  const std::lock_guard lock(mutex_);
+  if (is_preview_) combined_ = {};
+}
+
+void Picture::end_tiles() {
+  const std::lock_guard lock(mutex_);
+  noisy_ = {};
+}
+
+bool Picture::is_reconstructed() const {
+  const std::lock_guard lock(mutex_);
+  return !combined_.empty();
+}
+
+std::vector<float> Picture::combined() const {
+  const std::lock_guard lock(mutex_);
+  return combined_;
+}
+
+bool Picture::read(uint32_t pass, float* pixels) const {
+  const std::lock_guard lock(mutex_);
+  const std::vector<float>* from = nullptr;
+  if (pass == GRADUS_PASS_COMBINED) from = combined_.empty() ? &noisy_ : &combined_;
+  if (pass == GRADUS_PASS_NOISY_IMAGE) from = &noisy_;
+  if (pass == GRADUS_PASS_ERROR) from = &error_;
+  if (from == nullptr || from->empty()) return false;
+  std::copy(from->begin(), from->end(), pixels);
+  return true;
+}
+
+size_t Picture::memory_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return (noisy_.size() + combined_.size() + error_.size()) * sizeof(float);
+}
+
+}  // namespace gradus

@@ -1,0 +1,46 @@
+// What can be seen of a render at any time, from any thread: the noisy image, tile by tile, and what stands in the place of Combined.
+//
+// Readers take the picture from here: they wait for no sampler, whose batch may take long, and see no half of one.
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <vector>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+class Picture {
+ public:
+  explicit Picture(const Region& region) : region_(region) {}
+
+  // Room for tiles: black, until they come.
+  void expect_tiles();
+  // What the tile has now becomes what is seen of it in the noisy image.
+  void show_tile(const Frame& frame, const Region& tile);
+  // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
+  void show(std::vector<float> rgba, std::vector<float> error);
+  // In place of what was shown, whose error it keeps.
+  void show_denoised(std::vector<float> rgba);
+  // Combined for the time being: of other samples than the frame's.
+  void show_preview(std::vector<float> rgba);
+  void forget_preview();
+  // From now on the frame tells what the noisy image is.
+  void end_tiles();
+
+  bool is_reconstructed() const;
+  std::vector<float> combined() const;
+  // False: there is nothing of this pass.
+  bool read(uint32_t pass, float* pixels) const;
+  size_t memory_bytes() const;
+
+ private:
+  const Region region_;
+  mutable std::mutex mutex_;
+  std::vector<float> noisy_, combined_;  // RGBA; empty where there is none
+  std::vector<float> error_;
+  bool is_preview_ = false;  // combined_
+};
+
+}  // namespace gradus

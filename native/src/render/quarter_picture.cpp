@@ -1,0 +1,60 @@
+#include "render/quarter_picture.h"
+
+#include <tbb/parallel_for.h>
+
+#include "base/clock.h"
+#include "base/fpu.h"
+#include "frame/cells.h"
+#include "frame/pass_planes.h"
+#include "render/combine.h"
+#include "render/enlarge.h"
+#include "settings/pass_table.h"
+
+namespace gradus {
+namespace {
+
+constexpr uint32_t kShrink = 4;
+constexpr uint32_t kSamples = 2;  // one of each half
+
+FrameSize size_of(const GradusSettings& settings) { return {settings.width, settings.height}; }
+
+void sample(const Integrator& integrator, const std::atomic<bool>& stop, Frame* frame) {
+  const std::vector<Region> tiles = make_cells(frame->region);
+  tbb::parallel_for(size_t{0}, tiles.size(), [&](size_t i) {
+    if (stop.load(std::memory_order_relaxed)) return;
+    const FlushDenormals flush;
+    WorkUnit unit;
+    unit.tile = tiles[i];
+    unit.count = kSamples;
+    Counters counters;
+    integrator.sample(unit, frame, &counters, stop);
+  });
+}
+
+}  // namespace
+
+GradusSettings quarter_settings(GradusSettings settings) {
+  settings.width = (settings.width + kShrink - 1) / kShrink;
+  settings.height = (settings.height + kShrink - 1) / kShrink;
+  settings.passes = 0;
+  settings.first_sample = 0;
+  return settings;
+}
+
+QuarterPicture render_quarter(const Integrator& integrator, const GradusSettings& settings, const Region& region, int channels,
+                              const std::atomic<bool>& stop) {
+  const GradusSettings small = quarter_settings(settings);
+  Frame frame(small.width, small.height, covering(region, size_of(settings), size_of(small)), channels, 1, false);
+  frame.passes = make_pass_planes(feature_passes(), size_t(frame.region.area()));
+  frame.settings = small;
+  sample(integrator, stop, &frame);
+  const WallClock clock;
+  const CancelTest cancel = [&stop] { return stop.load(std::memory_order_relaxed); };
+  SolveReport report;
+  const std::vector<float> rgba = combine(frame, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, frame.region, cancel, &report);
+  const double seconds = clock.seconds();
+  if (cancel()) return {};
+  return {enlarge(rgba, region, size_of(settings), size_of(small)), seconds / double(frame.region.area())};
+}
+
+}  // namespace gradus

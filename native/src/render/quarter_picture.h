@@ -1,0 +1,25 @@
+// A picture before there are samples to make one of: at a quarter of the width and height, by the features of the surfaces, enlarged.
+// Its samples are its own and thrown away, an eighth of one per pixel.
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "integrator/integrator.h"
+#include "plan/plan.h"
+
+namespace gradus {
+
+// The settings that its integrator is made for, which takes plain paths.
+GradusSettings quarter_settings(GradusSettings settings);
+
+struct QuarterPicture {
+  std::vector<float> rgba;         // of the region; empty if it was stopped
+  double seconds_per_pixel = 0.0;  // of its reconstruction
+};
+
+// Runs in the caller's arena. settings: the render's.
+QuarterPicture render_quarter(const Integrator& integrator, const GradusSettings& settings, const Region& region, int channels,
+                              const std::atomic<bool>& stop);
+
+}  // namespace gradus

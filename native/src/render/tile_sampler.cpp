@@ -1,0 +1,73 @@
+#include "render/tile_sampler.h"
+
+#include "base/clock.h"
+#include "base/fpu.h"
+#include "frame/cells.h"
+#include "render/pausable_loop.h"
+
+namespace gradus {
+namespace {
+
+uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow; }
+
+}  // namespace
+
+TileSampler::TileSampler(const Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients, AdaptiveSampling* adaptive,
+                         const std::atomic<bool>& stop, Frame* frame)
+    : integrator_(integrator),
+      tiles_(std::move(tiles)),
+      gradients_(gradients),
+      adaptive_(adaptive),
+      stop_(stop),
+      frame_(frame),
+      first_sample_(frame->settings.first_sample) {}
+
+void TileSampler::start_batch(uint32_t begin, uint32_t end) {
+  begin_ = begin;
+  end_ = end;
+  done_.assign(tiles_.size(), 0);
+}
+
+bool TileSampler::run(const AfterTile& after_tile) {
+  return run_until_pause(&done_, [&](size_t tile) { return sample_tile(tile, after_tile); });
+}
+
+bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
+  if (stop_.load(std::memory_order_relaxed)) return true;
+  const FlushDenormals flush;
+  WorkUnit unit;
+  unit.tile = tiles_[tile];
+  unit.first_sample = first_sample_ + begin_;
+  unit.count = end_ - begin_;
+  if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
+  const uint64_t cpu = thread_cpu_nanoseconds();
+  const Counters counters = adaptive_ ? sample_cells(unit) : sample(unit);
+  done_[tile] = 1;
+  const bool pause = after_tile(unit.tile, uint64_t(unit.tile.area()) * unit.count);
+  cpu_ += thread_cpu_nanoseconds() - cpu;
+  const std::lock_guard lock(counters_mutex_);
+  frame_->counters.add(counters);
+  return pause;
+}
+
+Counters TileSampler::sample(const WorkUnit& unit) {
+  Counters counters;
+  integrator_.sample(unit, frame_, &counters, stop_);
+  return counters;
+}
+
+// Cell by cell, so that the cost of each is known.
+Counters TileSampler::sample_cells(WorkUnit unit) {
+  unit.first_map = &adaptive_->batch().first;
+  unit.count_map = &adaptive_->batch().count;
+  Counters sum;
+  for (const Region& cell : make_cells(unit.tile)) {
+    unit.tile = cell;
+    const Counters counters = sample(unit);
+    adaptive_->add_rays(cell, rays_of(counters));
+    sum.add(counters);
+  }
+  return sum;
+}
+
+}  // namespace gradus
