@@ -30,7 +30,7 @@ class Spread:
 
     def bias_map(self) -> np.ndarray:
         """Relative squared error of the mean over the seeds."""
-        return relative_squared_error(self.images.mean(axis=0), self.reference[0])
+        return relative_squared_error(self.images.mean(axis=0), *self.reference)
 
     def variance_map(self) -> np.ndarray:
         return self.images.var(axis=0, ddof=1).mean(axis=2) / relative_to(self.reference[0])

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from agreement import SHARE, share_and_ratio
-from metrics import all_errors, relative_to
+from metrics import all_errors, relative_to, shortened
 from modes import ESTIMATES_ERROR, MITSUBA, MODES, REFERENCES
 from references import reference
 from renderers import RefusedError, Renderers
@@ -145,13 +145,6 @@ def bench_scene(scene: Scene, arguments: argparse.Namespace, version: str, deadl
 def append(row: dict[str, Any]) -> None:
     with RESULTS.open("a") as file:
         file.write(json.dumps(shortened(row), separators=(",", ":")) + "\n")
-
-
-def shortened(value: Any) -> Any:
-    """Six significant digits are more than any run repeats."""
-    if isinstance(value, dict):
-        return {key: shortened(item) for key, item in value.items()}
-    return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
 def names(text: str) -> list[str]:

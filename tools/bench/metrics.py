@@ -6,6 +6,8 @@ it is subtracted, so that an unconverged reference does not set a floor.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 EPSILON = 1e-3
@@ -75,6 +77,15 @@ def all_errors(image: np.ndarray, reference: np.ndarray, reference_variance: np.
         "ssim": ssim(image, reference),
         "flip": flip(image, reference),
     }
+
+
+def shortened(value: Any) -> Any:
+    """Six significant digits are more than any run repeats."""
+    if isinstance(value, dict):
+        return {key: shortened(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [shortened(item) for item in value]
+    return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
 def white_of(reference: np.ndarray) -> float:

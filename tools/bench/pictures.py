@@ -1,10 +1,9 @@
 """Pictures of the project's own scenes for the sliders: modes at the same samples, their errors, and the converged image.
 
-    pictures.py [--scenes a,b] [--reference 512]
+    pictures.py [--scenes a,b]
 
 Stored in docs/benchmark/pictures/ as they are displayed, one exposure per scene, with what is known of them in pictures.json. Where the
-results say that Cycles with its denoiser is ahead, bias and variance are told apart over some seeds; other people's scenes have these
-figures alone, no pictures. Nothing is timed here.
+results say that Cycles with its denoiser is ahead, bias and variance are told apart over some seeds. Nothing is timed here.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ import numpy as np
 import results
 from crops import CROP, choose_crops, window
 from document import Crop, Slider, Table, number
-from metrics import displayed, relative_squared_error, white_of
+from metrics import displayed, relative_squared_error, shortened, white_of
 from modes import MODES, REFERENCES
 from PIL import Image
 from references import reference
@@ -31,7 +30,7 @@ from version import version_of_build
 
 FOLDER_NAME = "pictures"
 FACTS = FOLDER / FOLDER_NAME / "pictures.json"
-SIZE = (320, 180)
+SIZE, REFERENCE = (320, 180), 512  # samples of the converged image
 SAMPLES = 16
 NOISY = ("path", "cycles")
 RECONSTRUCTED = ("gradient-l2", "gradient-l1", "path-regularized", "auto", "auto-denoised", "cycles-denoised")
@@ -44,12 +43,10 @@ class Studio:
 
     scene: Scene
     renderers: Renderers
-    reference_samples: int
-    version: str
 
     def reference(self, mode: str) -> tuple[np.ndarray, np.ndarray]:
         engine = REFERENCES[MODES[mode].engine]
-        return reference(self.renderers, self.scene, engine, SIZE, self.reference_samples, self.version)
+        return reference(self.renderers, self.scene, engine, SIZE, REFERENCE, version_of_build())
 
     def works(self, mode: str) -> bool:
         if why := self.renderers.refusal(mode):
@@ -62,23 +59,22 @@ class Studio:
         store(displayed_bytes(self.reference("path")[0], white), self.scene, "reference")
         errors = {}
         for mode in filter(self.works, (*NOISY, *RECONSTRUCTED)):
-            image, (converged, variance) = self.renderers.render(mode, SAMPLES, 0)[0], self.reference(mode)
+            image = self.renderers.render(mode, SAMPLES, 0)[0]
+            errors[mode] = relative_squared_error(image, *self.reference(mode))
             store(displayed_bytes(image, white), self.scene, mode)
-            store(maps.colored(relative_squared_error(image, converged)), self.scene, mode + ERROR)
-            errors[mode] = relative_squared_error(image, converged, variance)
+            store(maps.colored(errors[mode]), self.scene, mode + ERROR, lossless=False)
         crops = choose_crops([errors[mode] for mode in RECONSTRUCTED if mode in errors])
         parts = [(slice(None), slice(None)), *(window(*crop) for crop in crops)]
         return {"crops": crops, "errors": {mode: [float(error[part].mean()) for part in parts] for mode, error in errors.items()}}
 
     def tell_apart(self, modes: list[str]) -> dict[str, tuple[float, float]]:
-        """Bias and variance by modes, with maps of scenes that may be shown."""
+        """Bias and variance by modes, with maps."""
         found = {}
         for mode in filter(self.works, modes):
             spread = behind.render_spread(self.renderers, mode, SAMPLES, self.reference(mode))
             found[mode] = spread.parts()
-            if self.scene.own:
-                store(maps.colored(spread.bias_map()), self.scene, mode + BIAS)
-                store(maps.colored(spread.variance_map()), self.scene, mode + DEVIATION)
+            store(maps.colored(spread.bias_map()), self.scene, mode + BIAS, lossless=False)
+            store(maps.colored(spread.variance_map()), self.scene, mode + DEVIATION, lossless=False)
         return found
 
 
@@ -86,9 +82,9 @@ def displayed_bytes(image: np.ndarray, white: float) -> np.ndarray:
     return (255.0 * displayed(image, white) + 0.5).astype(np.uint8)
 
 
-def store(pixels: np.ndarray, scene: Scene, name: str) -> None:
-    """Without loss: crops are magnified."""
-    Image.fromarray(pixels).save(FOLDER / file_of(scene.name, name), lossless=True, quality=100, method=6)
+def store(pixels: np.ndarray, scene: Scene, name: str, lossless: bool = True) -> None:
+    """Pictures without loss, since crops are magnified."""
+    Image.fromarray(pixels).save(FOLDER / file_of(scene.name, name), lossless=lossless, quality=100 if lossless else 80, method=6)
 
 
 def file_of(scene: str, name: str) -> str:
@@ -102,7 +98,8 @@ def facts() -> dict[str, Any]:
 
 
 def remember(scene: str, found: dict[str, Any]) -> None:
-    FACTS.write_text(json.dumps(facts() | {scene: found}, indent=1, sort_keys=True) + "\n")
+    known = facts() | {scene: found}
+    FACTS.write_text(json.dumps(shortened({name: known[name] for name in sorted(known)}), indent=1) + "\n")
 
 
 def slider(scene: str) -> Slider | None:
@@ -126,33 +123,29 @@ def slider(scene: str) -> Slider | None:
     return Slider(groups, caption, (shown[0], shown[1]), crops, "error-scale.svg")
 
 
-def errors_of_crops(scene: str) -> Table | None:
+def errors_of_pictures(scene: str) -> Table | None:
     if "crops" not in (known := facts().get(scene, {})):
         return None
-    made = Table(["relMSE of the pictures", "whole", "first crop", "second crop"])
-    made.rows += [[MODES[mode].label, *(number(error, ".4f") for error in errors)] for mode, errors in known["errors"].items()]
+    made = Table(["relMSE of the pictures", "whole", "crop 1", "crop 2", f"bias², {behind.SEEDS} seeds", "variance"])
+    for mode, errors in known["errors"].items():
+        parts = known.get("parts", {}).get(mode, (None, None))
+        made.rows.append([MODES[mode].label, *(number(value, ".4f") for value in (*errors, *parts))])
     return made
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="")
-    parser.add_argument("--reference", type=int, default=512)
     arguments = parser.parse_args()
     (FOLDER / FOLDER_NAME).mkdir(exist_ok=True)
     modes_behind = {scene.name: behind.modes_behind(scene) for scene in results.load()}
-    for scene in select(arguments.scenes):
-        late = modes_behind.get(scene.name, [])
-        if not (scene.own or late):
-            continue
+    for scene in (scene for scene in select(arguments.scenes) if scene.own):
         renderers = Renderers(scene, SIZE)
         try:
-            studio = Studio(scene, renderers, arguments.reference, version_of_build())
-            found: dict[str, Any] = {"version": studio.version, "reference_samples": arguments.reference}
-            if late:
+            studio = Studio(scene, renderers)
+            found = {"version": version_of_build()} | studio.take_pictures()
+            if late := modes_behind.get(scene.name):
                 found["parts"] = studio.tell_apart([*late, behind.THEIRS])
-            if scene.own:
-                found |= studio.take_pictures()
             remember(scene.name, found)
         finally:
             renderers.close()

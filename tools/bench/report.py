@@ -104,23 +104,20 @@ def agreement() -> list[Block]:
 
 
 def shortfalls(scenes: list[SceneResults]) -> list[Block]:
-    """Where Cycles with its denoiser is ahead, and by what: figures of pictures.py."""
-    made = Table(["scene", "mode", "R relMSE", "R HDR-FLIP", "bias²", "variance"])
-    known = pictures.facts()
+    """Where Cycles with its denoiser is ahead, and whether by bias or by variance."""
+    made = Table(["scene", "mode", "R relMSE", "R HDR-FLIP", "spp", "seeds", "bias²", "variance"])
     for scene in scenes:
-        if not (late := behind.modes_behind(scene)):
-            continue
-        parts = known.get(scene.name, {}).get("parts", {})
-        for mode in (*late, behind.THEIRS):
+        late = behind.modes_behind(scene)
+        for mode in (*late, behind.THEIRS) if late else ():
+            point = scene.points[mode][-1]
             ratios = [scene.ratio(mode, behind.THEIRS, measure) for measure in ("relmse", "flip")]
-            made.rows.append(
-                [scene.name, MODES[mode].label, *map(number, ratios), *(number(p, ".4f") for p in parts.get(mode, (None, None)))]
-            )
+            parts = point.bias_and_variance() or (None, None)
+            counts = [str(point.samples), str(len(point.rows))]
+            made.rows.append([scene.name, MODES[mode].label, *map(number, ratios), *counts, *(number(part, ".4f") for part in parts)])
     if not made.rows:
         return []
     about = (
-        "R: error over that of Cycles with its denoiser at equal CPU time. Bias² and variance of relMSE: "
-        f"{behind.SEEDS} seeds of {pictures.SAMPLES} samples each, {pictures.SIZE[0]}×{pictures.SIZE[1]} pixels."
+        "R: error over that of Cycles with its denoiser at equal CPU time. Bias² and variance of relMSE at the most samples that were run."
     )
     return [Text(f"## Where Cycles with its denoiser is ahead\n\n{about}"), made]
 
@@ -131,7 +128,7 @@ def details(scene: SceneResults) -> list[Block]:
     if bias := figures.bias_figure(scene):
         made.append(HtmlOnly(Figure(bias, "Variance and bias² of relMSE, from the mean over the seeds.")))
     if slider := pictures.slider(scene.name):
-        made += [slider, *filter(None, [pictures.errors_of_crops(scene.name)])]
+        made += [slider, *filter(None, [pictures.errors_of_pictures(scene.name)])]
     made += [errors(scene, short=True), HtmlOnly(errors(scene, short=False)), HtmlOnly(work(scene))]
     return made
 
