@@ -1,4 +1,4 @@
-"""The Rendered viewport: a plain progressive image that starts again on every change, drawn through Blender's display transform.
+"""The Rendered viewport: a progressive image that starts again on every change, drawn through Blender's display transform.
 
 Blender's data is read on the main thread, where view_update() and view_draw() run; building and sampling happen on threads of our own,
 which never touch Blender. Each viewport has its own native scene, so that several of them and a final render do not meet.
@@ -18,7 +18,7 @@ import bpy
 import gpu
 from gpu_extras.presets import draw_texture_2d
 
-from . import native, options, renderer, store, view_border
+from . import native, options, passes, renderer, store, view_border
 from .export import ViewOverride
 from .native import Denoiser, Error, GradusError, Integrator, Pass, Phase, Reconstruction
 from .store import VIEWPORT, Key, Session
@@ -105,13 +105,14 @@ class View:
         settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides())
         settings.samples = scene.gradus.preview_samples
         settings.noise_threshold = settings.time_limit = 0.0
-        settings.integrator, settings.reconstruction, settings.denoiser = Integrator.PATH, Reconstruction.NONE, Denoiser.NONE
+        settings.integrator, settings.reconstruction, settings.denoiser = Integrator.PATH, _reconstruction(scene.gradus), Denoiser.NONE
         settings.threads = max(1, store.process_cpu_threads() - 1)  # one is left for the interface
         settings.width, settings.height = self.override.width, self.override.height
         settings.region[:] = region
         settings.passes = 1 << Pass.COMBINED
         self.settings, self.region = settings, region
         self.stale = self.done = False
+        self.picture.version = 0  # of the new render: there is nothing yet
         self.cancel.value = 0
         old, self.render = self.render, 0
         self.worker = threading.Thread(target=self._work, args=(old,), name="gradus-viewport", daemon=True)
@@ -132,9 +133,17 @@ class View:
             # interrupt() sets `cancel` and then looks for a render: whichever comes first, one of the two sees the other.
             if self.cancel.value:
                 library.render_cancel(self.render)
+            else:
+                self._look(library)
         except GradusError as error:
             if error.code != Error.CANCELLED:
                 self.error = error
+
+    def _look(self, library: native.Library) -> None:
+        """There is nothing to see yet, but the library makes a first picture at once for who looks."""
+        x0, y0, x1, y1 = self.region
+        count = 4 * (x1 - x0) * (y1 - y0)
+        library.render_read_pass(self.render, Pass.COMBINED, (ctypes.c_float * count)(), count)
 
     def refresh(self) -> None:
         """Takes the newest image of the running render into the texture."""
@@ -145,7 +154,9 @@ class View:
         if progress.phase == Phase.FAILED:
             self.done = True
             library.render_wait(self.render, 0.0)  # raises the failure
-        if progress.version != self.picture.version and progress.samples_done > 0:
+        # Without a reconstruction the first pictures have holes.
+        has_picture = progress.samples_done > 0 or self.settings.reconstruction != Reconstruction.NONE
+        if progress.version != self.picture.version and has_picture:
             self.picture.take(library, self.render, self.region, progress.version)
             self.engine.update_stats("Gradus", f"Sample {progress.samples_done}/{self.settings.samples}")
         if progress.phase in (Phase.DONE, Phase.CANCELLED):
@@ -160,6 +171,12 @@ class View:
             self.session.library.render_release(self.render)
             self.render = 0
         store.release(self.key)
+
+
+def _reconstruction(settings: Any) -> Reconstruction:
+    """Whoever wants to see the samples in the final picture wants it here, too."""
+    wanted = passes.is_reconstructed(settings.integrator, settings.reconstruction, settings.denoiser)
+    return Reconstruction.REGULARIZED if wanted else Reconstruction.NONE
 
 
 def _redraw_while_running(view: View) -> None:
@@ -189,7 +206,7 @@ class _Picture:
 
     def __init__(self) -> None:
         self.texture: Any = None
-        self.version = -1
+        self.version = 0  # GradusProgress.version of the picture
         self.rectangle = (0, 0, 0, 0)
         self._pixels = array("f")
 

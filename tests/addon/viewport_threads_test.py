@@ -34,11 +34,15 @@ class FakeLibrary:
         assert render == 7
         self._call("cancel")
 
+    def render_read_pass(self, render: int, plane: int, _pixels: Any, count: int) -> None:
+        assert (render, plane, count) == (7, native.Pass.COMBINED, 4 * 30 * 20)
+        self._call("read")
+
 
 def interrupted_during(name: str) -> FakeLibrary:
     view = viewport.View.__new__(viewport.View)
     view.cancel, view.render, view.worker, view.error = ctypes.c_int32(0), 0, None, None
-    view.settings = native.Settings()
+    view.settings, view.region = native.Settings(), (10, 10, 40, 30)
     library = FakeLibrary(name, view.interrupt)
     view.session = SimpleNamespace(library=library, scene=1)
     view._work(0)
@@ -49,3 +53,8 @@ def interrupted_during(name: str) -> FakeLibrary:
 def test_k4_a_cancel_before_the_render_has_a_handle_is_not_lost(name: str, calls: list[str]) -> None:
     """The render went on beside the edit that had stopped it."""
     assert interrupted_during(name).calls == calls
+
+
+def test_the_library_knows_at_once_that_somebody_looks() -> None:
+    """Else its first picture comes after the first sample of all pixels."""
+    assert interrupted_during("nothing").calls == ["commit", "start", "read"]
