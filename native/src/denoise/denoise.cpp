@@ -36,30 +36,25 @@ class Network {
     check();
   }
 
-  // Each image in place, guided by nothing.
-  void clean(const char* name, Image* guide) { run({{name, guide}, {"output", guide}}, false); }
-
   // `color` in place. Empty: there is no such guide.
   void denoise(Image* color, Image* albedo, Image* normal) {
     std::vector<Parameter> images = {{"color", color}, {"output", color}};
     if (!albedo->empty()) images.emplace_back("albedo", albedo);
     if (!normal->empty()) images.emplace_back("normal", normal);
-    run(images, true);
+    run(images);
   }
 
  private:
   using Parameter = std::pair<const char*, Image*>;
 
-  void run(const std::vector<Parameter>& images, bool is_picture) {
+  void run(const std::vector<Parameter>& images) {
     const std::unique_ptr<OidnApi::Filter, void (*)(OidnApi::Filter*)> filter(api_.new_filter(device_.get(), "RT"), api_.release_filter);
     if (!filter) throw failure("no filter");
     for (const auto& [name, image] : images) {
       api_.set_shared_filter_image(filter.get(), name, image->data(), kOidnFloat3, width_, height_, 0, 0, 0);
     }
-    if (is_picture) {
-      api_.set_filter_bool(filter.get(), "hdr", true);
-      api_.set_filter_bool(filter.get(), "cleanAux", true);
-    }
+    api_.set_filter_bool(filter.get(), "hdr", true);
+    api_.set_filter_bool(filter.get(), "cleanAux", true);
     api_.set_filter_int(filter.get(), "quality", kOidnQualityHigh);
     api_.set_filter_progress(filter.get(), &goes_on, const_cast<Cancel*>(&cancel_));
     api_.commit_filter(filter.get());
@@ -93,14 +88,10 @@ class Network {
 
 std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const Cancel& cancel) {
   const size_t count = size_t(picture.width) * size_t(picture.height);
-  const bool has_albedo = picture.albedo.pixels, has_normal = has_albedo && picture.normal.pixels;
   Image color = packed(picture.color, picture.stride, count);
-  Image albedo = has_albedo ? packed(picture.albedo.pixels, 3, count) : Image();
-  Image normal = has_normal ? packed(picture.normal.pixels, 3, count) : Image();
+  Image albedo = picture.albedo ? packed(picture.albedo, 3, count) : Image();
+  Image normal = picture.albedo && picture.normal ? packed(picture.normal, 3, count) : Image();
   Network network(library.api, picture.width, picture.height, threads, cancel);
-  // The network for the albedo alone has learnt with noise in it.
-  if (has_normal && !picture.albedo.is_clean) network.clean("albedo", &albedo);
-  if (has_normal && !picture.normal.is_clean) network.clean("normal", &normal);
   network.denoise(&color, &albedo, &normal);
   for (size_t i = 0; i < color.size(); ++i) {
     if (!std::isfinite(color[i])) color[i] = tamed(picture.color[i / 3 * picture.stride + i % 3]);

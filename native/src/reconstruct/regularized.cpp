@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "reconstruct/feature_filter.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/minimise_by_noise.h"
@@ -105,7 +106,7 @@ Reconstructed regularize(const Frame& frame, int component, const CancelTest& ca
   const float scale = robust_scale(image.mean);
   normalise(scale, &image.mean);
   normalise(scale, &image.half_difference);
-  const FeatureRegression regression(read_features(frame), image, cancel);
+  const FeatureRegression regression(filter_features(read_features(frame)), image, cancel);
   Reconstructed result{std::vector<float>(size_t(w) * size_t(h) * size_t(channels)), std::vector<float>(size_t(w) * size_t(h))};
   Field solution = regression.image();
   if (frame.gradients) {

@@ -1,0 +1,110 @@
+// Features without their noise.
+#include "reconstruct/feature_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace gradus {
+namespace {
+
+constexpr int kWidth = 60, kHeight = 40;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+
+// Half white, half dark, noise of a deviation in both means of halves.
+struct Noisy {
+  explicit Noisy(float deviation, uint32_t channels = 3, int width = kWidth, int height = kHeight, float unit = 1.0f) {
+    std::mt19937 random(7);
+    std::normal_distribution<float> normal;
+    image.channels = channels;
+    for (int i = 0; i < width * height; ++i) {
+      for (uint32_t c = 0; c < channels; ++c) {
+        truth.push_back(unit * (i % width < width / 2 ? 0.8f : 0.2f));
+        const float a = deviation * normal(random), b = deviation * normal(random);
+        image.values.push_back(truth.back() + unit * 0.5f * (a + b));
+        image.variance.push_back(unit * unit * 0.25f * (a - b) * (a - b));
+      }
+    }
+  }
+  FeatureImage image;
+  std::vector<float> truth;
+};
+
+double mean_square(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += double(a[i] - b[i]) * double(a[i] - b[i]);
+  return sum / double(a.size());
+}
+
+TEST(FeatureFilter, TakesNoiseAndKeepsTheEdge) {
+  const Noisy noisy(0.1f);
+  const FeatureImage clean = filter_feature(noisy.image, kWidth, kHeight);
+  // Nine equal weights leave a ninth.
+  EXPECT_LT(mean_square(clean.values, noisy.truth), mean_square(noisy.image.values, noisy.truth) / 5.0);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x : {kWidth / 2 - 1, kWidth / 2}) {
+      const size_t i = 3 * size_t(y * kWidth + x);
+      EXPECT_NEAR(clean.values[i], noisy.truth[i], 0.25f) << x << ' ' << y;
+    }
+  }
+  EXPECT_EQ(clean.variance, noisy.image.variance);
+}
+
+TEST(FeatureFilter, CleanFeaturesStay) {
+  const Noisy clean(0.0f);
+  const FeatureImage filtered = filter_feature(clean.image, kWidth, kHeight);
+  for (size_t i = 0; i < clean.truth.size(); ++i) ASSERT_NEAR(filtered.values[i], clean.truth[i], 1e-4f);
+}
+
+// Texture of a hundredth of the feature, which no noise explains.
+TEST(FeatureFilter, FineTextureWithoutNoiseStays) {
+  Noisy clean(0.0f, 1);
+  for (size_t i = 0; i < clean.truth.size(); ++i) clean.truth[i] = clean.image.values[i] = 0.5f + (i % 2 ? 0.01f : -0.01f);
+  const FeatureImage filtered = filter_feature(clean.image, kWidth, kHeight);
+  EXPECT_LT(std::sqrt(mean_square(filtered.values, clean.truth)), 0.006);
+}
+
+TEST(FeatureFilter, DoesNotDependOnTheUnit) {
+  const Noisy small(0.1f, 1), large(0.1f, 1, kWidth, kHeight, 1000.0f);
+  const FeatureImage a = filter_feature(small.image, kWidth, kHeight), b = filter_feature(large.image, kWidth, kHeight);
+  for (size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(b.values[i], 1000.0f * a.values[i], 0.02f);
+}
+
+TEST(FeatureFilter, NothingKnownOfTheNoiseCountsAsNone) {
+  Noisy noisy(0.1f);
+  std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), kNaN);
+  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  EXPECT_LT(mean_square(filtered.values, noisy.image.values), 0.1 * mean_square(noisy.image.values, noisy.truth));
+}
+
+TEST(FeatureFilter, NumbersThatAreNoneHarmNothingElse) {
+  Noisy noisy(0.05f);
+  noisy.image.values[3 * 500] = kNaN;
+  noisy.image.values[3 * 900 + 1] = kInfinity;
+  noisy.image.values[3 * 1300 + 2] = -std::numeric_limits<float>::max();
+  noisy.image.variance[3 * 700] = std::numeric_limits<float>::max();
+  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  size_t off = 0;
+  for (size_t i = 0; i < filtered.values.size(); ++i) {
+    ASSERT_TRUE(std::isfinite(filtered.values[i])) << i;
+    off += std::fabs(filtered.values[i] - noisy.truth[i]) > 0.3f;
+  }
+  EXPECT_LE(off, 27u);
+}
+
+TEST(FeatureFilter, ImagesOfOnePixelRowAndColumn) {
+  for (const auto& [w, h] : {std::pair{1, 1}, {1, 50}, {50, 1}, {2, 2}, {3, 1}}) {
+    const Noisy noisy(0.1f, 1, w, h);
+    const FeatureImage filtered = filter_feature(noisy.image, w, h);
+    ASSERT_EQ(filtered.values.size(), size_t(w) * size_t(h));
+    for (size_t i = 0; i < filtered.values.size(); ++i) EXPECT_NEAR(filtered.values[i], noisy.truth[i], 0.3f) << w << 'x' << h;
+    if (w * h == 1) {
+      EXPECT_EQ(filtered.values, noisy.image.values);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gradus
