@@ -8,15 +8,17 @@ import numpy as np
 from figures import plt
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
+from metrics import blurred
 
 COLORS, SCALE = matplotlib.colormaps["magma"], LogNorm(0.01, 1.0, clip=True)
-SIDE = 7  # pixels over which errors are averaged: what a reference's variance takes away, it takes from means
+REACH = 10  # pixels of the blur
 
 
 def colored(relative_square: np.ndarray) -> np.ndarray:
-    """Root of relative squared errors (height, width) as RGB bytes."""
-    windows = np.lib.stride_tricks.sliding_window_view(np.pad(relative_square, SIDE // 2, mode="reflect"), (SIDE, SIDE))
-    return COLORS(SCALE(np.sqrt(np.maximum(windows.mean(axis=(2, 3)), 0.0))), bytes=True)[:, :, :3]
+    """Root of relative squared errors (height, width), as RGB bytes. Blurred by 2 pixels: a reference's variance can be taken away from
+    means alone."""
+    around = blurred(blurred(np.pad(relative_square, REACH, mode="reflect")))
+    return COLORS(SCALE(np.sqrt(np.maximum(around, 0.0))), bytes=True)[:, :, :3]
 
 
 def legend() -> str:
@@ -25,5 +27,5 @@ def legend() -> str:
         ScalarMappable(SCALE, COLORS), cax=axes, orientation="horizontal", ticks=[0.01, 0.03, 0.1, 0.3, 1.0], format="{x:g}"
     )
     bar.minorticks_off()
-    axes.set_title(f"error relative to the light, {SIDE}×{SIDE} pixels", fontsize=8)
+    axes.set_title("error relative to the light", fontsize=8)
     return figures.save(figure, "error-scale.svg")
