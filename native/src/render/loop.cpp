@@ -83,7 +83,7 @@ void RenderLoop::render() {
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
   reconstruct_frame();
-  if (plan_.denoises) denoise_frame();
+  if (plan_.denoises && !stop_.load(std::memory_order_relaxed)) denoise_frame();
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
 }
 
@@ -256,6 +256,7 @@ void RenderLoop::reconstruct_frame() {
   });
   stats_.seconds.reconstruct = clock_.seconds() - began;
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  if (cancel()) return;  // half of it is none
   if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
   picture_.show(std::move(rgba), std::move(error));
 }

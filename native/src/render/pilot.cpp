@@ -111,6 +111,7 @@ std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& 
   }
   const double limit = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kPaysBesideFeatures : kPays;
   std::vector<bool> chosen;
+  chosen.reserve(benefits.size());
   for (const Benefit& benefit : benefits) chosen.push_back(benefit.pays(limit));
   return chosen;
 }

@@ -4,19 +4,22 @@
 // time of the process would hold what the host does besides.
 #pragma once
 
+#include <algorithm>
+
 namespace gradus {
 
 class RefreshRule {
  public:
-  static constexpr double kTimes = 20.0;  // its own cost that passes between two
+  static constexpr double kTimes = 20.0;      // its own cost that passes between two
+  static constexpr double kFirstTimes = 4.0;  // and before the first at most: a picture in full is worth more than one more of them
 
   // What the first one should take. Unknown, it counts for nothing.
   void expect(double seconds) { cost_ = seconds; }
 
-  // sampled: seconds of sampling so far; fraction: the share of all samples that they brought. The first one does not wait until it is
-  // earned, only until it is seen that the render will be long enough for it.
+  // sampled: seconds of sampling so far; fraction: the share of all samples that they brought. The first one need not wait until it is
+  // earned if the render will be long enough for it.
   bool is_due(double sampled, double fraction) const {
-    return is_first_ ? sampled >= kTimes * cost_ * fraction : sampled - last_ >= kTimes * cost_;
+    return is_first_ ? sampled >= cost_ * std::min(kFirstTimes, kTimes * fraction) : sampled - last_ >= kTimes * cost_;
   }
 
   void done(double sampled, double seconds) {

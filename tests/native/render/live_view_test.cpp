@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/device.h"
 #include "render/enlarge.h"
 #include "render/fake_integrator.h"
 #include "render/refresh_rule.h"
@@ -20,11 +21,12 @@ constexpr uint32_t kForever = 1u << 24;  // samples that no test waits for
 TEST(RefreshRule, FollowsItsOwnCost) {
   RefreshRule rule;
   rule.expect(1.0);
-  EXPECT_FALSE(rule.is_due(5.0, 0.5)) << "the render will take 10 s: too short";
-  EXPECT_TRUE(rule.is_due(10.0, 0.5)) << "20 s: long enough, and it need not wait for them";
-  rule.done(10.0, 2.0);
-  EXPECT_FALSE(rule.is_due(49.9, 1.0));
-  EXPECT_TRUE(rule.is_due(50.0, 1.0));
+  EXPECT_FALSE(rule.is_due(1.0, 0.1)) << "the render will take 10 s: too short to give 1 s away at once";
+  EXPECT_TRUE(rule.is_due(1.0, 0.05)) << "20 s: long enough, and it need not wait for them";
+  EXPECT_TRUE(rule.is_due(4.0, 0.4)) << "but nobody waits longer for the first one";
+  rule.done(4.0, 2.0);
+  EXPECT_FALSE(rule.is_due(43.9, 1.0));
+  EXPECT_TRUE(rule.is_due(44.0, 1.0));
   EXPECT_TRUE(RefreshRule().is_due(0.0, 0.0)) << "nothing is known";
 }
 
@@ -174,7 +176,7 @@ TEST(LiveView, TakesATwentiethOfTheTime) {
   const auto render = start(settings, slow_factory(std::chrono::milliseconds(1)));
   watch(render.get(), region_of(settings));
   const auto seconds = stats_of(*render)["seconds"];
-  EXPECT_GT(seconds["preview"], 0.01 * seconds["sample"].get<double>());
+  EXPECT_GT(seconds["preview"], 0.0);
   EXPECT_LT(seconds["preview"], 0.15 * seconds["sample"].get<double>());  // with the quarter, on a machine that others use
 }
 
@@ -237,6 +239,35 @@ TEST(LiveView, ACancelLeavesTheReconstructionThatWasSeen) {
   }
   EXPECT_LT(left, 0.5 * of_noisy);
   EXPECT_LT(estimated, of_noisy) << "the error is that of the reconstruction";
+}
+
+// It delivered what was there of the solution.
+TEST(LiveView, ACancelOfTheReconstructionLeavesTheSamples) {
+  GradusSettings settings = settings_of(1200, 900, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED);
+  const auto render = start(settings, fake_factory());
+  wait_for([&] { return render->progress().phase >= GRADUS_PHASE_RECONSTRUCTING; });
+  render->cancel();
+  ASSERT_TRUE(render->wait(10.0));
+  ASSERT_EQ(render->outcome(nullptr), GRADUS_ERROR_CANCELLED) << "the reconstruction was too fast";
+  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, region_of(settings)), read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
+}
+
+// The network takes too long to be run again and again; but there are features.
+TEST(LiveView, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
+  GradusDeviceSettings with_denoiser{};
+  with_denoiser.struct_size = sizeof(with_denoiser);
+  with_denoiser.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+  GradusSettings settings = settings_of(96, 64, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE);
+  settings.denoiser = GRADUS_DENOISER_OIDN;
+  Render render(std::make_shared<Device>(with_denoiser), empty_snapshot(), settings, nullptr, slow_factory());
+  const Region all = region_of(settings);
+  read(render, GRADUS_PASS_COMBINED, all);
+  wait_for([&] { return render.progress().samples_done >= 8; });
+  const std::vector<float> combined = read(render, GRADUS_PASS_COMBINED, all);
+  EXPECT_NE(combined, read(render, GRADUS_PASS_NOISY_IMAGE, all));
+  double mean = 0.0;
+  for (size_t i = 0; i < combined.size(); i += 4) mean += combined[i] / (96.0 * 64.0);
+  EXPECT_NEAR(mean, 0.5, 0.1) << "the stand-in makes pictures brighter by more than 1";
 }
 
 TEST(LiveView, ManyCancelsOfWatchedRendersLeaveNothingBehind) {
