@@ -8,10 +8,12 @@ REGULARIZED = "native/src/reconstruct/regularized.cpp"
 FEATURE_REGRESSION = "native/src/reconstruct/feature_regression.cpp"
 LOCAL_REGRESSION = "native/src/reconstruct/local_regression.cpp"
 ERROR_ESTIMATE = "native/src/reconstruct/error_estimate.cpp"
+FEATURE_FILTER = "native/src/reconstruct/feature_filter.cpp"
 FEATURES = "native/src/frame/features.cpp"
 READ = "native/src/frame/read.cpp"
 
 OF_FEATURES = (native("Features.HalvesAverageToThePass"),)
+OF_FILTER = (native("FeatureFilter.DifferencesCountByTheVariance"),)
 KEEPS_FEATURES = (native("B2_Regularized.KeepsWhatTheFeaturesExplain"),)
 OF_ERROR = (native("B2_Regularized.ErrorIsVarianceAndSquaredBias"),)
 OF_SHARES = (native("B2_Regression.PixelsAndWindowsCountByTheirErrors"),)
@@ -137,6 +139,15 @@ RECONSTRUCTION = (
         "read_mean(frame, *plane, halves, i > 0 ? i - 1 : 0, image.values.data() + i * image.channels);",
         (*OF_FEATURES, *KEEPS_FEATURES),
     ),
+    Fault(
+        14,
+        SHIFT,
+        "by one pixel, what their filter knows of the left and lower neighbours",
+        FEATURE_FILTER,
+        "distance.row(other) + step;",
+        "distance.row(other);",
+        (native("FeatureFilter.AMirroredPictureIsFilteredAlike"),),
+    ),
     Fault(15, VARIANCE, "four times, of the image", REGULARIZED, "0.5f * (a[i] - b[i])", "a[i] - b[i]", OF_ERROR),
     Fault(15, VARIANCE, "a quarter, of the image", REGULARIZED, "0.5f * (a[i] - b[i])", "0.25f * (a[i] - b[i])", OF_ERROR),
     Fault(
@@ -219,6 +230,24 @@ RECONSTRUCTION = (
         "const float half = 0.5f * (plane.values[0]",
         "const float half = 0.25f * (plane.values[0]",
         OF_FEATURES,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "four times, in the features' filter",
+        FEATURE_FILTER,
+        "noise = of_a[x] + of_b[x];",
+        "noise = 4.0f * (of_a[x] + of_b[x]);",
+        OF_FILTER,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "a quarter, in the features' filter",
+        FEATURE_FILTER,
+        "noise = of_a[x] + of_b[x];",
+        "noise = 0.25f * (of_a[x] + of_b[x]);",
+        OF_FILTER,
     ),
     Fault(
         15,

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -64,6 +65,34 @@ TEST(FeatureFilter, FineTextureWithoutNoiseStays) {
   for (size_t i = 0; i < clean.truth.size(); ++i) clean.truth[i] = clean.image.values[i] = 0.5f + (i % 2 ? 0.01f : -0.01f);
   const FeatureImage filtered = filter_feature(clean.image, kWidth, kHeight);
   EXPECT_LT(std::sqrt(mean_square(filtered.values, clean.truth)), 0.006);
+}
+
+// Neighbours of a chequer that differ by twice their deviation count for something, but not for all: of what is measured in a quarter of
+// the true variance nothing would be taken, in four times that next to everything.
+TEST(FeatureFilter, DifferencesCountByTheVariance) {
+  Noisy noisy(0.0f, 1);
+  const auto chequer = [](size_t i) { return (i % kWidth + i / kWidth) % 2 ? 0.1f : -0.1f; };
+  for (size_t i = 0; i < noisy.truth.size(); ++i) noisy.image.values[i] = 0.5f + chequer(i);
+  std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), 0.01f);
+  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  double left = 0.0;
+  for (size_t i = 0; i < filtered.values.size(); ++i) left += filtered.values[i] * chequer(i) / (0.01 * double(filtered.values.size()));
+  EXPECT_GT(left, 0.4);
+  EXPECT_LT(left, 0.95);
+}
+
+// Each neighbour by its own distance: those to the left are read at another place than those to the right.
+TEST(FeatureFilter, AMirroredPictureIsFilteredAlike) {
+  const auto mirrored = [](std::vector<float> values) {
+    std::reverse(values.begin(), values.end());
+    return values;
+  };
+  Noisy noisy(0.1f, 1);
+  const std::vector<float> expected = mirrored(filter_feature(noisy.image, kWidth, kHeight).values);
+  noisy.image.values = mirrored(noisy.image.values);
+  noisy.image.variance = mirrored(noisy.image.variance);
+  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  for (size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(filtered.values[i], expected[i], 1e-5f) << i;
 }
 
 TEST(FeatureFilter, DoesNotDependOnTheUnit) {
