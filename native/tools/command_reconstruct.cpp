@@ -40,7 +40,8 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
   command->add_option("frame", args->frame, "Stored frame, as gradus render writes it")->required()->check(CLI::ExistingFile);
   command->add_option("-o,--output", args->output, "Image to write, FILE.exr")->required()->check(exr_only);
   command
-      ->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased), weighted (by the measured noise) or l1 (robust)")
+      ->add_option("--reconstruction", args->reconstruction,
+                   "auto, none, l2 (unbiased), regularized (by features), weighted (by the measured noise) or l1 (robust)")
       ->capture_default_str();
   command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients; 0: automatic")->capture_default_str();
   command->add_option("--denoiser", args->denoiser, "none, oidn (the machine's Open Image Denoise) or auto (that where there is one)")

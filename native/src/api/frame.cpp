@@ -81,7 +81,8 @@ GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame
   return api::guard([&] {
     api::require(frame, "frame") = 0;
     auto object = std::make_shared<api::FrameObject>(api::find_handle<Device>(device));
-    object->frame = load_frame(&api::require(path, "path"));
+    const std::string file = &api::require(path, "path");
+    object->device->arena().execute([&] { object->frame = load_frame(file); });
     *frame = api::add_handle(std::move(object));
   });
 }

@@ -9,6 +9,9 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -214,6 +217,29 @@ void check_regions(const Frame& frame) {
     throw damaged("its settings name another size");
 }
 
+// Reads blocks of a file that others read at the same time: what takes long is to inflate them.
+class BlockReader {
+ public:
+  BlockReader(const std::string& path, const Imath::Box2i& data, const std::vector<StoredPlane>& planes)
+      : file_(path.c_str()), data_(data), rows_(data.max.y - data.min.y + 1), block_(planes, data.max.x - data.min.x + 1, kBlockRows) {
+    if (file_.header().dataWindow() != data) throw damaged("it was replaced while it was read");
+    check_channels(file_.header(), planes);
+  }
+
+  void read(int number) {
+    const int first = kBlockRows * number, rows = std::min(kBlockRows, rows_ - first);
+    file_.setFrameBuffer(block_.frame_buffer(data_.min.x, data_.min.y + first, rows));
+    file_.readPixels(data_.min.y + first, data_.min.y + first + rows - 1);
+    for (int i = 0; i < rows; ++i) block_.scatter(i, rows_ - 1 - (first + i));
+  }
+
+ private:
+  Imf::InputFile file_;
+  const Imath::Box2i data_;
+  const int rows_;
+  RowBlock block_;
+};
+
 Frame read_frame(const std::string& path) {
   Imf::InputFile file(path.c_str());
   const Imf::Header& header = file.header();
@@ -225,15 +251,10 @@ Frame read_frame(const std::string& path) {
   check_regions(frame);
   const std::vector<StoredPlane> planes = stored_planes(&frame);
   check_channels(header, planes);
-  const Imath::Box2i& data = header.dataWindow();
-  const int height = frame.region.height();
-  RowBlock block(planes, frame.region.width(), kBlockRows);
-  for (int row = 0; row < height; row += kBlockRows) {
-    const int rows = std::min(kBlockRows, height - row);
-    file.setFrameBuffer(block.frame_buffer(data.min.x, data.min.y + row, rows));
-    file.readPixels(data.min.y + row, data.min.y + row + rows - 1);
-    for (int i = 0; i < rows; ++i) block.scatter(i, height - 1 - (row + i));
-  }
+  tbb::enumerable_thread_specific<std::unique_ptr<BlockReader>> readers(
+      [&] { return std::make_unique<BlockReader>(path, header.dataWindow(), planes); });
+  const int blocks = (frame.region.height() + kBlockRows - 1) / kBlockRows;
+  tbb::parallel_for(0, blocks, [&](int block) { readers.local()->read(block); });
   return frame;
 }
 
