@@ -1,4 +1,8 @@
-"""A seeded fault, and the tests that must catch it."""
+"""A seeded fault, and the tests that must catch it.
+
+A fault is an edit of the sources that compiles and looks harmless. Its old text must be there exactly once, or the tool stops: a fault that
+no longer applies proves nothing.
+"""
 
 from __future__ import annotations
 

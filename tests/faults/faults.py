@@ -18,10 +18,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from catalogue import FAULTS
 from fault import Fault, Test
+from reconstruction_faults import RECONSTRUCTION
+from renderer_faults import RENDERER
 
 ROOT = Path(__file__).resolve().parents[2]
+FAULTS = (*RENDERER, *RECONSTRUCTION)
 COPY = ROOT / "build-faults"
 LIMIT = 200  # seconds for one choice of tests; one that does not end has caught its fault, too
 
