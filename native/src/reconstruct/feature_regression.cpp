@@ -13,8 +13,9 @@ namespace gradus {
 namespace {
 
 // Figures of this file: docs/method.md, "Regression on features".
-const RegressionSettings kByFeatures{.radii = {1, 2, 4}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
-const RegressionSettings kOfResidual{.radii = {8}, .coordinates = false, .ridge = 1e-3f, .floor = 1e-6f};
+const RegressionSettings kFine{.octaves = {{.side = 2, .small = true}}, .lattices = 2, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
+const RegressionSettings kCoarse{.octaves = {{.side = 4}, {.side = 8}}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
+const RegressionSettings kOfResidual{.octaves = {{.side = 8}}, .coordinates = false, .ridge = 1e-3f, .floor = 1e-6f};
 // Pixels' noise is taken from a window, but where a pixel's own is far larger, as of a firefly.
 constexpr int kNoiseRadius = 7;
 constexpr float kOwnShare = 0.3f;
@@ -26,6 +27,8 @@ constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
 constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kLeastVariance = 1e-10f;
 // Light around a pixel, by which residuals are measured.
 constexpr int kLightRadius = 3;
+// Around a pixel, where small and large windows are compared, by their share of the light close to it.
+constexpr int kShareRadius = 4, kShareLightRadius = 2;
 // Side of squares that share a bound on outliers.
 constexpr int kSquare = 16;
 
@@ -105,9 +108,9 @@ Field albedo_of(const Features& features) {
 }
 
 // 1/light² around each pixel, so that residuals count by their share of it.
-Field weigh_by_light(const Field& image) {
+Field weigh_by_light(const Field& image, int radius) {
   const int w = image.width(), h = image.height();
-  const Field light = box_mean(make_field(w, h, [&](int x, int y) { return std::max(mean_of(image, x, y), 0.0f); }), kLightRadius);
+  const Field light = box_mean(make_field(w, h, [&](int x, int y) { return std::max(mean_of(image, x, y), 0.0f); }), radius);
   return make_field(w, h, [&](int x, int y) {
     const float level = light.row(y)[x] + kShareOfLight;
     return 1.0f / (level * level);
@@ -142,18 +145,67 @@ Field limit_outliers(const Field& residual, const Field& weights) {
   return share;
 }
 
+// Share of small windows in their mean with large ones. The large ones' bias is what both differ by, less what noise makes them differ by;
+// with the small ones' noise almost all of that, the mean of least squared error is Wiener's.
+Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse) {
+  const int w = fine.mean.width(), h = fine.mean.height();
+  const Field by_light = weigh_by_light(fine.mean, kShareLightRadius);
+  Field apart(w, h, 2);
+  for_values(&apart, [&](float& value, int x, int y, int c) {
+    const Field &a = c == 0 ? fine.mean : fine.noise, &b = c == 0 ? coarse.mean : coarse.noise;
+    for (int i = 0; i < 3; ++i) value += (a.row(y, i)[x] - b.row(y, i)[x]) * (a.row(y, i)[x] - b.row(y, i)[x]);
+    value *= by_light.row(y)[x];
+  });
+  apart = box_mean(apart, kShareRadius);
+  return make_field(w, h, [&](int x, int y) {
+    const float of_mean = apart.row(y, 0)[x], of_noise = apart.row(y, 1)[x];
+    return of_noise > 0.0f ? std::max(1.0f - of_noise / of_mean, 0.0f) : 1.0f;
+  });
+}
+
+// a and b become share · a + (1 − share) · b in a.
+void blend(const Field& share, const Field& b, Field* a) {
+  for_values(a, [&](float& value, int x, int y, int c) { value = b.row(y, c)[x] + share.row(y)[x] * (value - b.row(y, c)[x]); });
+}
+
+// The same of squared biases: large windows have that of the small ones and more. Both are estimated too high, which the lesser is less.
+void blend_bias(const Field& share, const Field& coarse, Field* fine) {
+  for_values(fine, [&](float& value, int x, int y, int) {
+    const float of_coarse = 1.0f - share.row(y)[x], more = std::max(coarse.row(y)[x] - value, 0.0f);
+    value = std::min(value, coarse.row(y)[x]) + of_coarse * of_coarse * more;
+  });
+}
+
+// Weights by light, by which the mean is kept, with something of those by noise, which keep out outliers.
+Field weigh_residual(const Field& by_light, const Field& by_noise) {
+  return make_field(by_light.width(), by_light.height(), [&](int x, int y) {
+    const float light = std::sqrt(by_light.row(y)[x]), noise = std::sqrt(by_noise.row(y)[x]);
+    return light * std::sqrt(light * noise);
+  });
+}
+
 }  // namespace
 
 FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel) {
   PixelWeights weights = weigh_pixels(image);
-  by_features_ = LocalRegression(basis_of(features), std::move(weights.in_windows), std::move(weights.own), kByFeatures);
-  RegressionResult first = by_features_.estimate(image.mean, image.half_difference, cancel);
-  const Field by_light = weigh_by_light(first.mean);
+  const auto predictors = std::make_shared<const Predictors>(Predictors{basis_of(features), std::move(weights.in_windows)});
+  fine_ = LocalRegression(predictors, std::move(weights.own), kFine);
+  coarse_ = LocalRegression(predictors, {}, kCoarse);
+  RegressionResult first = fine_.estimate(image.mean, image.half_difference, cancel);
+  {
+    const RegressionResult coarse = coarse_.estimate(image.mean, image.half_difference, cancel);
+    share_ = share_of_fine(first, coarse);
+    blend(share_, coarse.mean, &first.mean);
+    blend(share_, coarse.noise, &first.noise);
+    blend_bias(share_, coarse.bias, &first.bias);
+  }
+  const Field by_light = weigh_by_light(first.mean, kLightRadius);
   Field residual = difference(image.mean, first.mean), of_noise = difference(image.half_difference, first.noise);
   kept_ = limit_outliers(residual, by_light);
   scale_by(kept_, &residual);
   scale_by(kept_, &of_noise);
-  of_residual_ = LocalRegression(albedo_of(features), by_light, Field(residual.width(), residual.height(), 1), kOfResidual);
+  of_residual_ = LocalRegression(
+      std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, predictors->weights)}), {}, kOfResidual);
   const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
   image_ = std::move(first.mean);
   add(second.mean, &image_);
@@ -164,7 +216,8 @@ FeatureRegression::FeatureRegression(const Features& features, const HalvedImage
 }
 
 Field FeatureRegression::apply(const Field& values, const CancelTest& cancel) const {
-  Field result = by_features_.apply(values, cancel);
+  Field result = fine_.apply(values, cancel);
+  blend(share_, coarse_.apply(values, cancel), &result);
   Field residual = difference(values, result);
   scale_by(kept_, &residual);
   add(of_residual_.apply(residual, cancel), &result);

@@ -1,5 +1,6 @@
-// The image by its features: regression in small windows, then what that lost is given back by regression of the residual in large ones.
-// Both steps are linear in the image once their weights are known, so other planes can go through them (contract 3.4).
+// The image by its features: regression in small windows, and in large ones where these do as well, then what that lost is given back by
+// regression of the residual. All steps are linear in the image once their weights are known, so other planes can go through them
+// (contract 3.4).
 #pragma once
 
 #include "frame/features.h"
@@ -24,8 +25,9 @@ class FeatureRegression {
   Field apply(const Field& values, const CancelTest& cancel) const;
 
  private:
-  LocalRegression by_features_, of_residual_;
-  Field kept_;  // share of each pixel's residual that is given back: outliers are limited
+  LocalRegression fine_, coarse_, of_residual_;
+  Field share_;  // of each pixel that the fine windows have
+  Field kept_;   // share of each pixel's residual that is given back: outliers are limited
   Field image_, error_;
 };
 

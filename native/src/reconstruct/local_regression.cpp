@@ -4,394 +4,427 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <type_traits>
 
 #include "base/error.h"
 #include "base/fpu.h"
-#include "reconstruct/window_solve.h"
+#include "reconstruct/moments.h"
 
 namespace gradus {
 namespace {
 
-// Outputs of a tile. Its sums are in the second cache; the taller, the less is done twice.
-constexpr int kTileWidth = 80, kTileHeight = 128;
-// Windows of this radius and above are taken around every other row.
-constexpr int kSparseRadius = 4;
+// Squares of a tile, with what windows reach beyond it whole vectors. Its sums are in the second cache; the taller, the less is done twice.
+constexpr int kReach = 3, kTileWidth = 72 - 2 * kReach, kTileHeight = 96;
 // Pixels in a unit of the coordinates: some windows, so that their slopes feel the ridge as little as those of the other features do.
 constexpr float kCoordinateUnit = 20.0f;
+// Pixels of a square that are summed at a time.
+constexpr int kGroup = 4;
 
-// Rows of floats: planes of one image row, or of some.
-class Rows {
- public:
-  Rows(int count, int width) : width_((size_t(width) + 2 * kLanes - 1) / kLanes * kLanes), values_(width_ * size_t(count)) {}
-  float* operator[](int i) { return values_.data() + width_ * size_t(i); }
-  const float* operator[](int i) const { return values_.data() + width_ * size_t(i); }
-  size_t width() const { return width_; }
-
- private:
-  size_t width_;  // room for whole lanes behind the last
-  std::vector<float> values_;
-};
-
-Lanes load(const float* from) {
-  Lanes lanes;
-  std::memcpy(&lanes, from, sizeof(lanes));
-  return lanes;
-}
-void store(const Lanes& lanes, float* to) { std::memcpy(to, &lanes, sizeof(lanes)); }
-
-// What a tile reads and writes. `values` have C channels: three means and three half differences when η is estimated, else one.
+// Of an image.
 struct Task {
-  const Field *features, *weights, *own, *values;
+  const Field *features, *weights;
+  const Field* own;                  // null: none
+  std::vector<const Field*> values;  // the mean and half the difference where η is estimated, else one
+  std::vector<Field*> results;       // until the last lattice is done, sums over windows
+  Field *totals, *bias;              // sums of η and of η · bias
   const RegressionSettings* settings;
-  const Field* confidence;  // where it is known already
-  Field *new_confidence, *result, *bias;
 };
 
-// The windows of one tile, row by row, for a constant and B − 1 features, with or without the pixel's coordinates, and C right sides. With
-// `Estimates` the first half of the sides are means, the second half differences.
-//
-// Coordinates count from the window's centre while it is solved for: from anywhere else, floats would not hold the constant of a window
-// with steep slopes.
-template <int B, bool Coordinates, int C, bool Estimates>
+// Of an octave on one of the lattices. Squares begin `shift` pixels before the image.
+template <bool Estimates>
+struct OctaveTask {
+  using Confidence = std::conditional_t<Estimates, Field, const Field>;
+  Octave octave;
+  int shift;
+  Confidence* confidence;  // two channels, one for each size of windows; row and column of the first square + kReach
+  const Field* coarse;     // opinions of the next octave
+  Field* opinions;         // of this; null for the finest, which writes results
+};
+
+const Field* own_or_null(const Field& own) { return own.width() > 0 ? &own : nullptr; }
+
+int ceil_divided(int pixels, int side) { return (pixels + side - 1) / side; }
+
+template <int P, int C, bool Coordinates, bool Estimates>
 class Tile {
  public:
-  Tile(const Task& task, int x0, int x1, int y0, int y1)
+  // Of the squares [x0, x1) × [y0, y1).
+  Tile(const Task& task, const OctaveTask<Estimates>& octave, int x0, int x1, int y0, int y1)
       : task_(task),
+        octave_(octave),
+        side_(octave.octave.side),
         x0_(x0),
         x1_(x1),
         y0_(y0),
         y1_(y1),
-        reach_(task.settings->radii.back()),
-        first_(x0 - 2 * reach_),
-        width_(x1 - x0 + 4 * reach_),
-        moments_(kMoments * (2 * reach_ + 1), width_),
-        columns_(kColumns, width_),
-        boxes_(kBoxes, width_),
-        said_(kSaid * int(task.settings->radii.size()), width_),
-        sums_(kSaid * (2 * reach_ + 1), width_),
-        basis_(P, width_) {}
+        first_(x0 - kReach),
+        width_(x1 - x0 + 2 * kReach),
+        unit_(0.5f / kCoordinateUnit * float(side_)),
+        pixels_(kGroup * kPixel, width_),
+        moments_(M::kCount, width_),
+        boxes_(M::kCount, width_),
+        pairs_{Rows(M::kCount, width_), Rows(M::kCount, width_)},
+        quads_{Rows(M::kCount, width_), Rows(M::kCount, width_), Rows(M::kCount, width_)},
+        said_(O::kCount, width_),
+        small_{Rows(O::kCount, width_), Rows(O::kCount, width_), Rows(O::kCount, width_)},
+        large_{Rows(O::kCount, width_), Rows(O::kCount, width_), Rows(O::kCount, width_)},
+        columns_{Rows(O::kCount, width_), Rows(O::kCount, width_)} {}
 
   void run() {
-    for (int y = y0_ - 2 * reach_; y < y0_; ++y) read_moments(y);
-    for (int q = y0_ - reach_; q < y1_ + reach_; ++q) {
-      read_moments(q + reach_);
-      if (q >= 0 && q < task_.weights->height()) regress_row(q);
-      if (q - reach_ >= y0_) write_row(q - reach_);
+    for (int j = y0_ - kReach; j < y1_ + kReach; ++j) {
+      sum_squares(j);
+      M::template join<M::kX>(moments_, moments_, 1, unit_, &at(pairs_, j));
+      if (j > y0_ - kReach) regress_small(j - 1);
+      if (j >= y0_) {
+        regress_large(j - 3);
+        collect(j - 3);
+      }
     }
   }
 
  private:
-  // φ: constant, features, x, y.
-  static constexpr int P = B + (Coordinates ? 2 : 0), kX = B, kY = B + 1;
-  // Moments of a pixel's row: products of features, those with the right sides, and w (v² − d²) over the channels.
-  static constexpr int kRight = packed(B, 0), kSquares = kRight + B * C, kMoments = kSquares + 1;
-  // Sums over columns: the moments; those with y: of the features, of the right sides, and y².
-  static constexpr int kRamps = kMoments, kColumns = kMoments + (Coordinates ? B + C + 1 : 0);
-  // Sums over windows: normal equations, and the squares.
-  static constexpr int kBoxRight = packed(P, 0), kBoxSquares = kBoxRight + P * C, kBoxes = kBoxSquares + 1;
-  // What windows say: coefficients times η, η, bias times η.
-  static constexpr int kSides = P * C, kConfidence = kSides, kBias = kSides + 1, kSaid = kSides + 2;
+  using M = Moments<P, C, Coordinates>;
+  using O = Opinions<P, C, Coordinates>;
+  enum Size : int { kLarge, kSmall };  // of windows
+  static constexpr int kSides = P * C;
+  static constexpr int B = Coordinates ? P - 2 : P;                                   // but for the coordinates
+  static constexpr int kWeight = B - 1, kValues = kWeight + 1, kPixel = kValues + C;  // of a pixel: features, weight, values
 
-  int slot(int y, int planes) const { return planes * ((y + 4 * reach_ + 2) % (2 * reach_ + 1)); }
-  // A pixel's coordinates in its tile.
-  float tile_x(int x) const { return float(x - width_ / 2) / kCoordinateUnit; }
-  float tile_y(int y) const { return float(y - (y0_ + y1_) / 2) / kCoordinateUnit; }
+  template <size_t N>
+  static Rows& at(std::array<Rows, N>& ring, int j) {
+    return ring[size_t(j + 64 * int(N)) % N];
+  }
 
-  // φ of row y.
-  void read_basis(int y) {
-    const int begin = std::max(first_, 0), end = std::min(first_ + width_, task_.weights->width());
-    std::fill_n(basis_[0], width_, 1.0f);
-    for (int c = 0; c + 1 < B; ++c) std::copy_n(task_.features->row(y, c) + begin, end - begin, basis_[1 + c] + (begin - first_));
-    if constexpr (Coordinates) {
-      for (int x = 0; x < width_; ++x) basis_[kX][x] = tile_x(x);
-      std::fill_n(basis_[kY], width_, tile_y(y));
+  // Pixel k of group g.
+  int pixel_x(int g, int k) const { return side_ == 2 ? k % 2 : (kGroup * g + k) % side_; }
+  int pixel_y(int g, int k) const { return side_ == 2 ? k / 2 : (kGroup * g + k) / side_; }
+  int pixel_row(int j, int g, int k) const { return j * side_ + pixel_y(g, k) - octave_.shift; }
+  int groups() const { return side_ * side_ / kGroup; }
+  float coordinate(int i) const { return (float(i) - 0.5f * float(side_ - 1)) / kCoordinateUnit; }
+
+  const float* value_row(int y, int c) const { return task_.values[size_t(c) / 3]->row(y, c % 3); }
+
+  // Of every square of row j the k-th pixel of a group, side by side.
+  void read_pixels(int j, int g) {
+    for (int k = 0; k < kGroup; ++k) {
+      const int y = pixel_row(j, g, k), dx = pixel_x(g, k);
+      const bool inside = y >= 0 && y < task_.weights->height();
+      const int at = k * kPixel;
+      for (int c = 0; c + 1 < B; ++c) pick(inside ? task_.features->row(y, c) : nullptr, dx, pixels_[at + c]);
+      pick(inside ? task_.weights->row(y) : nullptr, dx, pixels_[at + kWeight]);
+      for (int c = 0; c < C; ++c) pick(inside ? value_row(y, c) : nullptr, dx, pixels_[at + kValues + c]);
     }
   }
 
-  // The moments of row y take the place of those of the row 2·reach + 1 below.
-  void read_moments(int y) {
-    const int at = slot(y, kMoments);
-    for (int i = 0; i < kMoments; ++i) std::fill_n(moments_[at + i], moments_.width(), 0.0f);
-    if (y < 0 || y >= task_.weights->height()) return;
-    read_basis(y);
-    const int begin = std::max(first_, 0), end = std::min(first_ + width_, task_.weights->width()), shift = begin - first_;
-    const float* w = task_.weights->row(y) + begin;
-    const int n = end - begin;
-    for (int i = 0; i < B; ++i) {
-      const float* a = basis_[i] + shift;
-      for (int j = 0; j <= i; ++j) multiply(w, a, basis_[j] + shift, n, moments_[at + packed(i, j)] + shift);
-      for (int c = 0; c < C; ++c) multiply(w, a, task_.values->row(y, c) + begin, n, moments_[at + kRight + C * i + c] + shift);
+  // Squares whose pixel dx is in the image.
+  int first_inside(int dx) const { return std::max(0, ceil_divided(octave_.shift - dx, side_) - first_); }
+  int end_inside(int dx) const { return ceil_divided(task_.weights->width() + octave_.shift - dx, side_) - first_; }
+
+  void pick(const float* row, int dx, float* to) const {
+    if (row == nullptr) return static_cast<void>(std::fill_n(to, pixels_.width(), 0.0f));
+    const int begin = first_inside(dx), end = std::min(width_, end_inside(dx));
+    std::fill_n(to, begin, 0.0f);
+    row += first_ * side_ + dx - octave_.shift;
+    if (side_ == 2) {
+      for (int x = begin; x < end; ++x) to[x] = row[2 * x];
+    } else {
+      for (int x = begin; x < end; ++x) to[x] = row[side_ * x];
     }
-    float* squares = moments_[at + kSquares] + shift;
-    for (int c = 0; c < C; ++c) {
-      const float *v = task_.values->row(y, c) + begin, sign = !Estimates || c < C / 2 ? 1.0f : -1.0f;
-      for (int x = 0; x < n; ++x) squares[x] += sign * w[x] * v[x] * v[x];
-    }
+    for (int x = std::max(begin, end); x < pixels_.width(); ++x) to[x] = 0.0f;
   }
 
-  static void multiply(const float* w, const float* a, const float* b, int n, float* to) {
-    for (int x = 0; x < n; ++x) to[x] = w[x] * a[x] * b[x];
-  }
-
-  // All windows around the pixels of row q.
-  void regress_row(int q) {
-    const std::vector<int>& radii = task_.settings->radii;
-    int done = -1;
-    for (int k = 0; k < int(radii.size()); ++k) {
-      if (!has_windows(q, radii[size_t(k)])) continue;
-      for (; done < radii[size_t(k)]; ++done) add_rows(q, done + 1);
-      sum_windows(radii[size_t(k)]);
-      for (int x = reach_; x < width_ - reach_; x += kLanes) regress(q, k, radii[size_t(k)], x);
-    }
-    spread(q);
-  }
-
-  // Large windows overlap so much that every other row of them does.
-  static int row_step(int r) { return r < kSparseRadius ? 1 : 2; }
-  static bool has_windows(int q, int r) { return q % row_step(r) == 0; }
-
-  // Adds the moments of the rows q ± r to the columns' sums.
-  void add_rows(int q, int r) {
-    const int above = slot(q + r, kMoments), below = slot(q - r, kMoments);
-    for (int i = 0; i < kMoments; ++i) {
-      if (r == 0) {
-        std::copy_n(moments_[above + i], width_, columns_[i]);
-      } else {
-        add(moments_[above + i], moments_[below + i], 1.0f, 1.0f, columns_[i]);
-      }
-    }
-    if constexpr (Coordinates) {
-      const float y = float(r) / kCoordinateUnit;
-      if (r == 0) return std::fill(columns_[kRamps], columns_[kColumns - 1] + width_, 0.0f);
-      for (int i = 0; i < B; ++i) add(moments_[above + packed(i, 0)], moments_[below + packed(i, 0)], y, -y, columns_[kRamps + i]);
-      for (int c = 0; c < C; ++c) add(moments_[above + kRight + c], moments_[below + kRight + c], y, -y, columns_[kRamps + B + c]);
-      add(moments_[above], moments_[below], y * y, y * y, columns_[kRamps + B + C]);
-    }
-  }
-
-  void add(const float* a, const float* b, float of_a, float of_b, float* to) const {
-    for (int x = 0; x < width_; ++x) to[x] += of_a * a[x] + of_b * b[x];
-  }
-
-  void sum_windows(int r) {
-    for (int i = 0; i < packed(B, 0); ++i) box(columns_[i], r, boxes_[i]);
-    for (int i = 0; i < B * C; ++i) box(columns_[kRight + i], r, boxes_[kBoxRight + i]);
-    box(columns_[kSquares], r, boxes_[kBoxSquares]);
-    if constexpr (Coordinates) {
-      for (int j = 0; j < B; ++j) {
-        ramp(columns_[packed(j, 0)], r, boxes_[packed(kX, j)]);
-        box(columns_[kRamps + j], r, boxes_[packed(kY, j)]);
-      }
-      square_ramp(columns_[0], r, boxes_[packed(kX, kX)]);
-      ramp(columns_[kRamps], r, boxes_[packed(kY, kX)]);
-      box(columns_[kRamps + B + C], r, boxes_[packed(kY, kY)]);
-      for (int c = 0; c < C; ++c) {
-        ramp(columns_[kRight + c], r, boxes_[kBoxRight + C * kX + c]);
-        box(columns_[kRamps + B + c], r, boxes_[kBoxRight + C * kY + c]);
+  // Moments of the squares of row j.
+  void sum_squares(int j) {
+    if (j < 0 || j >= ceil_divided(task_.weights->height() + octave_.shift, side_)) return moments_.clear();
+    for (int g = 0; g < groups(); ++g) {
+      read_pixels(j, g);
+      for (int x = 0; x < moments_.width(); x += kLanes) {
+        g == 0 ? add_pixels<true>(g, x) : add_pixels<false>(g, x);
       }
     }
   }
 
-  // Sums over 2r + 1 values; those times x from the middle; those times x². One pass over the row for each radius in use.
-  void box(const float* from, int r, float* to) const {
-    switch (r) {
-      case 1:
-        return weighted_box<1>(from, to, [](int) { return 1.0f; });
-      case 2:
-        return weighted_box<2>(from, to, [](int) { return 1.0f; });
-      case 4:
-        return weighted_box<4>(from, to, [](int) { return 1.0f; });
-      default:
-        return weighted_box<8>(from, to, [](int) { return 1.0f; });
-    }
-  }
-  void ramp(const float* from, int r, float* to) const {
-    constexpr auto weight = [](int d) { return float(d) / kCoordinateUnit; };
-    r == 1 ? weighted_box<1>(from, to, weight) : r == 2 ? weighted_box<2>(from, to, weight) : weighted_box<4>(from, to, weight);
-  }
-  void square_ramp(const float* from, int r, float* to) const {
-    constexpr auto weight = [](int d) { return float(d * d) / (kCoordinateUnit * kCoordinateUnit); };
-    r == 1 ? weighted_box<1>(from, to, weight) : r == 2 ? weighted_box<2>(from, to, weight) : weighted_box<4>(from, to, weight);
-  }
-  template <int R, class Weight>
-  void weighted_box(const float* from, float* to, const Weight& weight) const {
-    for (int x = R; x < width_ - R; ++x) {
-      float sum = weight(0) * from[x];
-      for (int d = 1; d <= R; ++d) sum += weight(d) * from[x + d] + weight(-d) * from[x - d];
-      to[x] = sum;
-    }
+  // φ of the group's pixel k.
+  Lanes feature(int i, int g, int k, int x) const {
+    if (i == 0) return Lanes{} + 1.0f;
+    if (i < B) return load(pixels_[k * kPixel + i - 1] + x);
+    return Lanes{} + (i == M::kX ? coordinate(pixel_x(g, k)) : coordinate(pixel_y(g, k)));
   }
 
-  // Eight windows: coefficients, error and, by these, what they have to say.
-  void regress(int q, int scale, int r, int x) {
-    const int said = scale * kSaid;
-    Lanes matrix[packed(P, 0)], right[kSides], solution[kSides];
+  template <bool First>
+  void add_pixels(int g, int x) {
+    Lanes basis[P][kGroup], values[C][kGroup];
+    for (int k = 0; k < kGroup; ++k) {
+      for (int i = 0; i < P; ++i) basis[i][k] = feature(i, g, k, x);
+      for (int c = 0; c < C; ++c) values[c][k] = load(pixels_[k * kPixel + kValues + c] + x);
+    }
+    const auto put = [&](int plane, const Lanes* a, const Lanes* b) {
+      Lanes sum = a[0] * b[0];
+      for (int k = 1; k < kGroup; ++k) sum += a[k] * b[k];
+      float* to = moments_[plane] + x;
+      store(First ? sum : sum + load(to), to);
+    };
+    for (int i = 0; i < P; ++i) {
+      Lanes weighted[kGroup];
+      for (int k = 0; k < kGroup; ++k) weighted[k] = load(pixels_[k * kPixel + kWeight] + x) * basis[i][k];
+      for (int j = 0; j <= i; ++j) put(packed(i, j), weighted, basis[j]);
+      for (int c = 0; c < C; ++c) put(M::kRight + C * i + c, weighted, values[c]);
+    }
+    Lanes weight[kGroup], squared[kGroup] = {};
+    for (int k = 0; k < kGroup; ++k) {
+      weight[k] = load(pixels_[k * kPixel + kWeight] + x);
+      for (int c = 0; c < C; ++c) squared[k] += (!Estimates || c < C / 2 ? 1.0f : -1.0f) * values[c][k] * values[c][k];
+    }
+    put(M::kSquares, weight, squared);
+  }
+
+  // Windows whose first row of squares is m.
+  void regress_small(int m) {
+    M::template join<M::kY>(at(pairs_, m), at(pairs_, m + 1), 0, unit_, &boxes_);
+    if (octave_.octave.small) regress(m, kSmall, &at(small_, m));
+    M::template join<M::kX>(boxes_, boxes_, 2, 2.0f * unit_, &at(quads_, m));
+  }
+  void regress_large(int m) {
+    M::template join<M::kY>(at(quads_, m), at(quads_, m + 2), 0, 2.0f * unit_, &boxes_);
+    regress(m, kLarge, &said_);
+  }
+
+  // What they say, to the squares that they hold.
+  void collect(int m) {
+    Rows &large = at(large_, m), &small = at(small_, m), &column = at(columns_, m);
+    large.clear();
+    O::template split<M::kX>(said_, said_, 2, 2.0f * unit_, &large);
+    if (!octave_.octave.small) small.clear();
+    O::template split<M::kY>(large, at(large_, m - 2), 0, 2.0f * unit_, &small);
+    column.clear();
+    O::template split<M::kX>(small, small, 1, unit_, &column);
+    if (m < y0_) return;
+    said_.clear();
+    O::template split<M::kY>(column, at(columns_, m - 1), 0, unit_, &said_);
+    if (octave_.coarse != nullptr) add_coarse(m);
+    octave_.opinions != nullptr ? write_opinions(m) : write_pixels(m);
+  }
+
+  // Eight windows side by side: coefficients, error and, by these, what they have to say.
+  void regress(int m, Size size, Rows* said) {
+    for (int x = 0; x < boxes_.width(); x += kLanes) regress(m, size, x, said);
+  }
+  void regress(int m, Size size, int x, Rows* said) {
+    Lanes matrix[packed(P, 0)], solution[kSides];
     for (int i = 0; i < packed(P, 0); ++i) matrix[i] = load(boxes_[i] + x);
-    for (int i = 0; i < kSides; ++i) solution[i] = right[i] = load(boxes_[kBoxRight + i] + x);
+    for (int i = 0; i < kSides; ++i) solution[i] = load(boxes_[M::kRight + i] + x);
     const Lanes zero{}, weight = matrix[0], ridge = task_.settings->ridge * weight;
     for (int i = 1; i < P; ++i) matrix[packed(i, i)] += ridge;
     solve_windows<P, C>(matrix, solution);
     Lanes eta, bias = zero;
     if constexpr (Estimates) {
-      Lanes residual = load(boxes_[kBoxSquares] + x), noise = zero;
+      Lanes residual = load(boxes_[M::kSquares] + x), noise = zero;
       for (int i = 0; i < P; ++i) {
         for (int c = 0; c < C / 2; ++c) {
           const Lanes v = solution[C * i + c], d = solution[C * i + C / 2 + c], penalty = i == 0 ? zero : ridge;
-          const Lanes of_noise = d * right[C * i + C / 2 + c];
-          residual += of_noise + penalty * d * d - v * (right[C * i + c] + penalty * v);
+          const Lanes of_noise = d * load(boxes_[M::kRight + C * i + C / 2 + c] + x);
+          residual += of_noise + penalty * d * d - v * (load(boxes_[M::kRight + C * i + c] + x) + penalty * v);
           noise += of_noise - penalty * d * d;
         }
       }
       const Lanes unit = weight > zero ? 1.0f / (float(C / 2) * weight) : zero;
       bias = residual > zero ? unit * residual : zero;
       const Lanes error = bias + (noise > zero ? unit * noise : zero) + task_.settings->floor;
-      eta = weight > zero ? float(row_step(r)) / (float((2 * r + 1) * (2 * r + 1)) * error) : zero;
-      store(eta, said_[said + kConfidence] + x);
-      keep_confidence(q, scale, x);
+      eta = weight > zero ? (size == kSmall ? 0.25f : 0.0625f) / (float(task_.settings->lattices) * error) : zero;
+      keep_confidence(m, size, x, eta);
     } else {
-      load_confidence(q, scale, x);
-      eta = load(said_[said + kConfidence] + x);
+      eta = load_confidence(m, size, x);
+    }
+    for (int i = 0; i < kSides; ++i) store(eta * solution[i], (*said)[i] + x);
+    store(eta, (*said)[O::kConfidence] + x);
+    store(eta * bias, (*said)[O::kBias] + x);
+  }
+
+  // Every window is kept by one tile alone.
+  void keep_confidence(int m, Size size, int x, const Lanes& eta) {
+    if ((m < y0_ && y0_ > 0) || m >= y1_) return;
+    for (int l = 0; l < kLanes; ++l) {
+      const int i = first_ + x + l;
+      if ((i >= x0_ || x0_ == 0) && i < x1_) octave_.confidence->row(m + kReach, size)[i + kReach] = eta[l];
+    }
+  }
+  Lanes load_confidence(int m, Size size, int x) const {
+    Lanes eta{};
+    if (m + kReach >= octave_.confidence->height()) return eta;
+    for (int l = 0; l < kLanes; ++l) {
+      const int i = first_ + x + l + kReach;
+      if (i < octave_.confidence->width()) eta[l] = octave_.confidence->row(m + kReach, size)[i];
+    }
+    return eta;
+  }
+
+  void add_coarse(int m) {
+    const float above = m % 2 == 0 ? -unit_ : unit_;
+    for (int i = 0; i < O::kCount; ++i) {
+      const float* from = octave_.coarse->row(m / 2, i);
+      float* to = said_[i];
+      for (int x = kReach; x < width_ - kReach; ++x) to[x] += from[(first_ + x) / 2];
     }
     if constexpr (Coordinates) {
-      const Lanes at_x = load(basis_x() + x), at_y = zero + tile_y(q);
-      for (int c = 0; c < C; ++c) solution[c] -= at_x * solution[C * kX + c] + at_y * solution[C * kY + c];
-    }
-    for (int i = 0; i < kSides; ++i) store(eta * solution[i], said_[said + i] + x);
-    store(eta * bias, said_[said + kBias] + x);
-  }
-
-  const float* basis_x() const { return basis_[kX]; }
-
-  // η of the tile's own pixels is kept: those beside it are another tile's.
-  void keep_confidence(int q, int scale, int x) {
-    if (q < y0_ || q >= y1_) return;
-    for (int i = std::max(x, 2 * reach_); i < std::min(x + kLanes, width_ - 2 * reach_); ++i)
-      task_.new_confidence->row(q, scale)[first_ + i] = said_[scale * kSaid + kConfidence][i];
-  }
-  void load_confidence(int q, int scale, int x) {
-    for (int i = x; i < x + kLanes; ++i) {
-      const int at = first_ + i;
-      said_[scale * kSaid + kConfidence][i] = at >= 0 && at < task_.weights->width() ? task_.confidence->row(q, scale)[at] : 0.0f;
-    }
-  }
-
-  // What the windows of row q say, to the pixels that they hold: the largest first, so that each row takes the sum of what reaches it.
-  // There are no windows around pixels outside of the image.
-  void spread(int q) {
-    const std::vector<int>& radii = task_.settings->radii;
-    const int begin = std::max(std::max(first_, 0) - first_, reach_);
-    const int end = std::min(std::min(first_ + width_, task_.weights->width()) - first_, width_ - reach_);
-    float *sum = boxes_[0], *part = boxes_[1];
-    for (int i = 0; i < kSaid; ++i) {
-      std::fill_n(sum, width_, 0.0f);
-      for (size_t k = radii.size(); k-- > 0;) {
-        const int r = radii[k], inner = k > 0 ? radii[k - 1] : -1;
-        if (has_windows(q, r)) {
-          float* said = said_[int(k) * kSaid + i];
-          std::fill_n(said, begin, 0.0f);
-          std::fill(said + end, said + said_.width(), 0.0f);
-          box(said, r, part);
-          for (int x = 2 * reach_; x < width_ - 2 * reach_; ++x) sum[x] += part[x];
-        }
-        for (int d = r; d > inner; --d) {
-          give(sum, q + d, i);
-          if (d > 0) give(sum, q - d, i);
+      for (int c = 0; c < C; ++c) {
+        const float *of_x = octave_.coarse->row(m / 2, C * M::kX + c), *of_y = octave_.coarse->row(m / 2, C * M::kY + c);
+        float* to = said_[c];
+        for (int x = kReach; x < width_ - kReach; ++x) {
+          const int i = first_ + x;
+          to[x] += (i % 2 == 0 ? -unit_ : unit_) * of_x[i / 2] + above * of_y[i / 2];
         }
       }
     }
   }
 
-  void give(const float* sum, int y, int i) {
-    if (y < y0_ || y >= y1_) return;
-    float* to = sums_[slot(y, kSaid) + i];
-    for (int x = 2 * reach_; x < width_ - 2 * reach_; ++x) to[x] += sum[x];
+  void write_opinions(int m) {
+    for (int i = 0; i < O::kCount; ++i) std::copy_n(said_[i] + kReach, x1_ - x0_, octave_.opinions->row(m, i) + x0_);
   }
 
-  void write_row(int y) {
-    read_basis(y);
-    const int at = slot(y, kSaid), begin = x0_ - first_, n = x1_ - x0_;
-    const float* all = sums_[at + kConfidence] + begin;
-    const float* own = task_.own->row(y) + x0_;
-    for (int c = 0; c < C; ++c) {
-      float* to = task_.result->row(y, c) + x0_;
-      const float* value = task_.values->row(y, c) + x0_;
-      for (int x = 0; x < n; ++x) {
-        float sum = 0.0f;
-        for (int i = 0; i < P; ++i) sum += sums_[at + C * i + c][begin + x] * basis_[i][begin + x];
-        const float total = all[x] + own[x];
-        to[x] = total > 0.0f ? (sum + own[x] * value[x]) / total : 0.0f;
+  bool first_lattice() const { return octave_.shift == 0; }
+  bool last_lattice() const { return octave_.shift == task_.settings->lattices - 1; }
+
+  void write_pixels(int m) {
+    for (int g = 0; g < groups(); ++g) {
+      read_pixels(m, g);
+      for (int k = 0; k < kGroup; ++k) {
+        const int y = pixel_row(m, g, k);
+        if (y >= 0 && y < task_.weights->height()) write_pixels(y, g, k);
       }
     }
-    if constexpr (Estimates) {
-      const float* bias = sums_[at + kBias] + begin;
-      for (int x = 0; x < n; ++x) task_.bias->row(y)[x0_ + x] = all[x] > 0.0f ? bias[x] / (all[x] + own[x]) : 0.0f;
+  }
+
+  // Sums over the lattices, and after the last what they come to.
+  void write_pixels(int y, int g, int k) {
+    std::array<float*, C + 2> rows{};
+    for (int c = 0; c < C; ++c) rows[size_t(c)] = task_.results[size_t(c) / 3]->row(y, c % 3);
+    rows[C] = task_.totals->row(y);
+    rows[C + 1] = Estimates ? task_.bias->row(y) : nullptr;
+    const int dx = pixel_x(g, k), planes = Estimates ? C + 2 : C + 1;
+    for (int i = 0; i < planes; ++i) pick(first_lattice() ? nullptr : rows[size_t(i)], dx, boxes_[i]);
+    for (int x = 0; x < width_; x += kLanes) {
+      for (int c = 0; c < C; ++c) {
+        Lanes sum = load(boxes_[c] + x);
+        for (int i = 0; i < P; ++i) sum += load(said_[C * i + c] + x) * feature(i, g, k, x);
+        store(sum, boxes_[c] + x);
+      }
+      for (int i = 0; i < planes - C; ++i) store(load(boxes_[C + i] + x) + load(said_[O::kConfidence + i] + x), boxes_[C + i] + x);
     }
-    for (int i = 0; i < kSaid; ++i) std::fill_n(sums_[at + i], sums_.width(), 0.0f);
+    if (last_lattice()) add_own(y, k, dx);
+    for (int i = 0; i < planes; ++i) put(boxes_[i], dx, rows[size_t(i)]);
+  }
+
+  void add_own(int y, int k, int dx) {
+    pick(task_.own != nullptr ? task_.own->row(y) : nullptr, dx, moments_[0]);
+    for (int x = 0; x < width_; x += kLanes) {
+      const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{}, factor = total > zero ? 1.0f / total : zero;
+      for (int c = 0; c < C; ++c) store(factor * (load(boxes_[c] + x) + own * load(pixels_[k * kPixel + kValues + c] + x)), boxes_[c] + x);
+      if constexpr (Estimates) store(factor * load(boxes_[C + 1] + x), boxes_[C + 1] + x);
+    }
+  }
+
+  void put(const float* from, int dx, float* row) const {
+    row += first_ * side_ + dx - octave_.shift;
+    const int begin = std::max(kReach, first_inside(dx)), end = std::min(width_ - kReach, end_inside(dx));
+    for (int x = begin; x < end; ++x) row[side_ * x] = from[x];
   }
 
   const Task& task_;
-  const int x0_, x1_, y0_, y1_, reach_, first_, width_;
-  Rows moments_, columns_, boxes_, said_, sums_, basis_;
+  const OctaveTask<Estimates>& octave_;
+  const int side_, x0_, x1_, y0_, y1_, first_, width_;
+  const float unit_;
+  Rows pixels_, moments_, boxes_;
+  std::array<Rows, 2> pairs_;
+  std::array<Rows, 3> quads_;
+  Rows said_;
+  std::array<Rows, 3> small_, large_;
+  std::array<Rows, 2> columns_;
 };
 
-template <int B, bool Coordinates, int C, bool Estimates>
-void run_tiles(const Task& task, const CancelTest& cancel) {
-  const int w = task.weights->width(), h = task.weights->height();
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, (h + kTileHeight - 1) / kTileHeight, 1, 0, (w + kTileWidth - 1) / kTileWidth, 1),
+template <int P, int C, bool Coordinates, bool Estimates>
+void run_tiles(const Task& task, const OctaveTask<Estimates>& octave, const CancelTest& cancel) {
+  const int side = octave.octave.side;
+  const int w = ceil_divided(task.weights->width() + octave.shift, side), h = ceil_divided(task.weights->height() + octave.shift, side);
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, ceil_divided(h, kTileHeight), 1, 0, ceil_divided(w, kTileWidth), 1),
                     [&](const tbb::blocked_range2d<int>& range) {
                       const FlushDenormals flush;
                       for (int j = range.rows().begin(); j < range.rows().end(); ++j) {
                         for (int i = range.cols().begin(); i < range.cols().end() && !cancel(); ++i) {
-                          Tile<B, Coordinates, C, Estimates>(task, i * kTileWidth, std::min(w, (i + 1) * kTileWidth), j * kTileHeight,
-                                                             std::min(h, (j + 1) * kTileHeight))
+                          Tile<P, C, Coordinates, Estimates>(task, octave, i * kTileWidth, std::min(w, (i + 1) * kTileWidth),
+                                                             j * kTileHeight, std::min(h, (j + 1) * kTileHeight))
                               .run();
                         }
                       }
                     });
 }
 
-template <int C, bool Estimates>
-void run_features(const Task& task, const CancelTest& cancel) {
+// Lattice by lattice, from the coarsest octave to the finest.
+template <int P, int C, bool Coordinates, bool Estimates, class Confidence>
+void run_octaves(const Task& task, const Confidence& confidence, const CancelTest& cancel) {
+  const std::vector<Octave>& octaves = task.settings->octaves;
+  for (int shift = 0; shift < task.settings->lattices; ++shift) {
+    Field coarse;
+    for (size_t k = octaves.size(); k-- > 0;) {
+      const int side = octaves[k].side;
+      Field opinions;
+      if (k > 0) {
+        opinions = Field(ceil_divided(task.weights->width() + shift, side), ceil_divided(task.weights->height() + shift, side),
+                         Opinions<P, C, Coordinates>::kCount);
+      }
+      run_tiles<P, C, Coordinates, Estimates>(task,
+                                              {octaves[k], shift, confidence(octaves.size() * size_t(shift) + k),
+                                               coarse.width() > 0 ? &coarse : nullptr, k > 0 ? &opinions : nullptr},
+                                              cancel);
+      coarse = std::move(opinions);
+    }
+  }
+}
+
+template <int C, bool Estimates, class Confidence>
+void run_features(const Task& task, const Confidence& confidence, const CancelTest& cancel) {
   const int features = task.features->channels();
   const bool coordinates = task.settings->coordinates;
-  if (features == 7 && coordinates) return run_tiles<8, true, C, Estimates>(task, cancel);
-  if (features == 3 && !coordinates) return run_tiles<4, false, C, Estimates>(task, cancel);
+  if (features == 7 && coordinates) return run_octaves<10, C, true, Estimates>(task, confidence, cancel);
+  if (features == 3 && !coordinates) return run_octaves<4, C, false, Estimates>(task, confidence, cancel);
   throw unsupported("regression on so many features");
 }
 
 }  // namespace
 
-LocalRegression::LocalRegression(Field features, Field weights, Field own, RegressionSettings settings)
-    : features_(std::move(features)),
-      weights_(std::move(weights)),
-      own_(std::move(own)),
-      settings_(std::move(settings)),
-      confidence_(weights_.width(), weights_.height(), int(settings_.radii.size())) {}
+LocalRegression::LocalRegression(std::shared_ptr<const Predictors> predictors, Field own, RegressionSettings settings)
+    : predictors_(std::move(predictors)), own_(std::move(own)), settings_(std::move(settings)) {
+  const int w = predictors_->weights.width(), h = predictors_->weights.height();
+  for (int shift = 0; shift < settings_.lattices; ++shift) {
+    for (const Octave& octave : settings_.octaves) {
+      confidence_.emplace_back(ceil_divided(w + shift, octave.side) + kReach, ceil_divided(h + shift, octave.side) + kReach,
+                               octave.small ? 2 : 1);
+    }
+  }
+}
 
 RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_difference, const CancelTest& cancel) {
   const int w = mean.width(), h = mean.height();
-  Field both(w, h, 6), fits(w, h, 6);
-  for (int y = 0; y < h; ++y) {
-    for (int c = 0; c < 3; ++c) {
-      std::copy_n(mean.row(y, c), w, both.row(y, c));
-      std::copy_n(half_difference.row(y, c), w, both.row(y, 3 + c));
-    }
-  }
   RegressionResult result{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
-  run_features<6, true>({&features_, &weights_, &own_, &both, &settings_, nullptr, &confidence_, &fits, &result.bias}, cancel);
-  for (int y = 0; y < h; ++y) {
-    for (int c = 0; c < 3; ++c) {
-      std::copy_n(fits.row(y, c), w, result.mean.row(y, c));
-      std::copy_n(fits.row(y, 3 + c), w, result.noise.row(y, c));
-    }
-  }
+  Field totals(w, h, 1);
+  const Task task{&predictors_->features,
+                  &predictors_->weights,
+                  own_or_null(own_),
+                  {&mean, &half_difference},
+                  {&result.mean, &result.noise},
+                  &totals,
+                  &result.bias,
+                  &settings_};
+  run_features<6, true>(
+      task, [&](size_t i) { return &confidence_[i]; }, cancel);
   return result;
 }
 
 Field LocalRegression::apply(const Field& values, const CancelTest& cancel) const {
-  Field result(values.width(), values.height(), 1);
-  run_features<1, false>({&features_, &weights_, &own_, &values, &settings_, &confidence_, nullptr, &result, nullptr}, cancel);
+  Field result(values.width(), values.height(), 1), totals(values.width(), values.height(), 1);
+  const Task task{&predictors_->features, &predictors_->weights, own_or_null(own_), {&values}, {&result}, &totals, nullptr, &settings_};
+  run_features<1, false>(
+      task, [&](size_t i) { return &confidence_[i]; }, cancel);
   return result;
 }
 

@@ -39,6 +39,7 @@ struct FakeIntegrator final : Integrator {
   float noise = 1.0f;
   int32_t quiet_until = 0;          // left of this column there is a tenth of the noise
   int32_t rays_below = 0;           // below this row a sample costs five rays in place of one
+  uint32_t feature_seed = 0x10000;  // of the noise of features; 0: that of the image, which they explain then
   int32_t pairs_until = INT32_MAX;  // right of this column there are no gradients
 
   uint32_t count_at(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) const {
@@ -63,7 +64,7 @@ struct FakeIntegrator final : Integrator {
       frame->components[0].primal[half][i] += Radiance(value, 0.5f * value, 2.0f * value, frame->channels == 4 ? 0.75f : 0.0f);
       ++frame->count[half][i];
       counters->rays_primary += y < rays_below ? 5 : 1;
-      for (PassPlane& plane : frame->passes) add_pass(&plane, i, value, s);
+      for (PassPlane& plane : frame->passes) add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
       if (gradients && x < pairs_until) add_gradients(unit, x, y, half, frame);
     }
   }
