@@ -88,6 +88,7 @@ struct Kind {
   uint32_t integrator, reconstruction;
   float noise_threshold = 0.0f;
 };
+void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }  // not its padding, which valgrind minds
 
 class WatchedRender : public ::testing::TestWithParam<Kind> {
  protected:
