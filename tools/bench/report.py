@@ -22,17 +22,18 @@ from rooms import CHOICE, ENGINES, ROOMS
 HERE = Path(__file__).parent
 TITLE = "Gradus: error against CPU time"
 OTHERS = [mode for mode in MODES if mode not in ("path", "gradient-none")]
+SLOPES = {"PT": "path", "L2": "gradient-l2", "REGULARIZED": "path-regularized"}
 
 
 def equal_time(scenes: list[SceneResults]) -> list[Block]:
     """Error ratios to plain path tracing at equal CPU time, with export and without, and the inverse: time at equal error."""
-    columns = ["scene", *(MODES[mode].label.removeprefix("Gradus ") for mode in OTHERS), "slope PT", "slope L2"]
+    columns = ["scene", *(MODES[mode].label.removeprefix("Gradus ") for mode in OTHERS)]
 
     def table(value: Callable[[SceneResults, str], float | None], slopes: bool = True) -> Table:
-        made = Table(columns if slopes else columns[:-2])
+        made = Table([*columns, *(f"slope {name}" for name in SLOPES if slopes)])
         for scene in scenes:
             cells = [number(value(scene, mode)) for mode in OTHERS]
-            cells += [number(scene.slope(mode)) for mode in ("path", "gradient-l2")] if slopes else []
+            cells += [number(scene.slope(mode)) for mode in SLOPES.values() if slopes]
             made.rows.append([scene.name, *cells])
         return made
 
