@@ -7,14 +7,13 @@
 namespace gradus {
 namespace {
 
-// Sum of the values within `radius` of each, and their number's inverse as a factor.
+// Means of the values within `radius` of each, of those that there are. Fields have zeros around.
 void mean_along(const float* from, int length, int radius, float* to) {
-  for (int x = 0; x < length; ++x) {
-    const int begin = std::max(0, x - radius), end = std::min(length, x + radius + 1);
-    float sum = 0.0f;
-    for (int i = begin; i < end; ++i) sum += from[i];
-    to[x] = sum / static_cast<float>(end - begin);
+  std::copy_n(from, length, to);
+  for (int d = 1; d <= radius; ++d) {
+    for (int x = 0; x < length; ++x) to[x] += from[x - d] + from[x + d];
   }
+  for (int x = 0; x < length; ++x) to[x] /= static_cast<float>(std::min(length, x + radius + 1) - std::max(0, x - radius));
 }
 
 }  // namespace

@@ -219,14 +219,20 @@ class Tile {
     solve_windows<P, C>(matrix, solution);
     Lanes eta, bias = zero;
     if constexpr (Estimates) {
-      Lanes residual = load(boxes_[M::kSquares] + x), noise = zero;
+      Lanes residuals[C / 2] = {load(boxes_[M::kSquares] + x)}, noises[C / 2] = {};
       for (int i = 0; i < P; ++i) {
+        const Lanes penalty = i == 0 ? zero : ridge;
         for (int c = 0; c < C / 2; ++c) {
-          const Lanes v = solution[C * i + c], d = solution[C * i + C / 2 + c], penalty = i == 0 ? zero : ridge;
+          const Lanes v = solution[C * i + c], d = solution[C * i + C / 2 + c];
           const Lanes of_noise = d * load(boxes_[M::kRight + C * i + C / 2 + c] + x);
-          residual += of_noise + penalty * d * d - v * (load(boxes_[M::kRight + C * i + c] + x) + penalty * v);
-          noise += of_noise - penalty * d * d;
+          residuals[c] += of_noise + penalty * d * d - v * (load(boxes_[M::kRight + C * i + c] + x) + penalty * v);
+          noises[c] += of_noise - penalty * d * d;
         }
+      }
+      Lanes residual = zero, noise = zero;
+      for (int c = 0; c < C / 2; ++c) {
+        residual += residuals[c];
+        noise += noises[c];
       }
       const Lanes unit = weight > zero ? 1.0f / (float(C / 2) * weight) : zero;
       bias = residual > zero ? unit * residual : zero;
