@@ -4,14 +4,17 @@
 #include <cmath>
 
 #include "base/types.h"
-#include "reconstruct/box_mean.h"
-#include "reconstruct/field_values.h"
+#include "reconstruct/field.h"
+#include "reconstruct/rows.h"
 #include "reconstruct/solver_planes.h"
 
 namespace gradus {
 namespace {
 
-constexpr int kPatchRadius = 1, kVarianceRadius = 1;
+// How far a pixel's neighbours, their patches, and those patches' variance reach.
+constexpr int kReach = 3;
+// Tiles stay in the second cache; with what they reach they are as tall as one thread's rows (reconstruct/rows.h).
+constexpr int kTileWidth = 250, kTileHeight = 26;
 // k²: squared differences are measured in this many variances (docs/method.md has what was tried).
 constexpr float kVariances = 0.5f;
 // Differences below this share of the feature's typical magnitude are none.
@@ -26,12 +29,25 @@ struct Neighbour {
 // Half of the neighbours: distances are symmetric.
 constexpr Neighbour kNeighbours[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
 
-Field load(const std::vector<float>& values, int width, int height, int channels, float least, float most) {
-  Field field(width, height, channels);
-  for_values(&field, [&](float& value, int x, int y, int c) {
-    const float stored = values[(size_t(y) * size_t(width) + size_t(x)) * size_t(channels) + size_t(c)];
-    value = is_finite(stored) ? std::clamp(stored, least, most) : 0.0f;
-  });
+// A part of an image, whole pixels.
+struct Part {
+  int x0, y0, x1, y1;
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+};
+
+Field load(const std::vector<float>& values, int image_width, const Part& part, int channels, float least, float most) {
+  Field field(part.width(), part.height(), channels);
+  for (int y = 0; y < part.height(); ++y) {
+    const float* from = values.data() + (size_t(part.y0 + y) * size_t(image_width) + size_t(part.x0)) * size_t(channels);
+    for (int c = 0; c < channels; ++c) {
+      float* to = field.row(y, c);
+      for (int x = 0; x < part.width(); ++x) {
+        const float stored = from[size_t(x) * size_t(channels) + size_t(c)];
+        to[x] = is_finite(stored) ? std::clamp(stored, least, most) : 0.0f;
+      }
+    }
+  }
   return field;
 }
 
@@ -42,6 +58,28 @@ float typical(const std::vector<float>& values) {
     if (is_finite(values[i]) && values[i] != 0.0f) magnitudes.push_back(std::fabs(values[i]));
   }
   return std::min(median_or_one(&magnitudes), kLargest);
+}
+
+// Means over 3×3 pixels; what lies outside of the field, where its memory holds zeros, counts as 0.
+Field smooth(const Field& field) {
+  const int w = field.width(), h = field.height();
+  Field columns(w, h, field.channels());
+  for (int c = 0; c < field.channels(); ++c) {
+    for (int y = 0; y < h; ++y) {
+      const float *below = field.row(y - 1, c), *middle = field.row(y, c), *above = field.row(y + 1, c);
+      float* to = columns.row(y, c);
+      for (int x = 0; x < w; ++x) to[x] = (below[x] + middle[x] + above[x]) * (1.0f / 9.0f);
+    }
+  }
+  Field result(w, h, field.channels());
+  for (int c = 0; c < field.channels(); ++c) {
+    for (int y = 0; y < h; ++y) {
+      const float* from = columns.row(y, c);
+      float* to = result.row(y, c);
+      for (int x = 0; x < w; ++x) to[x] = from[x - 1] + from[x] + from[x + 1];
+    }
+  }
+  return result;
 }
 
 // By how much the squared difference of p and p + offset exceeds what noise explains, in variances, mean over the channels; 0 where there
@@ -89,26 +127,43 @@ void gather(const Field& values, const Field& distance, Neighbour offset, Field*
   });
 }
 
+// What a tile needs of the pixels around it, and writes of its own.
+void filter_tile(const FeatureImage& image, int width, int height, const Part& tile, float negligible, std::vector<float>* result) {
+  const Part all{std::max(0, tile.x0 - kReach), std::max(0, tile.y0 - kReach), std::min(width, tile.x1 + kReach),
+                 std::min(height, tile.y1 + kReach)};
+  const int channels = int(image.channels);
+  const Field values = load(image.values, width, all, channels, -kLargest, kLargest);
+  const Field variance = smooth(load(image.variance, width, all, channels, 0.0f, kLargestVariance));
+  Field sum = values, weights(all.width(), all.height(), 1);
+  for (int y = 0; y < all.height(); ++y) std::fill_n(weights.row(y), all.width(), 1.0f);
+  for (const Neighbour offset : kNeighbours) {
+    if (offset.y >= all.height() || std::abs(offset.x) >= all.width()) continue;
+    gather(values, smooth(distances(values, variance, offset, negligible)), offset, &sum, &weights);
+  }
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    float* to = result->data() + (size_t(y) * size_t(width) + size_t(tile.x0)) * size_t(channels);
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const float share = 1.0f / weights.row(y - all.y0)[x - all.x0];
+      for (int c = 0; c < channels; ++c) *to++ = share * sum.row(y - all.y0, c)[x - all.x0];
+    }
+  }
+}
+
 }  // namespace
 
 FeatureImage filter_feature(FeatureImage image, int width, int height) {
-  const int channels = int(image.channels);
-  const Field values = load(image.values, width, height, channels, -kLargest, kLargest);
-  const Field variance = box_mean(load(image.variance, width, height, channels, 0.0f, kLargestVariance), kVarianceRadius);
   const float unit = kNegligible * typical(image.values), negligible = std::max(kLeast, unit * unit);
-  Field sum = values, weights(width, height, 1);
-  for_values(&weights, [](float& weight, int, int, int) { weight = 1.0f; });
-  for (const Neighbour offset : kNeighbours) {
-    if (offset.y >= height || std::abs(offset.x) >= width) continue;
-    gather(values, box_mean(distances(values, variance, offset, negligible), kPatchRadius), offset, &sum, &weights);
-  }
-  for_rows(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < channels; ++c) {
-        image.values[(size_t(y) * size_t(width) + size_t(x)) * size_t(channels) + size_t(c)] = sum.row(y, c)[x] / weights.row(y)[x];
-      }
-    }
-  });
+  std::vector<float> result(image.values.size());
+  for_rows((height + kTileHeight - 1) / kTileHeight,
+           [&](int j) {
+             const int y = j * kTileHeight;
+             for (int x = 0; x < width; x += kTileWidth) {
+               filter_tile(image, width, height, {x, y, std::min(width, x + kTileWidth), std::min(height, y + kTileHeight)}, negligible,
+                           &result);
+             }
+           },
+           1);
+  image.values = std::move(result);
   return image;
 }
 

@@ -107,6 +107,27 @@ TEST(FeatureFilter, DoesNotDependOnTheUnit) {
   for (size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(b.values[i], 1000.0f * a.values[i], 0.02f);
 }
 
+// Of a row or column that is cut off beyond the filter's reach, the rest is the same: tiles know enough of what is around them.
+TEST(FeatureFilter, TilesLeaveNoSeams) {
+  constexpr int kWide = 600, kTall = 70, kCut = 5, kEdge = 3;
+  const Noisy noisy(0.1f, 1, kWide, kTall);
+  const FeatureImage whole = filter_feature(noisy.image, kWide, kTall);
+  FeatureImage part{1, {}, {}};
+  for (int y = kCut; y < kTall; ++y) {
+    for (int x = kCut; x < kWide; ++x) {
+      part.values.push_back(noisy.image.values[size_t(y * kWide + x)]);
+      part.variance.push_back(noisy.image.variance[size_t(y * kWide + x)]);
+    }
+  }
+  part = filter_feature(std::move(part), kWide - kCut, kTall - kCut);
+  for (int y = kEdge; y < kTall - kCut; ++y) {
+    for (int x = kEdge; x < kWide - kCut; ++x) {
+      const float expected = whole.values[size_t((y + kCut) * kWide + x + kCut)];
+      ASSERT_NEAR(part.values[size_t(y * (kWide - kCut) + x)], expected, 1e-3f) << x << ' ' << y;
+    }
+  }
+}
+
 TEST(FeatureFilter, NothingKnownOfTheNoiseCountsAsNone) {
   Noisy noisy(0.1f);
   std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), kNaN);
