@@ -77,8 +77,8 @@ def test_where_there_is_none_it_is_refused_by_name(corner: bpy.types.Scene, rend
 
 @pytest.mark.application
 def test_where_there_is_none_auto_goes_on_without(corner: bpy.types.Scene, render: Render) -> None:
-    plain = render(corner, samples=2)["Combined"]
-    assert np.array_equal(render(corner, samples=2, denoiser="AUTO")["Combined"], plain)
+    plain = render(corner, samples=8)["Combined"]
+    assert np.array_equal(render(corner, samples=8, denoiser="AUTO")["Combined"], plain)
 
 
 def test_previews_are_not_denoised(corner: bpy.types.Scene) -> None:

@@ -21,16 +21,19 @@ bool needs_gradients(uint32_t reconstruction) {
          reconstruction == GRADUS_RECONSTRUCTION_L1;
 }
 
+// Samples from which the host's denoiser takes more off the error than those that its time would buy (docs/method.md).
+constexpr uint32_t kDenoiserPays = 8;
+
 // Light that comes straight from lamps has little noise; plain paths are two to three times as fast.
 bool is_direct_only(const GradusSettings& settings) { return settings.max_bounces == 0; }
 
-void choose_automatically(const GradusSettings& settings, bool denoises, Plan* plan) {
+void choose_automatically(const GradusSettings& settings, Plan* plan) {
   if (!needs_gradients(settings.reconstruction) && is_direct_only(settings)) {
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     plan->chosen.emplace_back("integrator path", "automatic: direct light alone has little noise");
     return;
   }
-  if (denoises && !needs_gradients(settings.reconstruction)) {
+  if (plan->denoises && !needs_gradients(settings.reconstruction)) {
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     plan->chosen.emplace_back("integrator path", "automatic: the denoiser makes more of more paths than of differences");
     return;
@@ -40,14 +43,14 @@ void choose_automatically(const GradusSettings& settings, bool denoises, Plan* p
   plan->chosen.emplace_back("integrator gradient", plan->pilot ? "automatic: wherever it pays" : "automatic: its passes are asked for");
 }
 
-void choose_integrator(const GradusSettings& settings, bool denoises, Plan* plan) {
+void choose_integrator(const GradusSettings& settings, Plan* plan) {
   switch (settings.integrator) {
     case GRADUS_INTEGRATOR_BIDIRECTIONAL:
       throw unsupported("integrator bidirectional does not work yet: use gradient, path or auto");
     case GRADUS_INTEGRATOR_METROPOLIS:
       throw unsupported("integrator metropolis does not work yet: use gradient, path or auto");
     case GRADUS_INTEGRATOR_AUTO:
-      choose_automatically(settings, denoises, plan);
+      choose_automatically(settings, plan);
       break;
     default:
       plan->integrator = settings.integrator;
@@ -81,13 +84,17 @@ void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   }
 }
 
-void list_denoiser(const GradusSettings& settings, const HostDenoiser& denoiser, Plan* plan) {
-  plan->denoises = !denoiser.name.empty();
-  if (plan->denoises) {
-    plan->chosen.emplace_back("denoiser " + denoiser.name,
-                              settings.denoiser == GRADUS_DENOISER_AUTO ? "automatic: it is there" : "set by the user");
-  } else {
+void choose_denoiser(const GradusSettings& settings, const HostDenoiser& denoiser, Plan* plan) {
+  const bool automatic = settings.denoiser == GRADUS_DENOISER_AUTO;
+  if (denoiser.name.empty()) {
     plan->skipped.emplace_back("denoiser", denoiser.why_not);
+  } else if (automatic && settings.samples < kDenoiserPays) {
+    plan->skipped.emplace_back("denoiser",
+                               "automatic: with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples");
+  } else {
+    plan->denoises = true;
+    plan->chosen.emplace_back("denoiser " + denoiser.name,
+                              automatic ? "automatic: it is there" : "set by the user");
   }
 }
 
@@ -153,9 +160,9 @@ uint32_t first_check(const GradusSettings& settings) {
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser) {
   check_settings(settings);
   Plan plan;
-  choose_integrator(settings, !denoiser.name.empty(), &plan);
+  choose_denoiser(settings, denoiser, &plan);
+  choose_integrator(settings, &plan);
   choose_reconstruction(settings, &plan);
-  list_denoiser(settings, denoiser, &plan);
   choose_region(settings, &plan);
   plan.channels = settings.film_transparent || snapshot.features.has_holdouts ? 4 : 3;
   plan.first_check = first_check(settings);

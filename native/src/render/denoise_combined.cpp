@@ -12,7 +12,7 @@ namespace {
 
 // In the mean of a regression on features and of what the network makes of the noisy image: they err in different places, and their mean
 // errs less than either (docs/method.md).
-constexpr float kShareOfNetwork = 0.75f;
+constexpr float kShareOfNetwork = 0.6f;
 
 // Without its noise, of the region.
 std::vector<float> read_guide(const Frame& frame, uint32_t pass, const Region& region) {

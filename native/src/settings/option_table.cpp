@@ -42,7 +42,7 @@ constexpr Option kOptions[] = {
     OPTION(reconstruction_alpha, kFloat, 0.0, 0.0, 1e3, "", kOther, "Weight of the primal image against the gradients; 0 = automatic: 0.4 for L2, 0.2 for L1 and for the means of weighted"),
     OPTION(denoiser, kEnum, GRADUS_DENOISER_NONE, 0, 2, kDenoisers, kOther,
            "What takes the rest of the noise out of the result; oidn: the host's Open Image Denoise, an error where there is none; auto: "
-           "that where it is there. Biased, for stills"),
+           "that where it is there and pays. Biased, for stills"),
     OPTION(max_bounces, kInt, 12, 0, 1024, "", kSampling, "Most bounces of a path"),
     OPTION(diffuse_bounces, kInt, 4, 0, 1024, "", kSampling, "Most diffuse bounces of a path"),
     OPTION(glossy_bounces, kInt, 4, 0, 1024, "", kSampling, "Most glossy bounces of a path"),
