@@ -104,23 +104,26 @@ def remember(scene: str, found: dict[str, Any]) -> None:
 
 def slider(scene: str) -> Slider | None:
     """All stored pictures of a scene."""
-    if "crops" not in (known := facts().get(scene, {})):
-        return None
+    known = facts().get(scene, {})
+    labels = {mode: MODES[mode].label for mode in (*NOISY, *RECONSTRUCTED)}
+
+    def stored(prefix: str, suffix: str) -> dict[str, str]:
+        files = {prefix + label: file_of(scene, mode + suffix) for mode, label in labels.items()}
+        return {label: file for label, file in files.items() if (FOLDER / file).exists()}
+
     groups = {
-        "pictures": {"Reference": file_of(scene, "reference")} | {MODES[m].label: file_of(scene, m) for m in known["errors"]},
-        "errors": {f"error of {MODES[mode].label}": file_of(scene, mode + ERROR) for mode in known["errors"]},
+        "pictures": {"Reference": file_of(scene, "reference")} | stored("", ""),
+        "errors": stored("error of ", ERROR),
+        f"bias: error of the mean of {behind.SEEDS} results": stored("bias of ", BIAS),
+        f"noise: deviation among {behind.SEEDS} results": stored("noise of ", DEVIATION),
     }
-    if parts := known.get("parts"):
-        groups[f"bias: error of the mean of {behind.SEEDS} results"] = {
-            f"bias of {MODES[mode].label}": file_of(scene, mode + BIAS) for mode in parts
-        }
-        groups[f"noise: deviation among {behind.SEEDS} results"] = {
-            f"noise of {MODES[mode].label}": file_of(scene, mode + DEVIATION) for mode in parts
-        }
-    crops = [Crop(x / SIZE[0], y / SIZE[1], SIZE[0] / CROP[0]) for x, y in known["crops"]]
+    if labels["path"] not in groups["pictures"]:
+        return None
+    crops = [Crop(x / SIZE[0], y / SIZE[1], SIZE[0] / CROP[0]) for x, y in known.get("crops", [])]
     caption = f"{SAMPLES} samples per pixel, the reference apart. Crops are where errors of the reconstructions are furthest apart."
-    shown = [MODES[mode].label for mode in ("path", "path-regularized")]
-    return Slider(groups, caption, (shown[0], shown[1]), crops, "error-scale.svg")
+    groups = {heading: files for heading, files in groups.items() if files}
+    shown = labels["path-regularized"] if labels["path-regularized"] in groups["pictures"] else "Reference"
+    return Slider(groups, caption, (labels["path"], shown), crops, "error-scale.svg" if "errors" in groups else "")
 
 
 def errors_of_pictures(scene: str) -> Table | None:
@@ -140,6 +143,8 @@ def main() -> None:
     (FOLDER / FOLDER_NAME).mkdir(exist_ok=True)
     modes_behind = {scene.name: behind.modes_behind(scene) for scene in results.load()}
     for scene in (scene for scene in select(arguments.scenes) if scene.own):
+        for old in (FOLDER / FOLDER_NAME).glob(f"{scene.name}-*.webp"):
+            old.unlink()
         renderers = Renderers(scene, SIZE)
         try:
             studio = Studio(scene, renderers)
