@@ -7,6 +7,7 @@ from fault import Fault, native
 REGULARIZED = "native/src/reconstruct/regularized.cpp"
 FEATURE_REGRESSION = "native/src/reconstruct/feature_regression.cpp"
 LOCAL_REGRESSION = "native/src/reconstruct/local_regression.cpp"
+TILE = "native/src/reconstruct/regression_tile.h"
 ERROR_ESTIMATE = "native/src/reconstruct/error_estimate.cpp"
 FEATURE_FILTER = "native/src/reconstruct/feature_filter.cpp"
 FEATURES = "native/src/frame/features.cpp"
@@ -53,8 +54,8 @@ RECONSTRUCTION = (
         13,
         HALVES,
         "the residual's noise counts as bias, not against it",
-        LOCAL_REGRESSION,
-        "(!Estimates || c < C / 2 ? 1.0f : -1.0f) * values",
+        TILE,
+        "(!Estimates || c < kChannels ? 1.0f : -1.0f) * values",
         "values",
         OF_SHARES,
     ),
@@ -125,7 +126,7 @@ RECONSTRUCTION = (
         14,
         SHIFT,
         "by one row, in windows",
-        LOCAL_REGRESSION,
+        TILE,
         "task_.features->row(y, c)",
         "task_.features->row(std::max(y - 1, 0), c)",
         (native("B1_Regression.KeepsWhatTheFeaturesExplain"), *KEEPS_FEATURES),
@@ -172,7 +173,7 @@ RECONSTRUCTION = (
         15,
         VARIANCE,
         "four times, of what windows say",
-        LOCAL_REGRESSION,
+        TILE,
         "(noise > zero ? unit * noise : zero)",
         "(noise > zero ? 4.0f * unit * noise : zero)",
         OF_SHARES,
@@ -181,7 +182,7 @@ RECONSTRUCTION = (
         15,
         VARIANCE,
         "a quarter, of what windows say",
-        LOCAL_REGRESSION,
+        TILE,
         "(noise > zero ? unit * noise : zero)",
         "(noise > zero ? 0.25f * unit * noise : zero)",
         OF_SHARES,
@@ -190,7 +191,7 @@ RECONSTRUCTION = (
         15,
         VARIANCE,
         "four times, of windows' bias",
-        LOCAL_REGRESSION,
+        TILE,
         "bias = residual > zero ? unit * residual : zero;",
         "bias = residual > zero ? 4.0f * unit * residual : zero;",
         OF_SHARES,
@@ -318,7 +319,7 @@ RECONSTRUCTION = (
         17,
         FROZEN,
         "its pixels' own values count for nothing",
-        LOCAL_REGRESSION,
+        TILE,
         "load(boxes_[c] + x) + own *",
         "load(boxes_[c] + x) + (Estimates ? own : zero) *",
         (native("B2_Regression.IsTheFrozenOperatorThatItApplies"), *OF_ALPHA),

@@ -4,6 +4,7 @@
 // Coordinates count from the square's own centre: from anywhere else, floats would not hold the constant of a window with steep slopes.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 

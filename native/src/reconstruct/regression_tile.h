@@ -1,0 +1,349 @@
+// The windows of one octave in a tile of squares, row by row: sums of pixels over squares, windows made of these, their solves, and what
+// they say back to the squares and to their pixels.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <vector>
+
+#include "reconstruct/local_regression.h"
+#include "reconstruct/moments.h"
+
+namespace gradus {
+
+// Squares that windows reach beyond the first of theirs.
+inline constexpr int kReach = 3;
+// Pixels in a unit of the coordinates: some windows, so that their slopes feel the ridge as little as those of the other features do.
+inline constexpr float kCoordinateUnit = 20.0f;
+// Pixels of a square that are summed at a time.
+inline constexpr int kGroup = 4;
+
+// Of an image.
+struct RegressionTask {
+  const Field *features, *weights;
+  const Field* own;                  // null: none
+  std::vector<const Field*> values;  // the mean and half the difference where η is estimated, else one
+  std::vector<Field*> results;       // until the last lattice is done, sums over windows
+  Field *totals, *bias;              // sums of η and of η · bias
+  const RegressionSettings* settings;
+};
+
+// Of an octave on one of the lattices. Squares begin `shift` pixels before the image.
+template <bool Estimates>
+struct OctaveTask {
+  using Confidence = std::conditional_t<Estimates, Field, const Field>;
+  Octave octave;
+  int shift;
+  Confidence* confidence;  // a channel for each size of windows, large ones first; row and column of the first square + kReach
+  const Field* coarse;     // opinions of the next octave
+  Field* opinions;         // of this; null for the finest, which writes results
+};
+
+inline int ceil_divided(int pixels, int side) { return (pixels + side - 1) / side; }
+
+template <int P, int C, bool Coordinates, bool Estimates>
+class Tile {
+ public:
+  // Of the squares [x0, x1) × [y0, y1).
+  Tile(const RegressionTask& task, const OctaveTask<Estimates>& octave, int x0, int x1, int y0, int y1)
+      : task_(task),
+        octave_(octave),
+        side_(octave.octave.side),
+        x0_(x0),
+        x1_(x1),
+        y0_(y0),
+        y1_(y1),
+        first_(x0 - kReach),
+        width_(x1 - x0 + 2 * kReach),
+        unit_(0.5f / kCoordinateUnit * float(side_)),
+        pixels_(kGroup * kPixel, width_),
+        moments_(M::kCount, width_),
+        boxes_(M::kCount, width_),
+        pairs_{Rows(M::kCount, width_), Rows(M::kCount, width_)},
+        quads_{Rows(M::kCount, width_), Rows(M::kCount, width_), Rows(M::kCount, width_)},
+        said_(O::kCount, width_),
+        small_{Rows(O::kCount, width_), Rows(O::kCount, width_), Rows(O::kCount, width_)},
+        large_{Rows(O::kCount, width_), Rows(O::kCount, width_), Rows(O::kCount, width_)},
+        columns_{Rows(O::kCount, width_), Rows(O::kCount, width_)} {}
+
+  void run() {
+    for (int j = y0_ - kReach; j < y1_ + kReach; ++j) {
+      sum_squares(j);
+      M::template join<M::kX>(moments_, moments_, 1, unit_, &at(pairs_, j));
+      if (j > y0_ - kReach) regress_small(j - 1);
+      if (j >= y0_) {
+        regress_large(j - 3);
+        collect(j - 3);
+      }
+    }
+  }
+
+ private:
+  using M = Moments<P, C, Coordinates>;
+  using O = Opinions<P, C, Coordinates>;
+  enum Size : int { kLarge, kSmall };                      // of windows
+  static constexpr int kSides = P * C, kChannels = C / 2;  // of the image, if the sides are its mean and half the difference
+  static constexpr int B = Coordinates ? P - 2 : P;        // but for the coordinates
+  static constexpr int kWeight = B - 1, kValues = kWeight + 1, kPixel = kValues + C;  // of a pixel: features, weight, values
+
+  template <size_t N>
+  static Rows& at(std::array<Rows, N>& ring, int j) {
+    return ring[size_t(j + 64 * int(N)) % N];
+  }
+
+  // Pixel k of group g.
+  int pixel_x(int g, int k) const { return side_ == 2 ? k % 2 : (kGroup * g + k) % side_; }
+  int pixel_y(int g, int k) const { return side_ == 2 ? k / 2 : (kGroup * g + k) / side_; }
+  int pixel_row(int j, int g, int k) const { return j * side_ + pixel_y(g, k) - octave_.shift; }
+  int groups() const { return side_ * side_ / kGroup; }
+  float coordinate(int i) const { return (float(i) - 0.5f * float(side_ - 1)) / kCoordinateUnit; }
+
+  const float* value_row(int y, int c) const { return task_.values[size_t(c) / 3]->row(y, c % 3); }
+
+  // Of every square of row j the k-th pixel of a group, side by side.
+  void read_pixels(int j, int g) {
+    for (int k = 0; k < kGroup; ++k) {
+      const int y = pixel_row(j, g, k), dx = pixel_x(g, k);
+      const bool inside = y >= 0 && y < task_.weights->height();
+      const int at = k * kPixel;
+      for (int c = 0; c + 1 < B; ++c) pick(inside ? task_.features->row(y, c) : nullptr, dx, pixels_[at + c]);
+      pick(inside ? task_.weights->row(y) : nullptr, dx, pixels_[at + kWeight]);
+      for (int c = 0; c < C; ++c) pick(inside ? value_row(y, c) : nullptr, dx, pixels_[at + kValues + c]);
+    }
+  }
+
+  // Squares whose pixel dx is in the image.
+  int first_inside(int dx) const { return std::max(0, ceil_divided(octave_.shift - dx, side_) - first_); }
+  int end_inside(int dx) const { return ceil_divided(task_.weights->width() + octave_.shift - dx, side_) - first_; }
+
+  void pick(const float* row, int dx, float* to) const {
+    if (row == nullptr) return static_cast<void>(std::fill_n(to, pixels_.width(), 0.0f));
+    const int begin = first_inside(dx), end = std::min(width_, end_inside(dx));
+    std::fill_n(to, begin, 0.0f);
+    row += first_ * side_ + dx - octave_.shift;
+    const ptrdiff_t side = side_;
+    if (side == 2) {
+      for (int x = begin; x < end; ++x) to[x] = row[ptrdiff_t{2} * x];
+    } else {
+      for (int x = begin; x < end; ++x) to[x] = row[side * x];
+    }
+    for (int x = std::max(begin, end); x < pixels_.width(); ++x) to[x] = 0.0f;
+  }
+
+  // Moments of the squares of row j.
+  void sum_squares(int j) {
+    if (j < 0 || j >= ceil_divided(task_.weights->height() + octave_.shift, side_)) return moments_.clear();
+    for (int g = 0; g < groups(); ++g) {
+      read_pixels(j, g);
+      for (int x = 0; x < moments_.width(); x += kLanes) {
+        g == 0 ? add_pixels<true>(g, x) : add_pixels<false>(g, x);
+      }
+    }
+  }
+
+  // φ of the group's pixel k.
+  Lanes feature(int i, int g, int k, int x) const {
+    if (i == 0) return Lanes{} + 1.0f;
+    if (i < B) return load(pixels_[k * kPixel + i - 1] + x);
+    return Lanes{} + (i == M::kX ? coordinate(pixel_x(g, k)) : coordinate(pixel_y(g, k)));
+  }
+
+  template <bool First>
+  void add_pixels(int g, int x) {
+    Lanes basis[P][kGroup], values[C][kGroup];
+    for (int k = 0; k < kGroup; ++k) {
+      for (int i = 0; i < P; ++i) basis[i][k] = feature(i, g, k, x);
+      for (int c = 0; c < C; ++c) values[c][k] = load(pixels_[k * kPixel + kValues + c] + x);
+    }
+    const auto put = [&](int plane, const Lanes* a, const Lanes* b) {
+      Lanes sum = a[0] * b[0];
+      for (int k = 1; k < kGroup; ++k) sum += a[k] * b[k];
+      float* to = moments_[plane] + x;
+      store(First ? sum : sum + load(to), to);
+    };
+    for (int i = 0; i < P; ++i) {
+      Lanes weighted[kGroup];
+      for (int k = 0; k < kGroup; ++k) weighted[k] = load(pixels_[k * kPixel + kWeight] + x) * basis[i][k];
+      for (int j = 0; j <= i; ++j) put(packed(i, j), weighted, basis[j]);
+      for (int c = 0; c < C; ++c) put(M::kRight + C * i + c, weighted, values[c]);
+    }
+    Lanes weight[kGroup], squared[kGroup] = {};
+    for (int k = 0; k < kGroup; ++k) {
+      weight[k] = load(pixels_[k * kPixel + kWeight] + x);
+      for (int c = 0; c < C; ++c) squared[k] += (!Estimates || c < kChannels ? 1.0f : -1.0f) * values[c][k] * values[c][k];
+    }
+    put(M::kSquares, weight, squared);
+  }
+
+  // Windows whose first row of squares is m.
+  void regress_small(int m) {
+    M::template join<M::kY>(at(pairs_, m), at(pairs_, m + 1), 0, unit_, &boxes_);
+    if (octave_.octave.small) regress(m, kSmall, &at(small_, m));
+    M::template join<M::kX>(boxes_, boxes_, 2, 2.0f * unit_, &at(quads_, m));
+  }
+  void regress_large(int m) {
+    M::template join<M::kY>(at(quads_, m), at(quads_, m + 2), 0, 2.0f * unit_, &boxes_);
+    regress(m, kLarge, &said_);
+  }
+
+  // What they say, to the squares that they hold.
+  void collect(int m) {
+    Rows &large = at(large_, m), &small = at(small_, m), &column = at(columns_, m);
+    large.clear();
+    O::template split<M::kX>(said_, said_, 2, 2.0f * unit_, &large);
+    if (!octave_.octave.small) small.clear();
+    O::template split<M::kY>(large, at(large_, m - 2), 0, 2.0f * unit_, &small);
+    column.clear();
+    O::template split<M::kX>(small, small, 1, unit_, &column);
+    if (m < y0_) return;
+    said_.clear();
+    O::template split<M::kY>(column, at(columns_, m - 1), 0, unit_, &said_);
+    if (octave_.coarse != nullptr) add_coarse(m);
+    octave_.opinions != nullptr ? write_opinions(m) : write_pixels(m);
+  }
+
+  // Eight windows side by side: coefficients, error and, by these, what they have to say.
+  void regress(int m, Size size, Rows* said) {
+    for (int x = 0; x < boxes_.width(); x += kLanes) regress(m, size, x, said);
+  }
+  void regress(int m, Size size, int x, Rows* said) {
+    Lanes matrix[packed(P, 0)], solution[kSides];
+    for (int i = 0; i < packed(P, 0); ++i) matrix[i] = load(boxes_[i] + x);
+    for (int i = 0; i < kSides; ++i) solution[i] = load(boxes_[M::kRight + i] + x);
+    const Lanes zero{}, weight = matrix[0], ridge = task_.settings->ridge * weight;
+    for (int i = 1; i < P; ++i) matrix[packed(i, i)] += ridge;
+    solve_windows<P, C>(matrix, solution);
+    Lanes eta, bias = zero;
+    if constexpr (Estimates) {
+      Lanes residuals[kChannels] = {load(boxes_[M::kSquares] + x)}, noises[kChannels] = {};
+      for (int i = 0; i < P; ++i) {
+        const Lanes penalty = i == 0 ? zero : ridge;
+        for (int c = 0; c < kChannels; ++c) {
+          const Lanes v = solution[C * i + c], d = solution[C * i + kChannels + c];
+          const Lanes of_noise = d * load(boxes_[M::kRight + C * i + kChannels + c] + x);
+          residuals[c] += of_noise + penalty * d * d - v * (load(boxes_[M::kRight + C * i + c] + x) + penalty * v);
+          noises[c] += of_noise - penalty * d * d;
+        }
+      }
+      Lanes residual = zero, noise = zero;
+      for (int c = 0; c < kChannels; ++c) {
+        residual += residuals[c];
+        noise += noises[c];
+      }
+      const Lanes unit = weight > zero ? 1.0f / (float(kChannels) * weight) : zero;
+      bias = residual > zero ? unit * residual : zero;
+      const Lanes error = bias + (noise > zero ? unit * noise : zero) + task_.settings->floor;
+      eta = weight > zero ? (size == kSmall ? 0.25f : 0.0625f) / (float(task_.settings->lattices) * error) : zero;
+      keep_confidence(m, size, x, eta);
+    } else {
+      eta = load_confidence(m, size, x);
+    }
+    for (int i = 0; i < kSides; ++i) store(eta * solution[i], (*said)[i] + x);
+    store(eta, (*said)[O::kConfidence] + x);
+    store(eta * bias, (*said)[O::kBias] + x);
+  }
+
+  // Every window is kept by one tile alone.
+  void keep_confidence(int m, Size size, int x, const Lanes& eta) {
+    if ((m < y0_ && y0_ > 0) || m >= y1_) return;
+    for (int l = 0; l < kLanes; ++l) {
+      const int i = first_ + x + l;
+      if ((i >= x0_ || x0_ == 0) && i < x1_) octave_.confidence->row(m + kReach, size)[i + kReach] = eta[l];
+    }
+  }
+  Lanes load_confidence(int m, Size size, int x) const {
+    Lanes eta{};
+    if (m + kReach >= octave_.confidence->height()) return eta;
+    for (int l = 0; l < kLanes; ++l) {
+      const int i = first_ + x + l + kReach;
+      if (i < octave_.confidence->width()) eta[l] = octave_.confidence->row(m + kReach, size)[i];
+    }
+    return eta;
+  }
+
+  void add_coarse(int m) {
+    const float above = m % 2 == 0 ? -unit_ : unit_;
+    for (int i = 0; i < O::kCount; ++i) {
+      const float* from = octave_.coarse->row(m / 2, i);
+      float* to = said_[i];
+      for (int x = kReach; x < width_ - kReach; ++x) to[x] += from[(first_ + x) / 2];
+    }
+    if constexpr (Coordinates) {
+      for (int c = 0; c < C; ++c) {
+        const float *of_x = octave_.coarse->row(m / 2, C * M::kX + c), *of_y = octave_.coarse->row(m / 2, C * M::kY + c);
+        float* to = said_[c];
+        for (int x = kReach; x < width_ - kReach; ++x) {
+          const int i = first_ + x;
+          to[x] += (i % 2 == 0 ? -unit_ : unit_) * of_x[i / 2] + above * of_y[i / 2];
+        }
+      }
+    }
+  }
+
+  void write_opinions(int m) {
+    for (int i = 0; i < O::kCount; ++i) std::copy_n(said_[i] + kReach, x1_ - x0_, octave_.opinions->row(m, i) + x0_);
+  }
+
+  bool first_lattice() const { return octave_.shift == 0; }
+  bool last_lattice() const { return octave_.shift == task_.settings->lattices - 1; }
+
+  void write_pixels(int m) {
+    for (int g = 0; g < groups(); ++g) {
+      read_pixels(m, g);
+      for (int k = 0; k < kGroup; ++k) {
+        const int y = pixel_row(m, g, k);
+        if (y >= 0 && y < task_.weights->height()) write_pixels(y, g, k);
+      }
+    }
+  }
+
+  // Sums over the lattices, and after the last what they come to.
+  void write_pixels(int y, int g, int k) {
+    std::array<float*, C + 2> rows{};
+    for (int c = 0; c < C; ++c) rows[size_t(c)] = task_.results[size_t(c) / 3]->row(y, c % 3);
+    rows[C] = task_.totals->row(y);
+    rows[C + 1] = Estimates ? task_.bias->row(y) : nullptr;
+    const int dx = pixel_x(g, k), planes = Estimates ? C + 2 : C + 1;
+    for (int i = 0; i < planes; ++i) pick(first_lattice() ? nullptr : rows[size_t(i)], dx, boxes_[i]);
+    for (int x = 0; x < width_; x += kLanes) {
+      for (int c = 0; c < C; ++c) {
+        Lanes sum = load(boxes_[c] + x);
+        for (int i = 0; i < P; ++i) sum += load(said_[C * i + c] + x) * feature(i, g, k, x);
+        store(sum, boxes_[c] + x);
+      }
+      for (int i = 0; i < planes - C; ++i) store(load(boxes_[C + i] + x) + load(said_[O::kConfidence + i] + x), boxes_[C + i] + x);
+    }
+    if (last_lattice()) add_own(y, k, dx);
+    for (int i = 0; i < planes; ++i) put(boxes_[i], dx, rows[size_t(i)]);
+  }
+
+  void add_own(int y, int k, int dx) {
+    pick(task_.own != nullptr ? task_.own->row(y) : nullptr, dx, moments_[0]);
+    for (int x = 0; x < width_; x += kLanes) {
+      const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{}, factor = total > zero ? 1.0f / total : zero;
+      for (int c = 0; c < C; ++c) store(factor * (load(boxes_[c] + x) + own * load(pixels_[k * kPixel + kValues + c] + x)), boxes_[c] + x);
+      if constexpr (Estimates) store(factor * load(boxes_[C + 1] + x), boxes_[C + 1] + x);
+    }
+  }
+
+  void put(const float* from, int dx, float* row) const {
+    row += first_ * side_ + dx - octave_.shift;
+    const int begin = std::max(kReach, first_inside(dx)), end = std::min(width_ - kReach, end_inside(dx));
+    const ptrdiff_t side = side_;
+    for (int x = begin; x < end; ++x) row[side * x] = from[x];
+  }
+
+  const RegressionTask& task_;
+  const OctaveTask<Estimates>& octave_;
+  const int side_, x0_, x1_, y0_, y1_, first_, width_;
+  const float unit_;
+  Rows pixels_, moments_, boxes_;
+  std::array<Rows, 2> pairs_;
+  std::array<Rows, 3> quads_;
+  Rows said_;
+  std::array<Rows, 3> small_, large_;
+  std::array<Rows, 2> columns_;
+};
+
+}  // namespace gradus
