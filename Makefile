@@ -7,7 +7,7 @@ BLENDER ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help build render test test-full test-native test-addon stress faults compilers package format lint clean
-.PHONY: bench bench-errors bench-compare bench-agreement bench-quick bench-speed bench-suite bench-pictures bench-host bench-report picture
+.PHONY: bench bench-errors bench-compare bench-agreement bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -59,6 +59,9 @@ bench-compare:  ## two versions among the stored results, error and rays of L2 a
 
 bench-speed:    ## CPU time of a sample in a room of 1 k to 2 M triangles, against Cycles: ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3
 	@ROOMS='$(ROOMS)' SPEED_WIDTH='$(SPEED_WIDTH)' REPEATS='$(REPEATS)' tools/bench.sh --speed
+
+bench-designs:  ## the product's reconstructions against published ones: SCENES=hero,kitchen REFERENCE=1024
+	@SCENES='$(SCENES)' REFERENCE='$(REFERENCE)' tools/bench.sh --designs
 
 bench-suite:    ## time of the statistical tests, and of the reconstructions at 1920x1080
 	@tools/bench.sh --suite

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --compare | --agreement | --speed | --suite | --pictures | --host | --report]; all without one.
+# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --compare | --agreement | --speed | --designs | --suite | --pictures | --host | --report]; all without one.
 #   --errors  error against CPU time; SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 SEEDS=5 SAMPLES=4,16,64 MINUTES=60 limit it
 #   --quick   the same of two scenes, smaller
 #   --compare  the errors of two versions among the stored results; OLD=772811d NEW=414ff4f WIDTH=160
 #   --agreement  converged images against those of Cycles and Mitsuba; SCENES, WIDTH and REFERENCE as above
 #   --speed   time of a sample in the room; ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3 MINUTES=60 limit it
+#   --designs  reconstructions that were published, written anew in Python, against the product's; SCENES and REFERENCE as above
 #   --suite   time of the statistical tests and of the reconstructions
 #   --pictures  pictures of the project's own scenes by all modes
 #   --host    export and upload
@@ -52,6 +53,12 @@ speed() {
   option --minutes "${MINUTES:-}"
   "$python" tools/bench/speed.py "${arguments[@]}"
 }
+designs() {
+  local arguments=()
+  option --scenes "${SCENES:-}"
+  option --reference "${REFERENCE:-}"
+  "$python" tools/bench/compare_designs.py "${arguments[@]}"
+}
 suite() {
   tools/build.sh tests
   "$python" tools/bench/suite.py
@@ -71,6 +78,7 @@ case $part in
   --compare) tools/setup/setup bpy; compare ;;
   --agreement) set_up; agreement; report ;;
   --speed) set_up blender; speed; report ;;
+  --designs) set_up; designs ;;
   --suite) set_up; suite; report ;;
   --pictures) set_up; pictures; report ;;
   --host) set_up blender; host ;;

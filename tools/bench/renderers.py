@@ -70,6 +70,10 @@ class Renderers:
         """The pass Error (height, width) of the same image, rendered again: it takes time of its own."""
         return self._ask({"mode": mode, "samples": samples, "seed": seed, "error": True})[0][:, :, 3]
 
+    def store_frame(self, mode: str, samples: int, seed: int, path: Path) -> None:
+        """Renders a raw frame into a file."""
+        self._ask({"mode": mode, "samples": samples, "seed": seed, "frame": str(path)})
+
     def _ask(self, job: dict) -> tuple[np.ndarray, dict]:
         out = Path(self._folder.name) / "image.npy"
         job["out"] = str(out)

@@ -4,6 +4,7 @@ Reads one JSON job per line from standard input, answers with one JSON line pref
   {"mode": "gradient-l2", "samples": 16, "seed": 3, "out": "x.npy"}  ->  {"cpu": 1.2, "wall": 0.7, "peak_memory_bytes": …, "stats": {…}}
   {"twin": "x.npz"}  ->  {} once the scene is written as arrays (twin.py)
 A job with "error" stores in its file the pass Error besides the image, whose time then counts for nothing, as a fourth channel.
+A job with "frame" stores its raw frame in that file, too (samples, differences and features in halves).
 A job with "bounces" replaces all bounce limits of the file. What cannot be done is answered by {"error": "why"}.
 The image is stored as float32 (height, width, 3), top row first. CPU seconds are those of the whole process during the operator:
 export, build, sampling, reconstruction or denoising, and writing a small file.
@@ -14,6 +15,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shutil
 import sys
 import tempfile
 import time
@@ -65,6 +67,7 @@ def render(job: dict, folder: Path, bounces: dict[str, int]) -> dict:
     choose_file(layers=wants_error)
     target = folder / "image.exr"
     scene.render.filepath = str(target.with_suffix(""))
+    scene.gradus.frame_store = str(folder / "frames") if "frame" in job else ""
     memory.reset_peak()
     wall, cpu = time.perf_counter(), time.process_time()
     bpy.ops.render.render(write_still=True)
@@ -72,6 +75,8 @@ def render(job: dict, folder: Path, bounces: dict[str, int]) -> dict:
     if is_gradus:
         stats = store.summaries[(scene.name, bpy.context.view_layer.name)]
         answer["stats"] = {name: stats[name] for name in STATS}
+    if "frame" in job:
+        shutil.move(next((folder / "frames").rglob("*.base.exr")), job["frame"])
     layer = bpy.context.view_layer.name
     channels = [f"{layer}.Combined.{c}" for c in "RGB"] + [f"{layer}.Error.X"] if wants_error else list("RGB")
     np.save(job["out"], read_exr(target, channels))

@@ -1,0 +1,199 @@
+"""The published reconstructions of the benchmark, on small images whose truth is known."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy", reason="SciPy is in the benchmark's environment only")
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
+import compare_designs  # noqa: E402
+from designs import chapter8, frames, nfor, nlm, poisson  # noqa: E402
+from designs.frames import Half  # noqa: E402
+from designs.patches import OFFSETS, Patches  # noqa: E402
+
+HEIGHT, WIDTH = 20, 24
+TILES = np.kron([[0, 1], [1, 0]], np.ones((HEIGHT // 2, WIDTH // 2)))[:, :, None]  # albedo: a chessboard
+Y, X = (axis[:, :, None] / WIDTH for axis in np.indices((HEIGHT, WIDTH)))
+FEATURES = np.concatenate([0.2 + 0.6 * TILES, X, Y, np.ones_like(X)], axis=2)
+TRUTH = (0.3 + TILES + 0.5 * X) * np.array([1.0, 0.8, 0.6])
+
+
+def half_of(image: np.ndarray) -> Half:
+    return Half(image, *frames.differences(image), FEATURES[: image.shape[0], : image.shape[1]])
+
+
+def noisy_half(seed: int) -> Half:
+    """Differences have half the deviation; a pixel of a hundred is an outlier, in its differences, too."""
+    random = np.random.default_rng(seed)
+
+    def noisy(image: np.ndarray, deviation: float) -> np.ndarray:
+        outliers = 20.0 * (random.random((*image.shape[:2], 1)) < 0.01)
+        return image + deviation * (1.0 + outliers) * random.normal(size=image.shape)
+
+    true = half_of(TRUTH)
+    dx, dy = noisy(true.dx, 0.25), noisy(true.dy, 0.25)
+    dx[:, -1], dy[-1] = 0.0, 0.0
+    return Half(noisy(TRUTH, 0.5), dx, dy, np.clip(noisy(FEATURES, 0.01), 0.0, 1.0))
+
+
+FRAME = noisy_half(1), noisy_half(2)
+
+
+def squared_error(image: np.ndarray) -> float:
+    return float(((image - TRUTH) ** 2).mean())
+
+
+def patches_of(features: np.ndarray, deviation: float = 0.0) -> Patches:
+    weights = np.concatenate([nlm.inside(features.shape, *offset) for offset in OFFSETS], axis=2)
+    return Patches(features, np.full_like(features, deviation), weights.reshape(-1, len(OFFSETS)))
+
+
+@pytest.mark.parametrize(("scales", "gain"), [(chapter8.PRINTED, 1.5), (chapter8.TUNED, 1.2)])
+def test_chapter_8_has_less_error_than_l1(scales: tuple[chapter8.Scale, ...], gain: float) -> None:
+    l1 = squared_error(poisson.l1(frames.mean_of(FRAME), chapter8.ALPHA_L1))
+    assert squared_error(chapter8.reconstruct(FRAME, scales)) < l1 / gain
+
+
+def test_nfor_has_less_error_than_the_noisy_image() -> None:
+    l1 = tuple(poisson.l1(half, chapter8.ALPHA_L1) for half in FRAME)
+    noisy = squared_error(frames.mean_of(FRAME).image)
+    assert squared_error(nfor.reconstruct(FRAME)) < noisy / 4.0
+    assert squared_error(nfor.reconstruct(FRAME, l1)) < noisy / 4.0
+
+
+def test_frozen_weights_are_a_linear_operator() -> None:
+    patches = patches_of(FEATURES)
+    a, b = FRAME
+    weights = poisson.reweighted(a, b.image, 0, 0.2, 3.0, patches)
+    mixed = Half(*(2.0 * x - 3.0 * y for x, y in ((a.image, b.image), (a.dx, b.dx), (a.dy, b.dy))), FEATURES)
+    of_a, of_b, of_mixed = poisson.solve((a, b, mixed), weights, 0.2, 3.0, patches)
+    assert of_mixed == pytest.approx(2.0 * of_a - 3.0 * of_b, abs=1e-8)
+
+
+def test_linear_functions_of_features_satisfy_the_patches() -> None:
+    image = FEATURES @ np.random.default_rng(3).normal(size=(4, 3))
+    patches = patches_of(FEATURES)
+    assert patches.residuals(image) == pytest.approx(0.0, abs=1e-9)
+    random = np.random.default_rng(4).random
+    weights = poisson.Weights(*(0.1 + random((HEIGHT, WIDTH)) for _ in range(3)), 0.1 + random((HEIGHT * WIDTH, len(OFFSETS))))
+    (solved,) = poisson.solve((half_of(image),), weights, 0.1, 20.0, patches)
+    assert solved == pytest.approx(image, abs=1e-8)
+
+
+def test_what_no_feature_shows_violates_the_patches() -> None:
+    image = half_of(TRUTH).image
+    image = image + (X > 0.4) * (Y > 0.3)  # a shadow
+    assert np.abs(patches_of(FEATURES).residuals(image)).max() > 0.1
+
+
+def test_features_that_are_noise_leave_the_basis() -> None:
+    noise = 0.01 * np.random.default_rng(5).random((HEIGHT, WIDTH, 1))
+    features = np.concatenate([np.ones_like(X), noise], axis=2)
+    assert np.abs(patches_of(features).residuals(noise)).max() < 1e-9
+    assert np.abs(patches_of(features, deviation=0.5).residuals(noise)).max() > 1e-3
+
+
+def test_the_normal_matrix_is_that_of_the_rows() -> None:
+    """Of an image by columns, against P_p and differences of every unit image."""
+    height, width, alpha, beta = 6, 7, 0.3, 2.0
+    features = FEATURES[:height, :width]
+    patches = patches_of(features)
+    random = np.random.default_rng(6).random
+    weights = poisson.Weights(*(0.1 + random((height, width)) for _ in range(3)), 0.1 + random((height * width, len(OFFSETS))))
+    rows = []
+    for unit in np.eye(height * width):
+        image = unit.reshape(width, height).T[:, :, None]
+        dx, dy = frames.differences(image)
+        parts = [alpha * image[:, :, 0] * np.sqrt(weights.pixel), dx[:, :, 0] * np.sqrt(weights.dx), dy[:, :, 0] * np.sqrt(weights.dy)]
+        rows.append(
+            np.concatenate([*(p.ravel() for p in parts), (beta * patches.residuals(image)[:, :, 0] * np.sqrt(weights.patch)).ravel()])
+        )
+    expected = np.array(rows) @ np.array(rows).T
+    band = poisson.normal_matrix(weights, alpha, beta, patches).band()
+    found = np.zeros_like(expected)
+    for step, diagonal in enumerate(band):
+        for i in range(height * width - step):
+            found[i + step, i] = found[i, i + step] = diagonal[i]
+    assert found == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize("reconstruct", [chapter8.reconstruct, nfor.reconstruct])
+def test_halves_may_be_swapped(reconstruct: compare_designs.Reconstruct) -> None:
+    assert reconstruct(FRAME[::-1]) == pytest.approx(reconstruct(FRAME), abs=1e-8)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (2, 3)])
+@pytest.mark.parametrize("design", compare_designs.PUBLISHED)
+def test_images_smaller_than_a_patch(design: str, shape: tuple[int, int]) -> None:
+    frame = tuple(
+        Half(*(getattr(half, name)[: shape[0], : shape[1]].copy() for name in ("image", "dx", "dy", "features"))) for half in FRAME
+    )
+    assert np.isfinite(compare_designs.PUBLISHED[design][1](frame)).all()
+
+
+@pytest.mark.parametrize("value", [np.nan, -np.inf, 1e30])
+@pytest.mark.parametrize("design", compare_designs.PUBLISHED)
+def test_bad_pixels_stay_finite(design: str, value: float) -> None:
+    bad = replace(FRAME[0], **{name: getattr(FRAME[0], name).copy() for name in ("image", "dx", "dy", "features")})
+    for plane in (bad.image, bad.dx, bad.dy, bad.features):
+        plane[3, 4] = value
+    image = compare_designs.PUBLISHED[design][1]((frames.tidied(bad), FRAME[1]))
+    assert np.isfinite(image).all()
+    assert np.abs(image).max() < 2.0 * frames.LARGEST
+    if "nfor" not in design:  # which spreads an outlier over its window
+        assert np.median(np.abs(image - TRUTH)) < 0.5
+
+
+@pytest.mark.parametrize("features", [0.0, 0.5])
+def test_features_that_say_nothing(features: float) -> None:
+    frame = tuple(replace(half, features=np.full_like(half.features, features)) for half in FRAME)
+    for _, reconstruct in compare_designs.PUBLISHED.values():
+        assert np.isfinite(reconstruct(frame)).all()
+
+
+def stored_planes() -> dict[str, np.ndarray]:
+    """A frame of 4×5 pixels: 2 samples per half, 1 where pairs are counted but twice."""
+    planes = {}
+    for half in "AB":
+        planes[f"count.{half}"] = np.full((4, 5), 2.0)
+        for name, channels in (("Normal", "XYZ"), ("Albedo", "XYZ"), ("Depth", "X")):
+            planes |= {f"pass.Denoising_{name}.{half}.{c}": np.full((4, 5), 1.0) for c in channels}
+        planes |= {f"component0.{half}.primal.{c}": np.full((4, 5), 6.0) for c in "RGB"}
+        for value, offset in enumerate(("right", "up", "left", "down")):
+            planes[f"pairs.{half}.{offset}"] = np.full((4, 5), 2.0)
+            planes |= {f"component0.{half}.{offset}.{c}": np.full((4, 5), 2.0 * value) for c in "RGB"}
+    return planes
+
+
+def test_stored_frames_are_means_and_differences_of_both_ends() -> None:
+    half = frames.frame_of(stored_planes())[0]
+    assert half.image == pytest.approx(3.0)
+    assert half.dx[:, :-1] == pytest.approx(0.0 - 2.0) and half.dx[:, -1] == pytest.approx(0.0)
+    assert half.dy[:-1] == pytest.approx(3.0 - 1.0) and half.dy[-1] == pytest.approx(0.0)
+    assert half.features[0, 0] == pytest.approx([0.75, 0.75, 0.75, 0.5, 0.5, 0.5, 0.5, 0.0, 0.0])
+
+
+def test_pairs_without_samples_take_the_images_difference() -> None:
+    planes = stored_planes()
+    planes["pairs.A.left"][1, 2] = 0.0
+    planes["component0.A.primal.R"][1, 2] = 10.0
+    half = frames.frame_of(planes)[0]
+    assert half.dx[1, 1] == pytest.approx([2.0, 0.0, 0.0])
+
+
+def test_the_table_has_the_newest_results_of_scenes_that_have_l1() -> None:
+    settings = {"width": 100, "height": 100, "samples": 16, "reference": 1024}
+    rows = [
+        {"scene": "a", "design": design, "relmse": error, "cpu": 1.0, **settings}
+        for error in (9.0, 2.0)
+        for design in compare_designs.LABELS
+    ]
+    rows.insert(-1, rows[-1] | {"relmse": 7.0, "samples": 4})
+    rows.insert(-1, {"scene": "b", "design": "l1", "relmse": 5.0, "cpu": None, **settings})
+    assert {scene: designs["nfor-l1"]["relmse"] for scene, designs in compare_designs.newest(rows).items()} == {"a": 2.0}
+    assert "| NFOR | 1.00 | 1.00 | 2.0000 | 2.0000 | 100 |" in compare_designs.table(rows)

@@ -1,0 +1,163 @@
+"""Reconstructions of the same stored frames: the product's, and published ones written anew (designs/).
+
+    compare_designs.py [--scenes a,b] [--width 160] [--samples 16] [--reference 1024]
+
+Every result is appended to docs/benchmark/designs.jsonl; the last one of each scene and design counts, of those with the last one's
+settings. The table is what follows the heading "Measured" of docs/benchmark/designs.md. References: references.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import solve
+from designs import chapter8, nfor, poisson
+from designs.frames import Frame, frame_of, mean_of, planes_of
+from metrics import rel_mse
+from references import reference
+from renderers import RefusedError, Renderers
+from scenes import ROOT, Scene, select
+from version import version_of_build
+
+RESULTS = ROOT / "docs" / "benchmark" / "designs.jsonl"
+DOCUMENT = ROOT / "docs" / "benchmark" / "designs.md"
+HEADING = "## Measured\n"
+TOOL = ROOT / "build" / "native" / "gradus"
+SEED = 1
+
+Reconstruct = Callable[[Frame], np.ndarray]
+PRODUCT = {"none": "noisy image", "l1": "Gradus L1", "weighted": "Gradus WEIGHTED", "regularized": "**Gradus REGULARIZED**"}
+PUBLISHED: dict[str, tuple[str, Reconstruct]] = {
+    "l1-thesis": ("L1 of the thesis, α 0.2", lambda frame: poisson.l1(mean_of(frame), chapter8.ALPHA_L1)),
+    "chapter8": ("chapter 8 as printed", chapter8.reconstruct),
+    "chapter8-tuned": ("chapter 8, tuned", lambda frame: chapter8.reconstruct(frame, chapter8.TUNED)),
+    "nfor": ("NFOR", nfor.reconstruct),
+    "nfor-l1": ("NFOR, L1 of the other half as a feature", lambda frame: nfor.reconstruct(frame, _l1_of_halves(frame))),
+}
+LABELS = PRODUCT | {name: label for name, (label, _) in PUBLISHED.items()}
+
+
+def _l1_of_halves(frame: Frame) -> tuple[np.ndarray, np.ndarray]:
+    a, b = (poisson.l1(half, chapter8.ALPHA_L1) for half in frame)
+    return a, b
+
+
+def by_product(path: Path, mode: str) -> np.ndarray:
+    target = path.with_name(f"{mode}.exr")
+    subprocess.run([TOOL, "reconstruct", path, "-o", target, "--reconstruction", mode], check=True, stdout=subprocess.DEVNULL)
+    planes = planes_of(target)
+    return np.stack([planes[channel] for channel in "RGB"], axis=2)
+
+
+def images_of(path: Path) -> Iterator[tuple[str, np.ndarray, float | None]]:
+    """Design, image and CPU seconds; those of the product are measured elsewhere (solve.py), at a size that they are made for."""
+    for mode in PRODUCT:
+        yield mode, by_product(path, mode), None
+    frame = frame_of(planes_of(path))
+    for name, (_, reconstruct) in PUBLISHED.items():
+        start = time.process_time()
+        image = reconstruct(frame)
+        yield name, image, time.process_time() - start
+
+
+def compare(scene: Scene, arguments: argparse.Namespace) -> None:
+    size = arguments.width, arguments.width * 9 // 16
+    renderers = Renderers(scene, size)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "frame.exr"
+            renderers.store_frame("gradient-regularized", arguments.samples, SEED, path)
+            mean, variance = reference(renderers, scene, "path", size, arguments.reference, arguments.reference_version)
+            for design, image, seconds in images_of(path):
+                row = {"scene": scene.name, "design": design, "relmse": rel_mse(image, mean, variance), "width": size[0], "height": size[1]}
+                row |= {"samples": arguments.samples, "reference": arguments.reference, "cpu": seconds, "version": version_of_build()}
+                with RESULTS.open("a") as file:
+                    file.write(json.dumps(row) + "\n")
+                print(f"{scene.name:18} {design:15} relMSE {row['relmse']:.5f}", flush=True)
+    finally:
+        renderers.close()
+
+
+def newest(rows: list[dict]) -> dict[str, dict[str, dict]]:
+    """Per scene and design the last row with the settings of the very last; scenes that have both L1s, which others are divided by."""
+    found: dict[str, dict[str, dict]] = {}
+    for row in rows:
+        if any(row[name] != rows[-1][name] for name in ("width", "height", "samples", "reference")):
+            continue
+        found.setdefault(row["scene"], {})[row["design"]] = row
+    return {scene: designs for scene, designs in found.items() if {"l1", "l1-thesis"} <= designs.keys()}
+
+
+def seconds_per_megapixel(design: str, rows: list[dict]) -> float | None:
+    if design in PUBLISHED:
+        return statistics.median(row["cpu"] / (row["width"] * row["height"]) * 1e6 for row in rows)
+    times = [row["reconstruct"] for row in solve.newest() if row["mode"] == f"gradient-{design}"]
+    return statistics.median(times) / (solve.SIZE[0] * solve.SIZE[1]) * 1e6 if times else None
+
+
+def table(rows: list[dict]) -> str:
+    by_scene = newest(rows)
+    heads = ["design", "over L1", "over the thesis' L1", "geometric mean", *by_scene, "CPU-s per megapixel"]
+    lines = [_line(heads), _line(["---", *["---:"] * (len(heads) - 1)])]
+    for design, label in LABELS.items():
+        rows_of = {scene: designs[design] for scene, designs in by_scene.items() if design in designs}
+        if not rows_of:
+            continue
+        seconds = seconds_per_megapixel(design, list(rows_of.values()))
+        cells = [f"{_mean_ratio(by_scene, design, base):.2f}" for base in ("l1", "l1-thesis")]
+        cells.append(f"{statistics.geometric_mean(row['relmse'] for row in rows_of.values()):.4f}")
+        cells += [f"{rows_of[scene]['relmse']:.4f}" if scene in rows_of else "–" for scene in by_scene]
+        lines.append(_line([label, *cells, "–" if seconds is None else f"{seconds:.3g}"]))
+    return "\n".join(lines) + "\n"
+
+
+def _mean_ratio(by_scene: dict[str, dict[str, dict]], design: str, base: str) -> float:
+    return statistics.geometric_mean(
+        designs[design]["relmse"] / designs[base]["relmse"] for designs in by_scene.values() if design in designs
+    )
+
+
+def _line(cells: list[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _stored() -> list[dict]:
+    return [json.loads(line) for line in RESULTS.read_text().splitlines()]
+
+
+def write_document() -> None:
+    rows = _stored()
+    text, found, _ = DOCUMENT.read_text().partition(HEADING)
+    row = rows[-1]
+    size = f"{row['width']}×{row['height']}"
+    frames = f"relMSE, {size}, {row['samples']} samples of paths with four offsets, one seed; references of {row['reference']} samples."
+    DOCUMENT.write_text(f"{text}{found}\n{frames}\n\n{table(rows)}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenes", default="")
+    parser.add_argument("--width", type=int, default=160)
+    parser.add_argument("--samples", type=int, default=16)
+    parser.add_argument("--reference", type=int, default=1024)
+    parser.add_argument("--reference-version", default=version_of_build(), help="of the build whose references are taken; this one's")
+    arguments = parser.parse_args()
+    for scene in select(arguments.scenes):
+        try:
+            compare(scene, arguments)
+        except (RuntimeError, RefusedError, subprocess.CalledProcessError) as error:
+            print(f"FAILED {scene.name}: {error}", flush=True)
+    if RESULTS.exists() and newest(_stored()):
+        write_document()
+
+
+if __name__ == "__main__":
+    main()

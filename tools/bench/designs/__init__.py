@@ -1,0 +1,1 @@
+"""Published reconstructions, written for reading, that the product's own is compared with (docs/benchmark/designs.md)."""

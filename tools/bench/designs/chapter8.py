@@ -1,0 +1,113 @@
+"""Regularising image reconstruction with feature patches (Manzi, Vicini, Zwicker 2016; thesis, chapter 8), complete.
+
+Names as in its figure 8; what was chosen where it can be read in several ways: docs/benchmark/designs.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import nlm, poisson
+from .frames import Frame, Half, mean_of
+from .patches import OFFSETS, Patches
+
+ALPHA_L1 = 0.2
+SMALLEST_ERROR = 1e-9  # ε of equation 15
+FILTER_RADIUS = 5  # 11×11; the thesis says so of the prefilter, and its text has lost the size for the post filter
+BIAS_RADIUS = 12  # 25×25
+
+
+@dataclass(frozen=True)
+class Scale:
+    alpha: float
+    beta: float
+    k_c: float
+
+
+PRINTED = (Scale(0.25, 5.0, 0.1), Scale(0.25, 17.0, 0.35), Scale(0.1, 19.0, 0.15))
+TUNED = (Scale(0.1, 0.3, 0.35), Scale(0.1, 1.0, 0.35), Scale(0.1, 1.0, 0.1))  # least error of a few dozen on four scenes
+
+
+@dataclass(frozen=True)
+class Guide:
+    """What weights of non-local means come from."""
+
+    values: np.ndarray
+    variance: np.ndarray
+
+    @classmethod
+    def of_halves(cls, a: np.ndarray, b: np.ndarray) -> Guide:
+        return cls(0.5 * (a + b), nlm.variance_of_mean(a, b))
+
+
+def reconstruct(frame: Frame, scales: tuple[Scale, ...] = PRINTED) -> np.ndarray:
+    """RECONSTRUCT of figure 8."""
+    frame = with_features(frame, filtered_features(frame))
+    features = Guide.of_halves(frame[0].features, frame[1].features)
+    colour = Guide.of_halves(*(poisson.l1(half, ALPHA_L1) for half in frame))
+    images, spreads = [], []
+    for scale in scales:
+        patches = Patches(features.values, np.sqrt(features.variance), patch_weights(colour, scale.k_c))
+        halves = post_filtered(poisson.regularized(frame, scale.alpha, scale.beta, patches), features)
+        images.append(0.5 * (halves[0] + halves[1]))
+        spreads.append(0.25 * (halves[0] - halves[1]) ** 2)
+    return combined(images, estimated_errors(images, spreads, mean_of(frame).image, colour))
+
+
+def with_features(frame: Frame, features: list[np.ndarray]) -> Frame:
+    a, b = (Half(half.image, half.dx, half.dy, channels) for half, channels in zip(frame, features, strict=True))
+    return a, b
+
+
+def filtered_features(frame: Frame) -> list[np.ndarray]:
+    """Line 2: each channel by its own distances, k_f = 1, t_f = 3."""
+    guide = Guide.of_halves(frame[0].features, frame[1].features)
+    return [nlm.average(half.features, FILTER_RADIUS, lambda offset: nlm.weight(feature_distance(guide, offset, 3))) for half in frame]
+
+
+def colour_weight(guide: Guide, offset: tuple[int, int], k_c: float) -> np.ndarray:
+    """Equation 5, t_c = 1."""
+    return nlm.weight(nlm.distance(guide.values, guide.variance, offset, k_c, 1).mean(axis=2, keepdims=True))
+
+
+def feature_distance(guide: Guide, offset: tuple[int, int], radius: int) -> np.ndarray:
+    """Per channel, k_f = 1: never stricter than the features' own slopes."""
+    return nlm.distance(guide.values, guide.variance, offset, 1.0, radius, tolerance(guide))
+
+
+def tolerance(guide: Guide) -> np.ndarray:
+    """V_j = max(10⁻³, Var_j, ‖∇_j‖²)."""
+    slopes = sum((np.gradient(guide.values, axis=axis) ** 2 for axis in (0, 1) if guide.values.shape[axis] > 1), np.float64(0.0))
+    return np.maximum(np.maximum(1e-3, guide.variance), slopes)
+
+
+def patch_weights(colour: Guide, k_c: float) -> np.ndarray:
+    """D_p of all pixels, (height · width, 25). Inside the solve k_f is ∞: equation 7 is equation 5 there."""
+    images = [colour_weight(colour, offset, k_c) * nlm.inside(colour.values.shape, *offset) for offset in OFFSETS]
+    return np.concatenate(images, axis=2).reshape(-1, len(OFFSETS))
+
+
+def post_filtered(halves: list[np.ndarray], features: Guide) -> list[np.ndarray]:
+    """Line 8, both halves by the same weights (equation 7): k_c = 0.45, t_c = 1, k_f = 1, t_f = 0."""
+    colour = Guide.of_halves(*halves)
+
+    def weight(offset: tuple[int, int]) -> np.ndarray:
+        by_features = nlm.weight(feature_distance(features, offset, 0)).min(axis=2, keepdims=True)
+        return np.minimum(colour_weight(colour, offset, 0.45), by_features)
+
+    return [nlm.average(half, FILTER_RADIUS, weight) for half in halves]
+
+
+def estimated_errors(images: list[np.ndarray], spreads: list[np.ndarray], sampled: np.ndarray, colour: Guide) -> list[np.ndarray]:
+    """Section 7: variance plus squared bias, seen where both images are smoothed alike (k_c = 0.6); over 3×3, mean of channels."""
+    smooth = nlm.average(np.concatenate([sampled, *images], axis=2), BIAS_RADIUS, lambda offset: colour_weight(colour, offset, 0.6))
+    unbiased, *smoothed = np.split(smooth, len(images) + 1, axis=2)
+    return [nlm.box((spread + (x - unbiased) ** 2).mean(axis=2, keepdims=True), 1) for spread, x in zip(spreads, smoothed, strict=True)]
+
+
+def combined(images: list[np.ndarray], errors: list[np.ndarray]) -> np.ndarray:
+    """Equation 15."""
+    shares = [1.0 / (error + SMALLEST_ERROR) for error in errors]
+    return sum(share * image for share, image in zip(shares, images, strict=True)) / sum(shares)

@@ -1,0 +1,98 @@
+"""A stored frame (`gradus render -o FILE.exr`) as two half-buffers of images, differences and features. Rows as in the file, top first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+LARGEST = 1e8  # what is brighter, or no number, is no light: its squares must fit
+
+
+@dataclass(frozen=True)
+class Half:
+    """Means over half of the samples, float64 (height, width, channels)."""
+
+    image: np.ndarray
+    dx: np.ndarray  # image at the right neighbour less image here; the last column is 0
+    dy: np.ndarray  # image in the row below less image here; the last row is 0
+    features: np.ndarray  # each channel in [0, 1]: normal, albedo, d/(d + median) of the depth d, x, y, as REGULARIZED has them
+
+
+Frame = tuple[Half, Half]
+
+
+def planes_of(path: Path) -> dict[str, np.ndarray]:
+    import OpenEXR
+
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return {name: np.asarray(channel.pixels, dtype=np.float64) for name, channel in file.channels().items()}
+
+
+def frame_of(planes: dict[str, np.ndarray]) -> Frame:
+    """From planes by the names of native/src/frame/store_planes.cpp."""
+    depths = [_mean_of_samples(planes, half, f"pass.Denoising_Depth.{half}", "X") for half in "AB"]
+    median = _median_of_positive(np.concatenate(depths))
+    a, b = (_half_of(planes, half, depth / (depth + median)) for half, depth in zip("AB", depths, strict=True))
+    return a, b
+
+
+def tidied(half: Half) -> Half:
+    """The same without what is no number, too large, or a pair without samples, for which the image's own difference stands."""
+    image = np.clip(np.nan_to_num(half.image, nan=0.0), -LARGEST, LARGEST)
+    dx, dy = (
+        np.clip(np.where(np.isnan(sampled), own, sampled), -2 * LARGEST, 2 * LARGEST)
+        for sampled, own in zip((half.dx, half.dy), differences(image), strict=True)
+    )
+    return Half(image, dx, dy, np.clip(np.nan_to_num(half.features, nan=0.0), 0.0, 1.0))
+
+
+def mean_of(frame: Frame) -> Half:
+    a, b = frame
+    return Half(*(0.5 * (getattr(a, field.name) + getattr(b, field.name)) for field in fields(Half)))
+
+
+def differences(image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """H^dx and H^dy of the thesis."""
+    dx, dy = np.zeros_like(image), np.zeros_like(image)
+    dx[:, :-1] = image[:, 1:] - image[:, :-1]
+    dy[:-1] = image[1:] - image[:-1]
+    return dx, dy
+
+
+def _half_of(planes: dict[str, np.ndarray], half: str, depth: np.ndarray) -> Half:
+    image = _mean_of_samples(planes, half, f"component0.{half}.primal", "RGB")
+    dx, dy = np.zeros_like(image), np.zeros_like(image)
+    dx[:, :-1] = _mean_of_pairs(planes, half, "right")[:, :-1] - _mean_of_pairs(planes, half, "left")[:, 1:]
+    dy[:-1] = _mean_of_pairs(planes, half, "down")[:-1] - _mean_of_pairs(planes, half, "up")[1:]
+    return tidied(Half(image, dx, dy, np.concatenate([_surface(planes, half), depth, _place(image)], axis=2)))
+
+
+def _mean_of_pairs(planes: dict[str, np.ndarray], half: str, offset: str) -> np.ndarray:
+    """Of the samples from this end of each pair (native/src/frame/read.cpp joins both ends); NaN where there are none."""
+    pairs = planes[f"pairs.{half}.{offset}"][:, :, None]
+    return _vector(planes, f"component0.{half}.{offset}", "RGB") / np.where(pairs > 0.0, pairs, np.nan)
+
+
+def _mean_of_samples(planes: dict[str, np.ndarray], half: str, name: str, channels: str) -> np.ndarray:
+    return _vector(planes, name, channels) / np.maximum(planes[f"count.{half}"], 1.0)[:, :, None]
+
+
+def _surface(planes: dict[str, np.ndarray], half: str) -> np.ndarray:
+    normal, albedo = (_mean_of_samples(planes, half, f"pass.Denoising_{name}.{half}", "XYZ") for name in ("Normal", "Albedo"))
+    return np.concatenate([0.5 + 0.5 * normal, albedo], axis=2)
+
+
+def _place(image: np.ndarray) -> np.ndarray:
+    y, x = np.indices(image.shape[:2]) / max(image.shape[:2])
+    return np.stack([x, y], axis=2)
+
+
+def _vector(planes: dict[str, np.ndarray], name: str, channels: str) -> np.ndarray:
+    return np.stack([planes[f"{name}.{channel}"] for channel in channels], axis=2)
+
+
+def _median_of_positive(depth: np.ndarray) -> float:
+    positive = depth[depth > 0.0]
+    return float(np.median(positive)) if positive.size else 1.0

@@ -1,0 +1,68 @@
+"""Non-local means with half-buffers (Rousselle, Knaus, Zwicker 2012; Rousselle, Manzi, Zwicker 2013), as chapter 8 and NFOR use it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from scipy.ndimage import gaussian_filter, uniform_filter
+
+EPSILON = 1e-10
+WeightAt = Callable[[tuple[int, int]], np.ndarray]  # weights at an offset: (height, width, 1 or as many channels as the image)
+
+
+def window(radius: int) -> Iterator[tuple[int, int]]:
+    """Offsets (dy, dx) of a square, row by row."""
+    reach = range(-radius, radius + 1)
+    return ((dy, dx) for dy in reach for dx in reach)
+
+
+def shifted(image: np.ndarray, dy: int, dx: int) -> np.ndarray:
+    """The image at p + (dy, dx), the border's pixel where that is outside."""
+    height, width = image.shape[:2]
+    rows = np.clip(np.arange(height) + dy, 0, height - 1)
+    columns = np.clip(np.arange(width) + dx, 0, width - 1)
+    return image[rows[:, None], columns]
+
+
+def inside(shape: tuple[int, ...], dy: int, dx: int) -> np.ndarray:
+    """1 where p + (dy, dx) is in the image, else 0, shape (height, width, 1)."""
+    height, width = shape[:2]
+    rows, columns = np.arange(height) + dy, np.arange(width) + dx
+    return (((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width)))[:, :, None].astype(float)
+
+
+def box(image: np.ndarray, radius: int) -> np.ndarray:
+    return uniform_filter(image, size=(2 * radius + 1, 2 * radius + 1, 1), mode="nearest") if radius else image
+
+
+def variance_of_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """From two halves: the larger of raw and blurred, so that it is neither noisy nor too small at outliers (thesis 8.4)."""
+    raw = 0.25 * (a - b) ** 2
+    return np.maximum(raw, gaussian_filter(raw, sigma=(2.0, 2.0, 0.0), mode="nearest"))
+
+
+def distance(
+    guide: np.ndarray, variance: np.ndarray, offset: tuple[int, int], k: float, radius: int, tolerance: np.ndarray | None = None
+) -> np.ndarray:
+    """Squared difference of p and p + offset beyond their noise and over it, mean over small squares around both; per channel.
+
+    `tolerance` stands for the variance in the denominator.
+    """
+    tolerance = variance if tolerance is None else tolerance
+    squared = (guide - shifted(guide, *offset)) ** 2 - (variance + shifted(variance, *offset))
+    return box(squared / (EPSILON + k * k * (tolerance + shifted(tolerance, *offset))), radius)
+
+
+def weight(distances: np.ndarray) -> np.ndarray:
+    return np.exp(-np.maximum(distances, 0.0))
+
+
+def average(image: np.ndarray, radius: int, weight_at: WeightAt) -> np.ndarray:
+    """Weighted mean over a window."""
+    total, weights = np.zeros_like(image), 0.0
+    for offset in window(radius):
+        w = weight_at(offset) * inside(image.shape, *offset)
+        total += w * shifted(image, *offset)
+        weights = weights + w
+    return total / weights
