@@ -201,8 +201,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "four times, of the regression beside sampled differences",
         REGULARIZED,
-        "const float error = regression.error().row(y)[x] + kLeastError;",
-        "const float error = 4.0f * regression.error().row(y)[x] + kLeastError;",
+        "const float squared = error.row(y)[x] + kLeastError;",
+        "const float squared = 4.0f * error.row(y)[x] + kLeastError;",
         OF_DIFFERENCES,
     ),
     Fault(
@@ -293,8 +293,18 @@ RECONSTRUCTION = (
         FROZEN,
         "it stays as noisy as it was sampled",
         REGULARIZED,
-        "store_channel(regression.apply(alpha, cancel), 0, 4,",
-        "store_channel(alpha, 0, 4,",
+        "const Field alpha = regression.apply(read_alpha(frame, component), cancel);",
+        "const Field alpha = read_alpha(frame, component);",
+        OF_ALPHA,
+    ),
+    Fault(
+        17,
+        FROZEN,
+        "beside differences it is the regression's alone",
+        REGULARIZED,
+        "solve_by_noise(planes, cancel, &system, &regressed, report);",
+        "solve_by_noise(planes, cancel, &system, &regressed, report);\n"
+        "  for_values(&regressed, [&](float& v, int x, int y, int c) { v = c < 3 ? v : planes.primal.row(y, c)[x]; });",
         OF_ALPHA,
     ),
     Fault(

@@ -93,8 +93,7 @@ void choose_denoiser(const GradusSettings& settings, const HostDenoiser& denoise
                                "automatic: with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples");
   } else {
     plan->denoises = true;
-    plan->chosen.emplace_back("denoiser " + denoiser.name,
-                              automatic ? "automatic: it is there" : "set by the user");
+    plan->chosen.emplace_back("denoiser " + denoiser.name, automatic ? "automatic: it is there" : "set by the user");
   }
 }
 
@@ -205,7 +204,7 @@ bool l2_iterates(const Plan& plan) { return plan.pilot; }
 // REGULARIZED, as measured (reconstruct/feature_regression.h): features with their variances and as a basis, the image and half the
 // difference of its halves, weights, what both steps make of them; with differences the images and the solve, while the regression is
 // there.
-uint64_t regularized_floats(const Plan& plan) { return plan.gradients ? 77 + 4 * uint64_t(plan.channels) : 63; }
+uint64_t regularized_floats(const Plan& plan) { return plan.gradients ? 44 + 15 * uint64_t(plan.channels) : 63; }
 
 // What the reconstruction takes beside the frame, floats per pixel: its result, and until it is there
 uint64_t reconstruction_floats(const Plan& plan) {

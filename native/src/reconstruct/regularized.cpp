@@ -52,8 +52,31 @@ void normalise(float scale, Field* field) {
   for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMost, kMost); });
 }
 
+// Of colours; alpha is a share, whatever the light.
 void multiply(float factor, Field* field) {
-  for_values(field, [factor](float& value, int, int, int) { value *= factor; });
+  for_values(field, [factor](float& value, int, int, int c) { value *= c < 3 ? factor : 1.0f; });
+}
+
+// Alpha as it was sampled; what is not finite is 0.
+Field read_alpha(const Frame& frame, int component) {
+  Field alpha(frame.region.width(), frame.region.height(), 1);
+  for_pieces(alpha.height(), [&](int begin, int end) {
+    std::vector<float> row(size_t(alpha.width()) * 4);
+    for (int y = begin; y < end; ++y) {
+      read_primal_row(frame, component, {}, y, row.data());
+      for (int x = 0; x < alpha.width(); ++x) alpha.row(y)[x] = is_finite(row[4 * size_t(x) + 3]) ? row[4 * size_t(x) + 3] : 0.0f;
+    }
+  });
+  return alpha;
+}
+
+// The regression of all channels: alpha by the weights of the colours.
+Field regress(const Frame& frame, int component, const FeatureRegression& regression, const CancelTest& cancel) {
+  if (frame.channels == 3) return regression.image();
+  const Field alpha = regression.apply(read_alpha(frame, component), cancel);
+  Field image(alpha.width(), alpha.height(), 4);
+  for_values(&image, [&](float& value, int x, int y, int c) { value = c < 3 ? regression.image().row(y, c)[x] : alpha.row(y)[x]; });
+  return image;
 }
 
 // Mean of two estimates of a difference, by their weights: the regression's takes the place of a sampled one that is absent.
@@ -73,58 +96,50 @@ void blend_differences(const Field& image, const Field& weight, int step_x, int 
   });
 }
 
-// The regression as the data of a least squares problem whose differences are those sampled and the regression's own, by their errors.
-Field fuse(const GradientImages& images, float scale, const FeatureRegression& regression, const CancelTest& cancel, SolveReport* report) {
-  const int w = images.width, h = images.height;
-  SolverPlanes planes = load_planes(planes_of(images, 0), w, h, 3);
+// The regression as the data of a least squares problem whose differences are those sampled and the regression's own, by their errors. All
+// channels go through the same weights, which are those of the colours.
+Field fuse(const GradientImages& images, float scale, Field regressed, const Field& error, const CancelTest& cancel, SolveReport* report) {
+  const int w = images.width, h = images.height, channels = images.channels;
+  SolverPlanes planes = load_planes(planes_of(images, 0), w, h, channels);
   multiply(1.0f / scale, &planes.dx);
   multiply(1.0f / scale, &planes.dy);
-  planes.primal = regression.image();
-  WeightedLeastSquares system(w, h, 3);
+  planes.primal = regressed;
+  WeightedLeastSquares system(w, h, channels);
   weigh_by_noise(images, scale, &system.data_weights(), &system.matrix());
   Field of_differences(w, h, 1);
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) {
-      const float error = regression.error().row(y)[x] + kLeastError;
-      system.data_weights().row(y)[x] = 1.0f / (kSharedError * error);
-      of_differences.row(y)[x] = 1.0f / (kSharedDifference * error);
+      const float squared = error.row(y)[x] + kLeastError;
+      system.data_weights().row(y)[x] = 1.0f / (kSharedError * squared);
+      of_differences.row(y)[x] = 1.0f / (kSharedDifference * squared);
     }
   });
-  blend_differences(regression.image(), of_differences, 1, 0, &planes.dx, &system.matrix().right);
-  blend_differences(regression.image(), of_differences, 0, 1, &planes.dy, &system.matrix().up);
+  blend_differences(regressed, of_differences, 1, 0, &planes.dx, &system.matrix().right);
+  blend_differences(regressed, of_differences, 0, 1, &planes.dy, &system.matrix().up);
   system.update();
-  Field x = regression.image();
-  solve_by_noise(planes, cancel, &system, &x, report);
-  return x;
+  solve_by_noise(planes, cancel, &system, &regressed, report);
+  return regressed;
 }
 
 }  // namespace
 
 Reconstructed regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
-  const int w = frame.region.width(), h = frame.region.height(), channels = frame.channels;
+  const int w = frame.region.width(), h = frame.region.height();
   HalvedImage image = read_halves(frame, component);
   const float scale = robust_scale(image.mean);
   normalise(scale, &image.mean);
   normalise(scale, &image.half_difference);
   const FeatureRegression regression(filter_features(read_features(frame)), image, cancel);
-  Reconstructed result{std::vector<float>(size_t(w) * size_t(h) * size_t(channels)), std::vector<float>(size_t(w) * size_t(h))};
-  Field solution = regression.image();
+  Field solution = regress(frame, component, regression, cancel);
   if (frame.gradients) {
     GradientImages images = read_images(frame, component);
     read_deviations(frame, component, &images);
-    solution = fuse(images, scale, regression, cancel, report);
+    solution = fuse(images, scale, std::move(solution), regression.error(), cancel, report);
   }
   multiply(scale, &solution);
-  for (int c = 0; c < 3; ++c) store_channel(solution, c, size_t(channels), result.image.data() + c);
-  if (channels == 4) {
-    Field alpha(w, h, 1);
-    for_rows(h, [&](int y) {
-      std::vector<float> row(size_t(w) * 4);
-      read_primal_row(frame, component, {}, y, row.data());
-      for (int x = 0; x < w; ++x) alpha.row(y)[x] = is_finite(row[4 * size_t(x) + 3]) ? row[4 * size_t(x) + 3] : 0.0f;
-    });
-    store_channel(regression.apply(alpha, cancel), 0, 4, result.image.data() + 3);
-  }
+  const size_t pixels = size_t(w) * size_t(h), channels = size_t(frame.channels);
+  Reconstructed result{std::vector<float>(pixels * channels), std::vector<float>(pixels)};
+  for (int c = 0; c < frame.channels; ++c) store_channel(solution, c, channels, result.image.data() + c);
   Field error = regression.error();
   multiply(scale * scale, &error);
   store_channel(error, 0, 1, result.error.data());

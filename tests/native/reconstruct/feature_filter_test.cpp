@@ -59,12 +59,12 @@ TEST(FeatureFilter, CleanFeaturesStay) {
   for (size_t i = 0; i < clean.truth.size(); ++i) ASSERT_NEAR(filtered.values[i], clean.truth[i], 1e-4f);
 }
 
-// Texture of a hundredth of the feature, which no noise explains.
+// Texture of a fiftieth of the feature, which no noise explains.
 TEST(FeatureFilter, FineTextureWithoutNoiseStays) {
   Noisy clean(0.0f, 1);
   for (size_t i = 0; i < clean.truth.size(); ++i) clean.truth[i] = clean.image.values[i] = 0.5f + (i % 2 ? 0.01f : -0.01f);
   const FeatureImage filtered = filter_feature(clean.image, kWidth, kHeight);
-  EXPECT_LT(std::sqrt(mean_square(filtered.values, clean.truth)), 0.006);
+  EXPECT_LT(std::sqrt(mean_square(filtered.values, clean.truth)), 1e-4);
 }
 
 // Neighbours of a chequer that differ by twice their deviation count for something, but not for all: of what is measured in a quarter of
@@ -81,8 +81,7 @@ TEST(FeatureFilter, DifferencesCountByTheVariance) {
   EXPECT_LT(left, 0.95);
 }
 
-// Each neighbour by its own distance: those to the left are read at another place than those to the right. Not at the border, where
-// patches of the two sides end at different pixels.
+// Each neighbour by its own distance: those to the left are read at another place than those to the right.
 TEST(FeatureFilter, AMirroredPictureIsFilteredAlike) {
   const auto mirrored = [](std::vector<float> values) {
     std::reverse(values.begin(), values.end());
@@ -93,12 +92,7 @@ TEST(FeatureFilter, AMirroredPictureIsFilteredAlike) {
   noisy.image.values = mirrored(noisy.image.values);
   noisy.image.variance = mirrored(noisy.image.variance);
   const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
-  for (int y = 2; y < kHeight - 2; ++y) {
-    for (int x = 2; x < kWidth - 2; ++x) {
-      const auto i = size_t(y * kWidth + x);
-      ASSERT_NEAR(filtered.values[i], expected[i], 1e-3f) << x << ' ' << y;
-    }
-  }
+  for (size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(filtered.values[i], expected[i], 1e-3f) << i % kWidth << ' ' << i / kWidth;
 }
 
 TEST(FeatureFilter, DoesNotDependOnTheUnit) {

@@ -18,6 +18,7 @@ struct FeatureFrame {
   // Features: normal, albedo and depth, seven values, by pixel and half.
   std::function<float(int x, int y, int channel, int half)> feature;
   bool gradients = false;
+  float difference_sigma = 0.0f;  // of what a half's pixel has of a difference
   unsigned seed = 1;
 };
 
@@ -38,9 +39,11 @@ inline void fill_features(const FeatureFrame& description, Frame* frame) {
   }
 }
 
-// Differences are sampled exactly, one sample of each pixel and half.
+// One sample of each pixel and half. Alpha's are an eighth of red's, as alpha is.
 inline void fill_differences(const FeatureFrame& description, Frame* frame) {
   const int w = description.width, h = description.height;
+  std::mt19937 random(100 + description.seed);
+  std::normal_distribution<float> normal(0.0f, 1.0f);
   for (int half = 0; half < kHalves; ++half) {
     for (int o = 0; o < kOffsets; ++o) {
       for (int y = 0; y < h; ++y) {
@@ -49,10 +52,13 @@ inline void fill_differences(const FeatureFrame& description, Frame* frame) {
           if (nx < 0 || nx >= w || ny < 0 || ny >= h) continue;
           const size_t i = size_t(y) * size_t(w) + size_t(x), n = size_t(ny) * size_t(w) + size_t(nx);
           frame->pair_count[half][o][i] = 1.0f;
-          // Each end of a pair has half of the difference.
-          for (int c = 0; c < 3; ++c)
-            frame->components[0].gradient[half][o][i][c] =
-                0.5f * (description.truth[3 * n + size_t(c)] - description.truth[3 * i + size_t(c)]);
+          Radiance& difference = frame->components[0].gradient[half][o][i];
+          for (int c = 0; c < 3; ++c) {
+            // Each end of a pair has half of it.
+            const float truth = 0.5f * (description.truth[3 * n + size_t(c)] - description.truth[3 * i + size_t(c)]);
+            difference[c] = truth + description.difference_sigma * normal(random);
+          }
+          if (frame->channels == 4) difference[3] = difference[0] / 8.0f;
         }
       }
     }
