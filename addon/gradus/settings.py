@@ -41,7 +41,7 @@ class Setting:
 
 # Identifiers that exist in the library but are refused or unfinished there do not appear: a menu promises what it shows.
 INTEGRATORS = (
-    ("AUTO", "Automatic", "Path tracing, with differences between neighbouring pixels where they pay", 0),
+    ("AUTO", "Automatic", "Path tracing; for L2, L1 and WEIGHTED with differences between neighbouring pixels where they pay", 0),
     ("PATH", "Path", "Plain path tracing: the reference", 1),
     ("GRADIENT", "Gradient", "Path tracing that also samples the differences between neighbouring pixels", 2),
 )

@@ -26,18 +26,13 @@ struct PilotSums {
 // In doubt yes: a few samples miss the outliers, which differences take away, too. (With 1 half of a picture behind glass went without,
 // which had twice the error at equal time.)
 inline constexpr double kPays = 1.25;
-// Where features do most of the work, what is left has to be little: of twelve scenes differences gained on the three where it was
-// (docs/method.md).
-inline constexpr double kPaysBesideFeatures = 0.25;
-
 struct Benefit {
   double error = 1.0;  // of the reconstruction, over that of the noisy image at the same number of samples
   bool noisy = false;  // or there is nothing to gain
   double cost = 1.0;   // of a sample with differences, over that of one without
   double noise = 0.0;  // of the noisy image: squared error over squared brightness
   double rays = 0.0;   // of a sample without differences
-  // Against a limit for error times cost.
-  bool pays(double limit) const { return noisy && error * cost < limit; }
+  bool pays() const { return noisy && error * cost < kPays; }
 };
 
 // For reconstructions that go by the noise of every row: no better than what L2 leaves at its best weight.

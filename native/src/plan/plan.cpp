@@ -24,22 +24,15 @@ bool needs_gradients(uint32_t reconstruction) {
 // Samples from which the host's denoiser takes more off the error than those that its time would buy (docs/method.md).
 constexpr uint32_t kDenoiserPays = 8;
 
-// Light that comes straight from lamps has little noise; plain paths are two to three times as fast.
-bool is_direct_only(const GradusSettings& settings) { return settings.max_bounces == 0; }
-
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
-  if (!needs_gradients(settings.reconstruction) && is_direct_only(settings)) {
+  const bool wants_differences = wants(settings.passes, GRADUS_PASS_GRADIENT_X) || wants(settings.passes, GRADUS_PASS_GRADIENT_Y);
+  if (!needs_gradients(settings.reconstruction) && !wants_differences) {  // on all of 13 scenes (docs/method.md)
     plan->integrator = GRADUS_INTEGRATOR_PATH;
-    plan->chosen.emplace_back("integrator path", "automatic: direct light alone has little noise");
-    return;
-  }
-  if (plan->denoises && !needs_gradients(settings.reconstruction)) {
-    plan->integrator = GRADUS_INTEGRATOR_PATH;
-    plan->chosen.emplace_back("integrator path", "automatic: the denoiser makes more of more paths than of differences");
+    plan->chosen.emplace_back("integrator path", "automatic: features make more of more paths than of differences");
     return;
   }
   plan->integrator = GRADUS_INTEGRATOR_GRADIENT;
-  plan->pilot = !wants(settings.passes, GRADUS_PASS_GRADIENT_X) && !wants(settings.passes, GRADUS_PASS_GRADIENT_Y);
+  plan->pilot = !wants_differences;
   plan->chosen.emplace_back("integrator gradient", plan->pilot ? "automatic: wherever it pays" : "automatic: its passes are asked for");
 }
 

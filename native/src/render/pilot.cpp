@@ -109,10 +109,9 @@ std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& 
     for (const Region& square : squares.cells) pixels.push_back(double(square.area()));
     return choose_parts(benefits, pixels);
   }
-  const double limit = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kPaysBesideFeatures : kPays;
   std::vector<bool> chosen;
   chosen.reserve(benefits.size());
-  for (const Benefit& benefit : benefits) chosen.push_back(benefit.pays(limit));
+  for (const Benefit& benefit : benefits) chosen.push_back(benefit.pays());
   return chosen;
 }
 

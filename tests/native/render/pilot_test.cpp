@@ -43,11 +43,11 @@ TEST(Benefit, ComparesErrorWithCost) {
   PilotSums sums = quiet_sums();
   EXPECT_NEAR(estimate_benefit(sums).cost, 1.885, 1e-12);
   EXPECT_NEAR(estimate_benefit(sums).error, reconstructed_variance(16.0) + 0.1, 1e-12);
-  EXPECT_TRUE(estimate_benefit(sums).pays(kPays));
+  EXPECT_TRUE(estimate_benefit(sums).pays());
   sums.difference_deviation = 1600.0;
-  EXPECT_FALSE(estimate_benefit(sums).pays(kPays));
+  EXPECT_FALSE(estimate_benefit(sums).pays());
   sums.pixel_deviation = 0.0;
-  EXPECT_FALSE(estimate_benefit(sums).pays(kPays)) << "no noise, nothing to gain";
+  EXPECT_FALSE(estimate_benefit(sums).pays()) << "no noise, nothing to gain";
 }
 
 // In a thicket of leaves smaller than pixels all shifts fail. A difference is then that of the pixels' own samples, as noisy as they are;
@@ -57,9 +57,9 @@ TEST(Benefit, DifferencesOfThePixelsOwnSamplesAreWorthNothing) {
   sums.difference_deviation = 400.0 * std::sqrt(2.0);
   sums.l2_roots = {150.0, 120.0, 98.0};
   EXPECT_GT(estimate_benefit(sums).error, 0.9);
-  EXPECT_FALSE(estimate_benefit(sums).pays(kPays));
+  EXPECT_FALSE(estimate_benefit(sums).pays());
   sums.l2_roots = {150.0, 60.0, 98.0};  // at its best weight L2 gains
-  EXPECT_TRUE(estimate_benefit(sums).pays(kPays));
+  EXPECT_TRUE(estimate_benefit(sums).pays());
 }
 
 // Unpaired paths stand in the differences as they stand in the pixel, and L2 gives back what they were. The pilot judged differences by
@@ -191,6 +191,7 @@ TEST(Pilot, ItsSeedIsNoUsers) { EXPECT_GT(pilot_settings(small_settings(8, 8, 1)
 nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr<const Frame>* frame) {
   GradusSettings s = small_settings(256, 96, 4);
   s.integrator = integrator;
+  s.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
   const auto factory = [&](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(noisy_from); };
   const auto render = start(s, factory);
   render->wait(-1.0);
@@ -204,6 +205,7 @@ nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr
 TEST(Pilot, ACancelMeanwhileIsACancel) {
   GradusSettings s = small_settings(64, 48, 4);
   s.integrator = GRADUS_INTEGRATOR_AUTO;
+  s.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
   const auto noisy = [](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(64); };
   const auto first = start(s, noisy);
   first->wait(-1.0);
@@ -232,7 +234,7 @@ TEST(Pilot, AutoDecidesAndSaysWhy) {
   EXPECT_EQ(frame->pair_count[0][kRight][200], 0.0f);
   const nlohmann::json none = stats_of(0, GRADUS_INTEGRATOR_AUTO, &frame);
   EXPECT_EQ(none["integrator"], "path");
-  EXPECT_EQ(none["reconstruction"], "regularized") << "features are there all the same";
+  EXPECT_EQ(none["reconstruction"], "none");
   EXPECT_FALSE(frame->gradients);
   EXPECT_NE(none["plan"]["skipped"]["gradients"].get<std::string>().find("pilot"), std::string::npos);
   // What the user says is obeyed.

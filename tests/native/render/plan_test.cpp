@@ -27,11 +27,27 @@ GradusError refusal(uint32_t integrator, uint32_t reconstruction) {
   return GRADUS_OK;
 }
 
-TEST(Plan, AutoIsGradientWhereItPaysWithFeatures) {
+TEST(Plan, AutoIsPathWithFeatures) {
   const Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_AUTO);
-  EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_GRADIENT});
+  EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_PATH});
   EXPECT_EQ(plan.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED});
+  EXPECT_FALSE(plan.pilot);
   EXPECT_FALSE(delivers_unbiased(plan, plan.reconstruction));
+}
+
+TEST(Plan, AutoIsGradientForWhatNeedsDifferences) {
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_WEIGHTED}) {
+    const Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, reconstruction);
+    EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_GRADIENT});
+    EXPECT_TRUE(plan.pilot) << "wherever it pays";
+  }
+  GradusSettings settings = small_settings(64, 64, 4);
+  settings.passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_X;
+  settings.integrator = GRADUS_INTEGRATOR_AUTO;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_AUTO;
+  const Plan plan = make_plan(settings, *empty_snapshot());
+  EXPECT_TRUE(plan.gradients);
+  EXPECT_FALSE(plan.pilot) << "its passes are asked for";
 }
 
 TEST(Plan, PathHasNoGradientsAndSaysSo) {
