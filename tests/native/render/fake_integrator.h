@@ -119,6 +119,7 @@ inline GradusSettings small_settings(uint32_t width, uint32_t height, uint32_t s
   s.samples = samples;
   s.threads = 2;
   s.noise_threshold = 0.0f;
+  s.integrator = GRADUS_INTEGRATOR_GRADIENT;
   return s;
 }
 
