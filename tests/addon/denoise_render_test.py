@@ -54,7 +54,7 @@ def test_noise_falls_and_the_rest_stays(corner: bpy.types.Scene, render: Render,
 def test_stats_name_it(corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path), "--gradus-denoiser", "auto"])
-    render(corner, samples=1)
+    render(corner, samples=8)
     stats = json.loads(path.read_text())
     assert stats["denoiser"].startswith("Open Image Denoise 2.")
     assert stats["seconds"]["denoise"] > 0.0
