@@ -26,6 +26,7 @@ struct PilotSums {
 // In doubt yes: a few samples miss the outliers, which differences take away, too. (With 1 half of a picture behind glass went without,
 // which had twice the error at equal time.)
 inline constexpr double kPays = 1.25;
+
 struct Benefit {
   double error = 1.0;  // of the reconstruction, over that of the noisy image at the same number of samples
   bool noisy = false;  // or there is nothing to gain

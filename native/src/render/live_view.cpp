@@ -1,32 +1,11 @@
 #include "render/live_view.h"
 
-#include "base/clock.h"
+#include "base/bill.h"
 #include "render/combine.h"
 #include "render/quarter_picture.h"
 #include "settings/pass_table.h"
 
 namespace gradus {
-namespace {
-
-// Adds what passes while it lives.
-class Bill {
- public:
-  Bill(double* seconds, double* cpu_seconds) : seconds_(seconds), cpu_seconds_(cpu_seconds) {}
-  ~Bill() {
-    *seconds_ += clock_.seconds();
-    *cpu_seconds_ += 1e-9 * double(process_cpu_nanoseconds() - cpu_);
-  }
-  Bill(const Bill&) = delete;
-  Bill& operator=(const Bill&) = delete;
-  double seconds() const { return clock_.seconds(); }
-
- private:
-  double *const seconds_, *const cpu_seconds_;
-  const WallClock clock_;
-  const uint64_t cpu_ = process_cpu_nanoseconds();
-};
-
-}  // namespace
 
 LiveView::LiveView(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
                    ProgressTracker* tracker)

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/bill.h"
 #include "base/device.h"
 #include "base/error.h"
 #include "base/fpu.h"
@@ -245,25 +246,23 @@ void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
 }
 
 void RenderLoop::reconstruct_frame() {
-  const double began = clock_.seconds();
-  const uint64_t cpu = process_cpu_nanoseconds();
   const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
   const GradusSettings& settings = frame_->settings;
   std::vector<float> rgba, error;
   std::vector<float>* wanted = wants(plan_.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
-  arena_.execute([&] {
-    rgba = combine(*frame_, settings.reconstruction, settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve, wanted);
-  });
-  stats_.seconds.reconstruct = clock_.seconds() - began;
-  stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  {
+    const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
+    arena_.execute([&] {
+      rgba = combine(*frame_, settings.reconstruction, settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve, wanted);
+    });
+  }
   if (cancel()) return;  // half of it is none
   if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
   picture_.show(std::move(rgba), std::move(error));
 }
 
 void RenderLoop::denoise_frame() {
-  const double began = clock_.seconds();
-  const uint64_t cpu = process_cpu_nanoseconds();
+  const Bill bill(&stats_.seconds.denoise, &stats_.cpu_seconds.denoise);
   const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
   std::vector<float> rgba = picture_.combined();
   const std::string failure =
@@ -273,8 +272,6 @@ void RenderLoop::denoise_frame() {
   } else {
     stats_.warnings.push_back(failure);
   }
-  stats_.seconds.denoise = clock_.seconds() - began;
-  stats_.cpu_seconds.denoise = 1e-9 * double(process_cpu_nanoseconds() - cpu);
   picture_.show_denoised(std::move(rgba));
 }
 
