@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gradus import settings
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
 import behind  # noqa: E402
@@ -125,6 +126,11 @@ def test_slope_is_that_of_the_last_decade() -> None:
 def test_every_mode_has_a_reference() -> None:
     for mode in modes.MODES.values():
         assert modes.REFERENCES[mode.engine] in modes.MODES
+
+
+def test_the_denoiser_is_measured_on_every_reconstruction() -> None:
+    denoised = {mode.settings["reconstruction"] for mode in modes.MODES.values() if mode.settings.get("denoiser") == "OIDN"}
+    assert denoised == {name for name, *_ in settings.RECONSTRUCTIONS} - {"AUTO"}
 
 
 def test_a_slider_offers_all_pictures_and_crops() -> None:

@@ -39,6 +39,8 @@ MODES = {
     "gradient-regularized": Mode("Gradus G-PT + REGULARIZED", GRADUS, _gradus("GRADIENT", "REGULARIZED")),
     "path-denoised": Mode("Gradus PT + denoiser", GRADUS, _gradus("PATH", "NONE", "OIDN")),
     "regularized-denoised": Mode("Gradus PT + REGULARIZED + denoiser", GRADUS, _gradus("PATH", "REGULARIZED", "OIDN")),
+    "l2-denoised": Mode("Gradus G-PT + L2 + denoiser", GRADUS, _gradus("GRADIENT", "L2", "OIDN")),
+    "l1-denoised": Mode("Gradus G-PT + L1 + denoiser", GRADUS, _gradus("GRADIENT", "L1", "OIDN")),
     "gradient-denoised": Mode("Gradus G-PT + WEIGHTED + denoiser", GRADUS, _gradus("GRADIENT", "WEIGHTED", "OIDN")),
     "auto-denoised": Mode("Gradus AUTO + AUTO denoiser", GRADUS, _gradus("AUTO", "AUTO", "AUTO")),
     "auto": Mode("Gradus AUTO", GRADUS, _gradus("AUTO", "AUTO")),
