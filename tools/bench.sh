@@ -57,7 +57,7 @@ designs() {
   local arguments=()
   option --scenes "${SCENES:-}"
   option --reference "${REFERENCE:-}"
-  "$python" tools/bench/compare_designs.py "${arguments[@]}"
+  OPENBLAS_NUM_THREADS=1 "$python" tools/bench/compare_designs.py "${arguments[@]}"
 }
 suite() {
   tools/build.sh tests

@@ -174,6 +174,7 @@ def main() -> int:
     # Blender's Python takes its modules from beside the first python3.11 in PATH: that must be the system's, not a version manager's.
     environment["PATH"] = "/usr/bin:/bin:" + environment.get("PATH", "")
     environment |= {"PYTHONDONTWRITEBYTECODE": "1", "GRADUS_TEST_FULL": "1" if options.full else "0"}
+    environment["OPENBLAS_NUM_THREADS"] = "1"  # NumPy's threads wait for each other in loops, for longer than small matrices take
     jobs = []
     if options.what in ("all", "native"):
         limit = LIMIT["full" if options.full else "native"]

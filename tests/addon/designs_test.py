@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ import compare_designs  # noqa: E402
 from designs import chapter8, frames, nfor, nlm, poisson  # noqa: E402
 from designs.frames import Half  # noqa: E402
 from designs.patches import OFFSETS, Patches  # noqa: E402
+from designs.poisson import Reweighting  # noqa: E402
 
 HEIGHT, WIDTH = 20, 24
 TILES = np.kron([[0, 1], [1, 0]], np.ones((HEIGHT // 2, WIDTH // 2)))[:, :, None]  # albedo: a chessboard
@@ -41,7 +42,13 @@ def noisy_half(seed: int) -> Half:
     return Half(noisy(TRUTH, 0.5), dx, dy, np.clip(noisy(FEATURES, 0.01), 0.0, 1.0))
 
 
+def cropped(half: Half, height: int, width: int) -> Half:
+    return Half(*(getattr(half, field.name)[:height, :width].copy() for field in fields(Half)))
+
+
 FRAME = noisy_half(1), noisy_half(2)
+SMALL = tuple(cropped(half, 10, 12) for half in FRAME)
+ROBUST = [name for name in compare_designs.PUBLISHED if "tuned" not in name]  # what else is tuned is numbers
 
 
 def squared_error(image: np.ndarray) -> float:
@@ -53,23 +60,31 @@ def patches_of(features: np.ndarray, deviation: float = 0.0) -> Patches:
     return Patches(features, np.full_like(features, deviation), weights.reshape(-1, len(OFFSETS)))
 
 
-@pytest.mark.parametrize(("scales", "gain"), [(chapter8.PRINTED, 1.5), (chapter8.TUNED, 1.2)])
+@pytest.mark.parametrize(("scales", "gain"), [(chapter8.PRINTED, 1.3), (chapter8.TUNED, 2.0)])
 def test_chapter_8_has_less_error_than_l1(scales: tuple[chapter8.Scale, ...], gain: float) -> None:
-    l1 = squared_error(poisson.l1(frames.mean_of(FRAME), chapter8.ALPHA_L1))
-    assert squared_error(chapter8.reconstruct(FRAME, scales)) < l1 / gain
+    l1 = squared_error(poisson.l1(frames.mean_of(FRAME), chapter8.ALPHA_L1, Reweighting.L1))
+    assert squared_error(chapter8.reconstruct(FRAME, scales, Reweighting.L1)) < l1 / gain
 
 
 def test_nfor_has_less_error_than_the_noisy_image() -> None:
-    l1 = tuple(poisson.l1(half, chapter8.ALPHA_L1) for half in FRAME)
+    l1 = tuple(poisson.l1(half, chapter8.ALPHA_L1, Reweighting.L1) for half in FRAME)
     noisy = squared_error(frames.mean_of(FRAME).image)
     assert squared_error(nfor.reconstruct(FRAME)) < noisy / 4.0
     assert squared_error(nfor.reconstruct(FRAME, l1)) < noisy / 4.0
 
 
+@pytest.mark.parametrize(("reweighting", "power"), [(Reweighting.L1, 1), (Reweighting.PRINTED, 0)])
+def test_weighted_squares_of_residuals_are_the_norm_or_as_printed_a_constant(reweighting: Reweighting, power: int) -> None:
+    late = 40  # what is added to the residuals is next to nothing
+    weights = poisson.reweighted(FRAME[0], TRUTH, late, 0.2, 0.0, None, reweighting)
+    residual = np.linalg.norm(0.2 * (TRUTH - FRAME[0].image), axis=2)
+    assert weights.pixel * residual**2 == pytest.approx(residual**power, rel=1e-6)
+
+
 def test_frozen_weights_are_a_linear_operator() -> None:
     patches = patches_of(FEATURES)
     a, b = FRAME
-    weights = poisson.reweighted(a, b.image, 0, 0.2, 3.0, patches)
+    weights = poisson.reweighted(a, b.image, 0, 0.2, 3.0, patches, Reweighting.L1)
     mixed = Half(*(2.0 * x - 3.0 * y for x, y in ((a.image, b.image), (a.dx, b.dx), (a.dy, b.dy))), FEATURES)
     of_a, of_b, of_mixed = poisson.solve((a, b, mixed), weights, 0.2, 3.0, patches)
     assert of_mixed == pytest.approx(2.0 * of_a - 3.0 * of_b, abs=1e-8)
@@ -122,26 +137,24 @@ def test_the_normal_matrix_is_that_of_the_rows() -> None:
     assert found == pytest.approx(expected, abs=1e-12)
 
 
-@pytest.mark.parametrize("reconstruct", [chapter8.reconstruct, nfor.reconstruct])
-def test_halves_may_be_swapped(reconstruct: compare_designs.Reconstruct) -> None:
-    assert reconstruct(FRAME[::-1]) == pytest.approx(reconstruct(FRAME), abs=1e-8)
+@pytest.mark.parametrize("design", ["chapter8", "nfor-l1"])
+def test_halves_may_be_swapped(design: str) -> None:
+    reconstruct = compare_designs.PUBLISHED[design][1]
+    assert reconstruct(SMALL[::-1]) == pytest.approx(reconstruct(SMALL), abs=1e-8)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (2, 3)])
-@pytest.mark.parametrize("design", compare_designs.PUBLISHED)
+@pytest.mark.parametrize("design", ROBUST)
 def test_images_smaller_than_a_patch(design: str, shape: tuple[int, int]) -> None:
-    frame = tuple(
-        Half(*(getattr(half, name)[: shape[0], : shape[1]].copy() for name in ("image", "dx", "dy", "features"))) for half in FRAME
-    )
+    frame = tuple(cropped(half, *shape) for half in FRAME)
     assert np.isfinite(compare_designs.PUBLISHED[design][1](frame)).all()
 
 
-@pytest.mark.parametrize("value", [np.nan, -np.inf, 1e30])
-@pytest.mark.parametrize("design", compare_designs.PUBLISHED)
-def test_bad_pixels_stay_finite(design: str, value: float) -> None:
-    bad = replace(FRAME[0], **{name: getattr(FRAME[0], name).copy() for name in ("image", "dx", "dy", "features")})
+@pytest.mark.parametrize("design", ROBUST)
+def test_bad_pixels_stay_finite(design: str) -> None:
+    bad = cropped(FRAME[0], HEIGHT, WIDTH)
     for plane in (bad.image, bad.dx, bad.dy, bad.features):
-        plane[3, 4] = value
+        plane[3, 4:7] = np.array([[np.nan], [-np.inf], [1e30]])
     image = compare_designs.PUBLISHED[design][1]((frames.tidied(bad), FRAME[1]))
     assert np.isfinite(image).all()
     assert np.abs(image).max() < 2.0 * frames.LARGEST
@@ -150,10 +163,10 @@ def test_bad_pixels_stay_finite(design: str, value: float) -> None:
 
 
 @pytest.mark.parametrize("features", [0.0, 0.5])
-def test_features_that_say_nothing(features: float) -> None:
-    frame = tuple(replace(half, features=np.full_like(half.features, features)) for half in FRAME)
-    for _, reconstruct in compare_designs.PUBLISHED.values():
-        assert np.isfinite(reconstruct(frame)).all()
+@pytest.mark.parametrize("design", ROBUST)
+def test_features_that_say_nothing(design: str, features: float) -> None:
+    frame = tuple(replace(half, features=np.full_like(half.features, features)) for half in SMALL)
+    assert np.isfinite(compare_designs.PUBLISHED[design][1](frame)).all()
 
 
 def stored_planes() -> dict[str, np.ndarray]:

@@ -21,6 +21,7 @@ import numpy as np
 import solve
 from designs import chapter8, nfor, poisson
 from designs.frames import Frame, frame_of, mean_of, planes_of
+from designs.poisson import Reweighting
 from metrics import rel_mse
 from references import reference
 from renderers import RefusedError, Renderers
@@ -35,19 +36,32 @@ SEED = 1
 
 Reconstruct = Callable[[Frame], np.ndarray]
 PRODUCT = {"none": "noisy image", "l1": "Gradus L1", "weighted": "Gradus WEIGHTED", "regularized": "**Gradus REGULARIZED**"}
+
+
+def _l1(reweighting: Reweighting) -> Reconstruct:
+    return lambda frame: poisson.l1(mean_of(frame), chapter8.ALPHA_L1, reweighting)
+
+
+def _chapter8(scales: tuple[chapter8.Scale, ...], reweighting: Reweighting) -> Reconstruct:
+    return lambda frame: chapter8.reconstruct(frame, scales, reweighting)
+
+
+def _nfor_with_l1(frame: Frame) -> np.ndarray:
+    a, b = (poisson.l1(half, chapter8.ALPHA_L1, Reweighting.L1) for half in frame)
+    return nfor.reconstruct(frame, (a, b))
+
+
 PUBLISHED: dict[str, tuple[str, Reconstruct]] = {
-    "l1-thesis": ("L1 of the thesis, α 0.2", lambda frame: poisson.l1(mean_of(frame), chapter8.ALPHA_L1)),
-    "chapter8": ("chapter 8 as printed", chapter8.reconstruct),
-    "chapter8-tuned": ("chapter 8, tuned", lambda frame: chapter8.reconstruct(frame, chapter8.TUNED)),
+    "l1-thesis": ("L1 of the thesis, α 0.2", _l1(Reweighting.L1)),
+    "l1-thesis-printed": ("the same, W as printed", _l1(Reweighting.PRINTED)),
+    "chapter8": ("chapter 8, α and β as printed", _chapter8(chapter8.PRINTED, Reweighting.L1)),
+    "chapter8-printed": ("the same, W as printed", _chapter8(chapter8.PRINTED, Reweighting.PRINTED)),
+    "chapter8-tuned": ("chapter 8, tuned", _chapter8(chapter8.TUNED, Reweighting.L1)),
+    "chapter8-tuned-printed": ("the same, W as printed", _chapter8(chapter8.TUNED, Reweighting.PRINTED)),
     "nfor": ("NFOR", nfor.reconstruct),
-    "nfor-l1": ("NFOR, L1 of the other half as a feature", lambda frame: nfor.reconstruct(frame, _l1_of_halves(frame))),
+    "nfor-l1": ("NFOR, L1 of the other half as a feature", _nfor_with_l1),
 }
 LABELS = PRODUCT | {name: label for name, (label, _) in PUBLISHED.items()}
-
-
-def _l1_of_halves(frame: Frame) -> tuple[np.ndarray, np.ndarray]:
-    a, b = (poisson.l1(half, chapter8.ALPHA_L1) for half in frame)
-    return a, b
 
 
 def by_product(path: Path, mode: str) -> np.ndarray:

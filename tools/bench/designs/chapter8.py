@@ -6,12 +6,14 @@ Names as in its figure 8; what was chosen where it can be read in several ways: 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from . import nlm, poisson
 from .frames import Frame, Half, mean_of
 from .patches import OFFSETS, Patches
+from .poisson import Reweighting
 
 ALPHA_L1 = 0.2
 SMALLEST_ERROR = 1e-9  # ε of equation 15
@@ -27,7 +29,7 @@ class Scale:
 
 
 PRINTED = (Scale(0.25, 5.0, 0.1), Scale(0.25, 17.0, 0.35), Scale(0.1, 19.0, 0.15))
-TUNED = (Scale(0.1, 0.3, 0.35), Scale(0.1, 1.0, 0.35), Scale(0.1, 1.0, 0.1))  # least error of a few dozen on four scenes
+TUNED = (Scale(0.2, 0.3, 0.1), Scale(0.1, 0.3, 0.1), Scale(0.03, 0.3, 0.35))  # on four scenes
 
 
 @dataclass(frozen=True)
@@ -41,16 +43,22 @@ class Guide:
     def of_halves(cls, a: np.ndarray, b: np.ndarray) -> Guide:
         return cls(0.5 * (a + b), nlm.variance_of_mean(a, b))
 
+    @cached_property
+    def tolerance(self) -> np.ndarray:
+        """V_j = max(10⁻³, Var_j, ‖∇_j‖²)."""
+        slopes = sum((np.gradient(self.values, axis=axis) ** 2 for axis in (0, 1) if self.values.shape[axis] > 1), np.float64(0.0))
+        return np.maximum(np.maximum(1e-3, self.variance), slopes)
 
-def reconstruct(frame: Frame, scales: tuple[Scale, ...] = PRINTED) -> np.ndarray:
+
+def reconstruct(frame: Frame, scales: tuple[Scale, ...], reweighting: Reweighting) -> np.ndarray:
     """RECONSTRUCT of figure 8."""
     frame = with_features(frame, filtered_features(frame))
     features = Guide.of_halves(frame[0].features, frame[1].features)
-    colour = Guide.of_halves(*(poisson.l1(half, ALPHA_L1) for half in frame))
+    colour = Guide.of_halves(*(poisson.l1(half, ALPHA_L1, reweighting) for half in frame))
     images, spreads = [], []
     for scale in scales:
         patches = Patches(features.values, np.sqrt(features.variance), patch_weights(colour, scale.k_c))
-        halves = post_filtered(poisson.regularized(frame, scale.alpha, scale.beta, patches), features)
+        halves = post_filtered(poisson.regularized(frame, scale.alpha, scale.beta, patches, reweighting), features)
         images.append(0.5 * (halves[0] + halves[1]))
         spreads.append(0.25 * (halves[0] - halves[1]) ** 2)
     return combined(images, estimated_errors(images, spreads, mean_of(frame).image, colour))
@@ -74,13 +82,7 @@ def colour_weight(guide: Guide, offset: tuple[int, int], k_c: float) -> np.ndarr
 
 def feature_distance(guide: Guide, offset: tuple[int, int], radius: int) -> np.ndarray:
     """Per channel, k_f = 1: never stricter than the features' own slopes."""
-    return nlm.distance(guide.values, guide.variance, offset, 1.0, radius, tolerance(guide))
-
-
-def tolerance(guide: Guide) -> np.ndarray:
-    """V_j = max(10⁻³, Var_j, ‖∇_j‖²)."""
-    slopes = sum((np.gradient(guide.values, axis=axis) ** 2 for axis in (0, 1) if guide.values.shape[axis] > 1), np.float64(0.0))
-    return np.maximum(np.maximum(1e-3, guide.variance), slopes)
+    return nlm.distance(guide.values, guide.variance, offset, 1.0, radius, guide.tolerance)
 
 
 def patch_weights(colour: Guide, k_c: float) -> np.ndarray:

@@ -50,6 +50,8 @@ def pair_weights(guide: np.ndarray, variance: np.ndarray, k: float) -> np.ndarra
     """(pixels of the window, height, width)."""
 
     def at(offset: tuple[int, int]) -> np.ndarray:
+        if not nlm.reached(guide.shape, *offset):
+            return np.zeros(guide.shape[:2])
         distance = nlm.distance(guide, variance, offset, k, 3).mean(axis=2, keepdims=True)
         return (nlm.weight(distance) * nlm.inside(guide.shape, *offset))[:, :, 0]
 

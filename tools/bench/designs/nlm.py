@@ -20,9 +20,7 @@ def window(radius: int) -> Iterator[tuple[int, int]]:
 def shifted(image: np.ndarray, dy: int, dx: int) -> np.ndarray:
     """The image at p + (dy, dx), the border's pixel where that is outside."""
     height, width = image.shape[:2]
-    rows = np.clip(np.arange(height) + dy, 0, height - 1)
-    columns = np.clip(np.arange(width) + dx, 0, width - 1)
-    return image[rows[:, None], columns]
+    return image.take(np.arange(height) + dy, axis=0, mode="clip").take(np.arange(width) + dx, axis=1, mode="clip")
 
 
 def inside(shape: tuple[int, ...], dy: int, dx: int) -> np.ndarray:
@@ -30,6 +28,11 @@ def inside(shape: tuple[int, ...], dy: int, dx: int) -> np.ndarray:
     height, width = shape[:2]
     rows, columns = np.arange(height) + dy, np.arange(width) + dx
     return (((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width)))[:, :, None].astype(float)
+
+
+def reached(shape: tuple[int, ...], dy: int, dx: int) -> bool:
+    """Whether p + (dy, dx) is in the image for any p."""
+    return abs(dy) < shape[0] and abs(dx) < shape[1]
 
 
 def box(image: np.ndarray, radius: int) -> np.ndarray:
@@ -62,6 +65,8 @@ def average(image: np.ndarray, radius: int, weight_at: WeightAt) -> np.ndarray:
     """Weighted mean over a window."""
     total, weights = np.zeros_like(image), 0.0
     for offset in window(radius):
+        if not reached(image.shape, *offset):
+            continue
         w = weight_at(offset) * inside(image.shape, *offset)
         total += w * shifted(image, *offset)
         weights = weights + w

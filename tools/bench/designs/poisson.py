@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
@@ -18,6 +19,13 @@ from .patches import OFFSETS, Patches
 
 REWEIGHTINGS = 5
 REWEIGHTINGS_L1 = 20  # as G-PT's code has it; the thesis does not say
+
+
+class Reweighting(Enum):
+    """What line 14 of figure 4 gives, 1/‖e‖; the value is its power in AᵀW²A."""
+
+    PRINTED = 2  # W: a row says the same at any residual, which is no L1 norm
+    L1 = 1  # W², as in the authors' released solver
 
 
 @dataclass(frozen=True)
@@ -96,38 +104,42 @@ def equal_weights(half: Half, patches: Patches | None) -> Weights:
     return Weights(ones, ones, ones, None if patches is None else np.ones((ones.size, len(OFFSETS))))
 
 
-def reweighted(half: Half, image: np.ndarray, step: int, alpha: float, beta: float, patches: Patches | None) -> Weights:
-    """W of figure 4, lines 11 to 16: 1/(‖e‖ + 0.05 · 0.5^(k−1)), ‖e‖ over the channels.
+def reweighted(
+    half: Half, image: np.ndarray, step: int, alpha: float, beta: float, patches: Patches | None, reweighting: Reweighting
+) -> Weights:
+    """Lines 11 to 16 of figure 4: 1/(‖e‖ + 0.05 · 0.5^(k−1)), ‖e‖ over the channels.
 
     Rows of pixels are reweighted without patches only. With patches they stay 1 where the others have a mean of 1: set to 1 before W is
     scaled to a mean of 1, as lines 15 and 16 have it, the scale would not matter, and α would depend on the unit of light.
     """
+
+    power = reweighting.value
 
     def inverse(residual: np.ndarray) -> np.ndarray:
         return 1.0 / (np.linalg.norm(residual, axis=2) + 0.05 * 0.5**step)
 
     dx, dy = (inverse(own - sampled) for own, sampled in zip(differences(image), (half.dx, half.dy), strict=True))
     if patches is None:
-        return Weights(inverse(alpha * (image - half.image)) ** 2, dx**2, dy**2, None)
+        return Weights(inverse(alpha * (image - half.image)) ** power, dx**power, dy**power, None)
     patch = inverse(beta * patches.residuals(image))
     mean = np.concatenate([w.ravel() for w in (dx, dy, patch)]).mean()
-    return Weights(np.ones_like(dx), (dx / mean) ** 2, (dy / mean) ** 2, (patch / mean) ** 2)
+    return Weights(np.ones_like(dx), (dx / mean) ** power, (dy / mean) ** power, (patch / mean) ** power)
 
 
-def l1(half: Half, alpha: float) -> np.ndarray:
+def l1(half: Half, alpha: float, reweighting: Reweighting) -> np.ndarray:
     """The usual reconstruction, pixels' rows reweighted as well."""
     weights = equal_weights(half, None)
     for step in range(REWEIGHTINGS_L1):
         (image,) = solve((half,), weights, alpha)
-        weights = reweighted(half, image, min(step, REWEIGHTINGS - 1), alpha, 0.0, None)
+        weights = reweighted(half, image, min(step, REWEIGHTINGS - 1), alpha, 0.0, None, reweighting)
     return image
 
 
-def regularized(frame: Frame, alpha: float, beta: float, patches: Patches) -> list[np.ndarray]:
+def regularized(frame: Frame, alpha: float, beta: float, patches: Patches, reweighting: Reweighting) -> list[np.ndarray]:
     """POISSONREGULARIZED (figure 4): both halves by the weights of their mean."""
     weights = equal_weights(frame[0], patches)
     mean = mean_of(frame)
     for step in range(REWEIGHTINGS):
         first, second = solve(frame, weights, alpha, beta, patches)
-        weights = reweighted(mean, 0.5 * (first + second), step, alpha, beta, patches)
+        weights = reweighted(mean, 0.5 * (first + second), step, alpha, beta, patches, reweighting)
     return [first, second]
