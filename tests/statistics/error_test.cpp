@@ -6,8 +6,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "frame/pass_planes.h"
 #include "reconstruct/reconstruct_frame.h"
 #include "settings/options.h"
+#include "settings/pass_table.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
@@ -23,6 +25,7 @@ Frame render(const IntegratorContext& scene, bool gradients, uint32_t seed, uint
   context.settings.seed = seed;
   Frame frame = test::make_test_frame(context.settings, gradients);
   frame.settings = context.settings;
+  frame.passes = make_pass_planes(feature_passes(), kPixels);
   test::sample_frame(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &frame);
   return frame;
 }
@@ -80,6 +83,19 @@ Parts compare(const std::vector<Reconstructed>& results, const Reference& refere
   return parts;
 }
 
+struct Kind {
+  uint32_t reconstruction;
+  bool gradients = true;
+  double most = 1.3, least_of_better_half = 0.5;
+};
+
+// REGULARIZED's allows for what its weights hide of the noise of rare bright samples (reconstruct/regression_error.cpp), of which these
+// rooms have few.
+constexpr Kind kKinds[] = {{GRADUS_RECONSTRUCTION_NONE},
+                           {GRADUS_RECONSTRUCTION_L2},
+                           {GRADUS_RECONSTRUCTION_WEIGHTED},
+                           {GRADUS_RECONSTRUCTION_REGULARIZED, false, 2.0, 0.4}};
+
 class A8_Error : public testing::TestWithParam<Scenario> {};
 
 // An estimate that is the same everywhere is right for the picture, but for no part of it. In the better half windows reach over the edges
@@ -94,11 +110,11 @@ TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
   const IntegratorContext context = scene.context(settings);
   const Reference reference = make_reference(context);
   const size_t seeds = test::full_run() ? 64 : 16;
-  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED}) {
+  for (const auto [reconstruction, gradients, most, least_of_better_half] : kKinds) {
     std::vector<Reconstructed> results(seeds);
     tbb::parallel_for(size_t{0}, seeds, [&](size_t k) {
       SolveReport report;
-      const Frame frame = render(context, true, uint32_t(k), 16);
+      const Frame frame = render(context, gradients, uint32_t(k), 16);
       results[k] = reconstruct_frame(
           frame, reconstruction, 0.0f, true, [] { return false; }, &report);
     });
@@ -106,11 +122,11 @@ TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
     const std::string name = choice_name(*find_option("reconstruction"), reconstruction);
     std::printf("  %s %.3f, better half %.3f, worst tenth %.3f\n", name.c_str(), all.ratio(), better_half.ratio(), worst_tenth.ratio());
     EXPECT_GT(all.ratio(), 0.7) << name;
-    EXPECT_LT(all.ratio(), 1.3) << name;
-    EXPECT_GT(better_half.ratio(), 0.5) << name;
+    EXPECT_LT(all.ratio(), most) << name;
+    EXPECT_GT(better_half.ratio(), least_of_better_half) << name;
     EXPECT_LT(better_half.estimated, 2.0 * better_half.actual + 0.1 * all.actual) << name;
     EXPECT_GT(worst_tenth.ratio(), 0.5) << name;
-    EXPECT_LT(worst_tenth.ratio(), 2.0) << name;
+    EXPECT_LT(worst_tenth.ratio(), std::max(2.0, 1.1 * most)) << name;
   }
 }
 

@@ -6,6 +6,8 @@
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
+#include "reconstruct/light_around.h"
+#include "reconstruct/regression_error.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/twicing.h"
 
@@ -31,26 +33,6 @@ constexpr int kLightRadius = 3;
 constexpr int kShareRadius = 4, kShareLightRadius = 2;
 // Side of squares that share a bound on outliers.
 constexpr int kSquare = 16;
-
-float mean_of_squares(const Field& field, int x, int y) {
-  float sum = 0.0f;
-  for (int c = 0; c < field.channels(); ++c) sum += field.row(y, c)[x] * field.row(y, c)[x];
-  return sum / static_cast<float>(field.channels());
-}
-
-float mean_of(const Field& field, int x, int y) {
-  float sum = 0.0f;
-  for (int c = 0; c < field.channels(); ++c) sum += field.row(y, c)[x];
-  return sum / static_cast<float>(field.channels());
-}
-
-// A field of one channel from function(x, y).
-template <class Function>
-Field make_field(int width, int height, const Function& function) {
-  Field field(width, height, 1);
-  for_values(&field, [&](float& value, int x, int y, int) { value = function(x, y); });
-  return field;
-}
 
 // Of pixels: their weights in windows, and 1/variance.
 struct PixelWeights {
@@ -109,12 +91,9 @@ Field albedo_of(const Features& features) {
 
 // 1/light² around each pixel, so that residuals count by their share of it.
 Field weigh_by_light(const Field& image, int radius) {
-  const int w = image.width(), h = image.height();
-  const Field light = box_mean(make_field(w, h, [&](int x, int y) { return std::max(mean_of(image, x, y), 0.0f); }), radius);
-  return make_field(w, h, [&](int x, int y) {
-    const float level = light.row(y)[x] + kShareOfLight;
-    return 1.0f / (level * level);
-  });
+  Field light = squared_light(image, radius);
+  for_values(&light, [](float& value, int, int, int) { value = 1.0f / value; });
+  return light;
 }
 
 Field difference(const Field& a, const Field& b) {
@@ -168,7 +147,7 @@ void blend(const Field& share, const Field& b, Field* a) {
   for_values(a, [&](float& value, int x, int y, int c) { value = b.row(y, c)[x] + share.row(y)[x] * (value - b.row(y, c)[x]); });
 }
 
-// The same of squared biases: large windows have that of the small ones and more. Both are estimated too high, which the lesser is less.
+// The same of squared biases: large windows have that of the small ones and more.
 void blend_bias(const Field& share, const Field& coarse, Field* fine) {
   for_values(fine, [&](float& value, int x, int y, int) {
     const float of_coarse = 1.0f - share.row(y)[x], more = std::max(coarse.row(y)[x] - value, 0.0f);
@@ -199,20 +178,23 @@ FeatureRegression::FeatureRegression(const Features& features, const HalvedImage
     blend(share_, coarse.noise, &first.noise);
     blend_bias(share_, coarse.bias, &first.bias);
   }
-  const Field by_light = weigh_by_light(first.mean, kLightRadius);
-  Field residual = difference(image.mean, first.mean), of_noise = difference(image.half_difference, first.noise);
+  add_residual(features, image, predictors->weights, &first, cancel);
+  error_ = regression_error({image.mean, image.half_difference, first.mean, first.noise}, first.bias);
+  image_ = std::move(first.mean);
+}
+
+void FeatureRegression::add_residual(const Features& features, const HalvedImage& image, const Field& by_noise, RegressionResult* first,
+                                     const CancelTest& cancel) {
+  const Field by_light = weigh_by_light(first->mean, kLightRadius);
+  Field residual = difference(image.mean, first->mean), of_noise = difference(image.half_difference, first->noise);
   kept_ = limit_outliers(residual, by_light);
   scale_by(kept_, &residual);
   scale_by(kept_, &of_noise);
-  of_residual_ = LocalRegression(
-      std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, predictors->weights)}), {}, kOfResidual);
+  of_residual_ = LocalRegression(std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, by_noise)}),
+                                 {}, kOfResidual);
   const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
-  image_ = std::move(first.mean);
-  add(second.mean, &image_);
-  Field noise = std::move(first.noise);
-  add(second.noise, &noise);
-  error_ = box_mean(make_field(noise.width(), noise.height(), [&](int x, int y) { return mean_of_squares(noise, x, y); }), kLightRadius);
-  add(first.bias, &error_);
+  add(second.mean, &first->mean);
+  add(second.noise, &first->noise);
 }
 
 Field FeatureRegression::apply(const Field& values, const CancelTest& cancel) const {

@@ -25,6 +25,10 @@ class FeatureRegression {
   Field apply(const Field& values, const CancelTest& cancel) const;
 
  private:
+  // The second step: `first` becomes the mean and the noise of both.
+  void add_residual(const Features& features, const HalvedImage& image, const Field& by_noise, RegressionResult* first,
+                    const CancelTest& cancel);
+
   LocalRegression fine_, coarse_, of_residual_;
   Field share_;  // of each pixel that the fine windows have
   Field kept_;   // share of each pixel's residual that is given back: outliers are limited

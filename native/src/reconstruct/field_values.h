@@ -17,4 +17,24 @@ void for_values(Field* field, const Function& function) {
   });
 }
 
+// Over the channels of a pixel.
+inline float mean_of(const Field& field, int x, int y) {
+  float sum = 0.0f;
+  for (int c = 0; c < field.channels(); ++c) sum += field.row(y, c)[x];
+  return sum / static_cast<float>(field.channels());
+}
+inline float mean_of_squares(const Field& field, int x, int y) {
+  float sum = 0.0f;
+  for (int c = 0; c < field.channels(); ++c) sum += field.row(y, c)[x] * field.row(y, c)[x];
+  return sum / static_cast<float>(field.channels());
+}
+
+// One channel from function(x, y).
+template <class Function>
+Field make_field(int width, int height, const Function& function) {
+  Field field(width, height, 1);
+  for_values(&field, [&](float& value, int x, int y, int) { value = function(x, y); });
+  return field;
+}
+
 }  // namespace gradus

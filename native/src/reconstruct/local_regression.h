@@ -39,7 +39,7 @@ struct RegressionSettings {
 struct RegressionResult {
   Field mean;   // x, three channels
   Field noise;  // what the same operator makes of half the difference of the halves: its square estimates the variance of x
-  Field bias;   // estimated squared bias, mean over the channels; one channel
+  Field bias;   // estimated squared bias, mean over the channels; one channel; where noise hides it, as often below 0 as above
 };
 
 // What the image is taken to follow, and by how much each pixel counts: several regressions can share it.

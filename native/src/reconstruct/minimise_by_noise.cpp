@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "reconstruct/field_values.h"
 #include "reconstruct/rows.h"
 
 namespace gradus {
@@ -16,7 +17,7 @@ constexpr float kBeside = 0.36f;
 // Most that a neighbour lends to the mean, times what is usual around it. 3 to 8 give the same error; without, it is a tenth more
 // (docs/method.md).
 constexpr float kMostLent = 4.0f;
-// Weight of pixels against differences where nobody knows their noise: as of the L2 solver.
+// Deviation of differences over that of pixels where nobody knows their noise: as of the L2 solver.
 constexpr float kUnknownAlpha = 0.4f;
 
 // No row of the image is off by more than a hundredth of its noise, root mean square: 5 to 12 steps. The residual says nothing: beside a
@@ -70,34 +71,38 @@ class BlurredDeviation {
 // by this share of its pixel's noise, which loses nothing: it takes the mean of a million pixels to bring theirs down to it.
 constexpr float kLeastShare = 1e-3f;
 
-void limit_weights(const float* data, int width, float* weights) {
-  for (int x = 0; x < width; ++x) {
-    if (data[x] > 0.0f) weights[x] /= 1.0f + kLeastShare * kLeastShare * weights[x] / data[x];
-  }
+void weigh_rows(const std::vector<float>& deviations, const std::vector<float>& values, const GradientImages& images, float scale,
+                float unknown, Field* weights) {
+  const int w = images.width, stride = images.channels, shared = std::min(images.channels, 3);
+  const BlurredDeviation deviation(deviations, w, images.height);
+  for_rows(images.height, [&](int y) {
+    float* row = weights->row(y);
+    deviation.read_row(y, row);
+    const float* value = values.data() + size_t(y) * w * stride;
+    for (int x = 0; x < w; ++x, value += stride) {
+      const float s = row[x] < 0.0f ? unknown : row[x] / scale;
+      row[x] = is_complete(value, shared) ? 1.0f / (s * s + kFloor * kFloor) : 0.0f;
+    }
+  });
 }
 
 }  // namespace
 
-void weigh_by_noise(const GradientImages& images, float scale, Field* data, Stencil* matrix) {
-  const int w = images.width, h = images.height, stride = images.channels, shared = std::min(images.channels, 3);
-  const auto fill = [&](const std::vector<float>& deviations, const std::vector<float>& values, float unknown, Field* weights) {
-    const BlurredDeviation deviation(deviations, w, h);
-    for_rows(h, [&](int y) {
-      float* row = weights->row(y);
-      deviation.read_row(y, row);
-      const float* value = values.data() + size_t(y) * w * stride;
-      for (int x = 0; x < w; ++x, value += stride) {
-        const float s = row[x] < 0.0f ? unknown : row[x] / scale;
-        row[x] = is_complete(value, shared) ? 1.0f / (s * s + kFloor * kFloor) : 0.0f;
-      }
+void weigh_pixels_by_noise(const GradientImages& images, float scale, float unknown, Field* data) {
+  weigh_rows(images.primal_deviation, images.primal, images, scale, unknown, data);
+}
+
+void weigh_differences_by_noise(const GradientImages& images, float scale, float unknown, Stencil* matrix) {
+  weigh_rows(images.dx_deviation, images.dx, images, scale, kUnknownAlpha * unknown, &matrix->right);
+  weigh_rows(images.dy_deviation, images.dy, images, scale, kUnknownAlpha * unknown, &matrix->up);
+}
+
+void limit_differences(const Field& data, Stencil* matrix) {
+  for (Field* weights : {&matrix->right, &matrix->up}) {
+    for_values(weights, [&](float& value, int x, int y, int) {
+      if (data.row(y)[x] > 0.0f) value /= 1.0f + kLeastShare * kLeastShare * value / data.row(y)[x];
     });
-  };
-  fill(images.primal_deviation, images.primal, 1.0f, data);
-  fill(images.dx_deviation, images.dx, kUnknownAlpha, &matrix->right);
-  fill(images.dy_deviation, images.dy, kUnknownAlpha, &matrix->up);
-  for_rows(h, [&](int y) {
-    for (Field* weights : {&matrix->right, &matrix->up}) limit_weights(data->row(y), w, weights->row(y));
-  });
+  }
 }
 
 void solve_by_noise(const SolverPlanes& planes, const CancelTest& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report) {
@@ -112,7 +117,10 @@ Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel
   const SolverPlanes planes = load_planes(interleaved, images.width, images.height, channels);
   Minimum result{WeightedLeastSquares(images.width, images.height, channels),
                  start_from_l2(interleaved, images.width, images.height, channels, kUnknownAlpha)};
-  weigh_by_noise(images, robust_scale(planes.primal), &result.system.data_weights(), &result.system.matrix());
+  const float scale = robust_scale(planes.primal);
+  weigh_pixels_by_noise(images, scale, 1.0f, &result.system.data_weights());
+  weigh_differences_by_noise(images, scale, 1.0f, &result.system.matrix());
+  limit_differences(result.system.data_weights(), &result.system.matrix());
   result.system.update();
   solve_by_noise(planes, cancel, &result.system, &result.solution, report);
   return result;

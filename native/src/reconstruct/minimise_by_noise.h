@@ -9,11 +9,15 @@ namespace gradus {
 // Estimates the weights from the deviations of `images` (read_deviations()) and freezes them.
 Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel, SolveReport* report);
 
-// Weights scale²/(s² + floor²). s of a row: the mean over the 3×3 rows around it of the deviations that the two halves show, the row's own
-// with 1/3 of all weight; what neighbours lend is limited, so that outliers stay alone. A wider window measures better, but leaves outliers
-// in, which the own deviation finds out: of 0.5 to 4 pixels this gives the least error (docs/method.md). A row that is missing has weight
-// 0; one whose noise is unknown, that of `unknown`.
-void weigh_by_noise(const GradientImages& images, float scale, Field* data, Stencil* matrix);
+// Weights scale²/(s² + floor²) of pixels and of differences. s of a row: the mean over the 3×3 rows around it of the deviations that the
+// two halves show, the row's own with 1/3 of all weight; what neighbours lend is limited, so that outliers stay alone. A wider window
+// measures better, but leaves outliers in, which the own deviation finds out: of 0.5 to 4 pixels this gives the least error
+// (docs/method.md). A row that is missing has weight 0. unknown: deviation of pixels whose noise is not known, in units of the scale.
+void weigh_pixels_by_noise(const GradientImages& images, float scale, float unknown, Field* data);
+void weigh_differences_by_noise(const GradientImages& images, float scale, float unknown, Stencil* matrix);
+
+// Of differences that are known far better than their pixels, so that the system stays one that can be solved.
+void limit_differences(const Field& data, Stencil* matrix);
 
 // Solves with such weights, from x on, as exactly as the noise asks for.
 void solve_by_noise(const SolverPlanes& planes, const CancelTest& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report);

@@ -232,8 +232,8 @@ class Tile {
         noise += noises[c];
       }
       const Lanes unit = weight > zero ? 1.0f / (float(kChannels) * weight) : zero;
-      bias = residual > zero ? unit * residual : zero;
-      const Lanes error = bias + (noise > zero ? unit * noise : zero) + task_.settings->floor;
+      bias = unit * residual;
+      const Lanes error = (bias > zero ? bias : zero) + (noise > zero ? unit * noise : zero) + task_.settings->floor;
       eta = weight > zero ? (size == kSmall ? 0.25f : 0.0625f) / (float(task_.settings->lattices) * error) : zero;
       keep_confidence(m, size, x, eta);
     } else {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "reconstruct/box_mean.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
@@ -16,11 +17,25 @@ namespace {
 
 // Errors of the regression are alike in pixels that lie close together, so it counts for less than as many independent pixels.
 constexpr float kSharedError = 8.0f;
-// Of its differences less is shared.
-constexpr float kSharedDifference = 0.5f;
+// Of its differences nothing is, within windows.
+constexpr float kSharedDifference = 1.0f;
 constexpr float kLeastError = 1e-12f;
 // Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
 constexpr float kMost = 1e12f;
+
+// Where a half has no samples nothing is known of the noise. What differs from the pixels around stands for it: too much where there is
+// detail, and hardly too little elsewhere.
+void guess_noise(const Frame& frame, HalvedImage* image) {
+  const auto known = [&frame](size_t pixel) { return frame.count[0][pixel] > 0 && frame.count[1][pixel] > 0; };
+  const size_t w = size_t(image->mean.width()), pixels = w * size_t(image->mean.height());
+  bool all = true;
+  for (size_t i = 0; i < pixels && all; ++i) all = known(i);
+  if (all) return;
+  const Field around = box_mean(image->mean, 1);
+  for_values(&image->half_difference, [&](float& value, int x, int y, int c) {
+    if (!known(size_t(y) * w + size_t(x))) value = image->mean.row(y, c)[x] - around.row(y, c)[x];
+  });
+}
 
 // The mean and half the difference of the halves, in units of the image; what is not finite is 0.
 HalvedImage read_halves(const Frame& frame, int component) {
@@ -33,18 +48,26 @@ HalvedImage read_halves(const Frame& frame, int component) {
       read_primal_row(frame, component, {0, 1}, y, a.data());
       read_primal_row(frame, component, {1, 2}, y, b.data());
       for (int x = 0; x < w; ++x) {
-        const size_t pixel = size_t(y) * size_t(w) + size_t(x);
-        const bool known = frame.count[0][pixel] > 0 && frame.count[1][pixel] > 0;
         for (int c = 0; c < 3; ++c) {
           const size_t i = size_t(x) * size_t(channels) + size_t(c);
-          const float value = is_finite(mean[i]) ? mean[i] : 0.0f, half = known ? 0.5f * (a[i] - b[i]) : value;
+          const float value = is_finite(mean[i]) ? mean[i] : 0.0f, half = 0.5f * (a[i] - b[i]);
           image.mean.row(y, c)[x] = value;
           image.half_difference.row(y, c)[x] = is_finite(half) ? half : value;
         }
       }
     }
   });
+  guess_noise(frame, &image);
   return image;
+}
+
+// Mean deviation of the pixels.
+float typical_noise(const HalvedImage& image) {
+  double sum = 0.0;
+  for (int y = 0; y < image.mean.height(); ++y) {
+    for (int x = 0; x < image.mean.width(); ++x) sum += std::sqrt(mean_of_squares(image.half_difference, x, y));
+  }
+  return float(sum / (double(image.mean.width()) * image.mean.height()));
 }
 
 // Into units of the median luminance, within bounds.
@@ -80,12 +103,13 @@ Field regress(const Frame& frame, int component, const FeatureRegression& regres
 }
 
 // Mean of two estimates of a difference, by their weights: the regression's takes the place of a sampled one that is absent.
-void blend_differences(const Field& image, const Field& weight, int step_x, int step_y, Field* sampled, Field* weights) {
+void blend_differences(const Field& image, const Field& error, int step_x, int step_y, Field* sampled, Field* weights) {
   const int w = image.width(), h = image.height();
   for_rows(h, [&](int y) {
     if (y + step_y >= h) return;
     for (int x = 0; x + step_x < w; ++x) {
-      const float own = weight.row(y)[x], total = own + weights->row(y)[x], share = own / total;
+      const float both = error.row(y)[x] + error.row(y + step_y)[x + step_x];
+      const float own = 1.0f / (0.5f * kSharedDifference * both + kLeastError), total = own + weights->row(y)[x], share = own / total;
       for (int c = 0; c < image.channels(); ++c) {
         const float difference = image.row(y + step_y, c)[x + step_x] - image.row(y, c)[x];
         float& value = sampled->row(y, c)[x];
@@ -98,24 +122,20 @@ void blend_differences(const Field& image, const Field& weight, int step_x, int 
 
 // The regression as the data of a least squares problem whose differences are those sampled and the regression's own, by their errors. All
 // channels go through the same weights, which are those of the colours.
-Field fuse(const GradientImages& images, float scale, Field regressed, const Field& error, const CancelTest& cancel, SolveReport* report) {
+Field fuse(const GradientImages& images, float scale, float unknown, Field regressed, const Field& error, const CancelTest& cancel,
+           SolveReport* report) {
   const int w = images.width, h = images.height, channels = images.channels;
   SolverPlanes planes = load_planes(planes_of(images, 0), w, h, channels);
   multiply(1.0f / scale, &planes.dx);
   multiply(1.0f / scale, &planes.dy);
   planes.primal = regressed;
   WeightedLeastSquares system(w, h, channels);
-  weigh_by_noise(images, scale, &system.data_weights(), &system.matrix());
-  Field of_differences(w, h, 1);
-  for_rows(h, [&](int y) {
-    for (int x = 0; x < w; ++x) {
-      const float squared = error.row(y)[x] + kLeastError;
-      system.data_weights().row(y)[x] = 1.0f / (kSharedError * squared);
-      of_differences.row(y)[x] = 1.0f / (kSharedDifference * squared);
-    }
-  });
-  blend_differences(regressed, of_differences, 1, 0, &planes.dx, &system.matrix().right);
-  blend_differences(regressed, of_differences, 0, 1, &planes.dy, &system.matrix().up);
+  for_values(&system.data_weights(),
+             [&](float& value, int x, int y, int) { value = 1.0f / (kSharedError * error.row(y)[x] + kLeastError); });
+  weigh_differences_by_noise(images, scale, unknown, &system.matrix());
+  limit_differences(system.data_weights(), &system.matrix());
+  blend_differences(regressed, error, 1, 0, &planes.dx, &system.matrix().right);
+  blend_differences(regressed, error, 0, 1, &planes.dy, &system.matrix().up);
   system.update();
   solve_by_noise(planes, cancel, &system, &regressed, report);
   return regressed;
@@ -134,7 +154,7 @@ Reconstructed regularize(const Frame& frame, int component, const CancelTest& ca
   if (frame.gradients) {
     GradientImages images = read_images(frame, component);
     read_deviations(frame, component, &images);
-    solution = fuse(images, scale, std::move(solution), regression.error(), cancel, report);
+    solution = fuse(images, scale, typical_noise(image), std::move(solution), regression.error(), cancel, report);
   }
   multiply(scale, &solution);
   const size_t pixels = size_t(w) * size_t(h), channels = size_t(frame.channels);

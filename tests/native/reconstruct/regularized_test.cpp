@@ -147,7 +147,10 @@ TEST(B2_Regularized, HasTheSameBitsForAnyNumberOfThreads) {
   expect_same_bits_for_any_number_of_threads([&] { return solve(frame); });
 }
 
-// Windows are biased in different ways, of which their mean has less: the estimate is too high where features explain little.
+// By how much the estimate raises what is left of the noise: weights hide some of that of light, whose rare samples are far brighter than
+// the others. That of these frames has none such, and nothing to hide.
+constexpr double kHidden = 1.7;
+
 TEST(B2_Regularized, EstimatesItsError) {
   FeatureFrame description = room(160, 120);
   double estimated = 0.0, actual = 0.0;
@@ -156,8 +159,8 @@ TEST(B2_Regularized, EstimatesItsError) {
     for (const float v : result.error) estimated += v / double(result.error.size());
     actual += std::pow(rms_difference(result.image, description.truth), 2.0);
   }
-  EXPECT_GT(estimated / actual, 0.7);
-  EXPECT_LT(estimated / actual, 1.7);
+  EXPECT_GT(estimated / actual, 1.0);
+  EXPECT_LT(estimated / actual, 1.1 * kHidden);
 }
 
 // Noise that windows cannot take away is in it whole, and so is what no feature explains.
@@ -165,7 +168,7 @@ TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
   for (const float amplitude : {0.0f, 0.5f}) {
     for (const float apart : {1.0f, 2.0f}) {
       const Reconstructed result = solve_with_error(with_common_noise(chequered(1.0f, amplitude), apart));
-      const double expected = apart * apart + amplitude * amplitude;
+      const double expected = kHidden * apart * apart + amplitude * amplitude;
       EXPECT_NEAR(mean(result.error), expected, 0.03 * expected) << amplitude << ", " << apart;
     }
   }
@@ -215,10 +218,11 @@ TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
       if (x % 12 == 0 || x % 12 == 5) beside_edges += value / (kWidth / 6);  // dark, beside bright
     }
   }
-  EXPECT_GT(light, 0.5);
-  EXPECT_LT(light, 1.1);
+  EXPECT_GT(light, 0.55);
+  EXPECT_LT(light, 1.05);
   EXPECT_NEAR(beside_edges, 1.0, 0.25);
-  EXPECT_NEAR(mean(error), squares, 0.05 * squares);
+  EXPECT_GT(mean(error), kHidden * squares);
+  EXPECT_LT(mean(error), 1.25 * kHidden * squares);
 }
 
 TEST(B2_Regularized, DifferencesThatWereNotSampledAreTheRegressions) {
@@ -235,7 +239,7 @@ TEST(B2_Regularized, DifferencesThatWereNotSampledAreTheRegressions) {
 // Sampled differences whose variance is that of the regression's own have as much to say: they bring half of the chequer back.
 TEST(B2_Regularized, DifferencesCountByTheirVariance) {
   FeatureFrame description = chequered(1.0f, 0.5f);
-  const double error = 1.25, variance = 0.5 * error;
+  const double variance = kHidden + 0.25;
   EXPECT_LT(std::abs(amplitude_of(solve(with_common_noise(description, 1.0f)))), 0.05);
   description.gradients = true;
   Frame frame = with_common_noise(description, 1.0f);
@@ -346,8 +350,8 @@ struct Spoiled {
   std::function<float(int x, int y, int channel, int half)> feature;  // in place of the room's
   std::function<void(Frame*)> spoil = [](Frame*) {};
   // Of L2's error, root mean square. Where features say nothing, and uniform differences as much as the pixels, L2 has the right weights
-  // without knowing, and windows are smaller than its reach: 1.15 to 1.18 (WEIGHTED 1.04).
-  double most = 1.2;
+  // without knowing, and windows are smaller than its reach: 1.09 and 1.10 (WEIGHTED 1.04).
+  double most = 1.12;
 };
 
 Spoiled spoiled(const char* name, const std::function<void(Frame*)>& spoil) { return {name, test::room_feature, spoil, 1.01}; }

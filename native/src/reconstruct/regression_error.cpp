@@ -1,0 +1,55 @@
+#include "reconstruct/regression_error.h"
+
+#include <algorithm>
+
+#include "reconstruct/box_mean.h"
+#include "reconstruct/field_values.h"
+#include "reconstruct/light_around.h"
+
+namespace gradus {
+namespace {
+
+// Figures of this file: docs/method.md, "Regression on features".
+// Light that a pixel is taken for is that of 3×3: its own would make errors of dark pixels beside bright ones the smaller the larger they
+// are.
+constexpr int kLightRadius = 1;
+// Squares of noise are averaged, since one says little.
+constexpr int kNoiseRadius = 3;
+// The weights follow the noise, and hide a third of its variance from what they leave of half the difference.
+constexpr float kHidden = 1.7f;
+// Around a pixel, where what went in and what came out should have the same mean; and the share of pixels' squared light that is lost where
+// it differs: rare bright samples lie in few of them.
+constexpr int kLostRadius = 8;
+constexpr float kLost = 0.3f;
+
+// Squared loss of light around each pixel, less what noise makes of it, over the squared light there.
+Field lost_share(const Smoothed& smoothed) {
+  const int w = smoothed.mean.width(), h = smoothed.mean.height();
+  Field terms(w, h, 3);
+  for_values(&terms, [&](float& value, int x, int y, int c) {
+    const float light = std::max(mean_of(smoothed.image, x, y), 0.0f), noise = mean_of(smoothed.half_difference, x, y);
+    value = c == 0 ? mean_of(smoothed.mean, x, y) - mean_of(smoothed.image, x, y) : c == 1 ? noise * noise : light;
+  });
+  terms = box_mean(terms, kLostRadius);
+  constexpr float kPixels = (2 * kLostRadius + 1) * (2 * kLostRadius + 1);
+  return make_field(w, h, [&](int x, int y) {
+    const float lost = terms.row(y, 0)[x], light = terms.row(y, 2)[x] + kDark;
+    return std::max(lost * lost - terms.row(y, 1)[x] / kPixels, 0.0f) / (light * light);
+  });
+}
+
+}  // namespace
+
+Field regression_error(const Smoothed& smoothed, const Field& bias) {
+  const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
+  // As shares of the light: noise of a lamp is not that of the wall beside it.
+  Field error = box_mean(
+      make_field(light.width(), light.height(), [&](int x, int y) { return mean_of_squares(smoothed.noise, x, y) / light.row(y)[x]; }),
+      kNoiseRadius);
+  for_values(&error, [&](float& value, int x, int y, int) {
+    value = light.row(y)[x] * (kHidden * value + kLost * lost.row(y)[x]) + std::max(bias.row(y)[x], 0.0f);
+  });
+  return error;
+}
+
+}  // namespace gradus

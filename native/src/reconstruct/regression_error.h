@@ -1,0 +1,17 @@
+// Estimated squared error of the regression on features: what is left of the noise, the windows' bias, and light that was lost.
+#pragma once
+
+#include "reconstruct/field.h"
+
+namespace gradus {
+
+// Three channels each.
+struct Smoothed {
+  const Field &mean, &half_difference;  // what there was, and half the difference of its halves
+  const Field &image, &noise;           // what became of both
+};
+
+// Mean over the channels, one channel. bias: squared, of windows, as far as their residuals tell; single values may be below 0.
+Field regression_error(const Smoothed& smoothed, const Field& bias);
+
+}  // namespace gradus
