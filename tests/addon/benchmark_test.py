@@ -157,6 +157,14 @@ def test_both_forms_of_the_report_say_the_same() -> None:
     assert "<li>one <b>bold</b></li><li>two <code>a&lt;b</code></li>" in page
 
 
+def test_sentences_in_a_table_wrap() -> None:
+    """They stayed on one line, and squeezed the first column to a word a line."""
+    sentence = "3 of 13; median 0.98, most 2.42 (glass_and_chrome)"
+    page = document.Table(["aim", "found"], [["R ≤ 1", sentence], ["R ≤ 2", "0.98 (0.97–1.01)"]]).as_html()
+    assert f'<td class="long">{sentence}</td>' in page
+    assert "<td>0.98 (0.97–1.01)</td>" in page
+
+
 @pytest.mark.parametrize(
     ("code", "output", "found"),
     [

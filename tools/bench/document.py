@@ -6,6 +6,8 @@ import html
 import re
 from dataclasses import dataclass, field
 
+LONG = 32  # characters of a cell that is text
+
 
 def number(value: float | None, form: str = ".2f") -> str:
     return "–" if value is None else format(value, form)
@@ -40,7 +42,7 @@ class Table:
 
     def as_html(self) -> str:
         head = "".join(f"<th>{inline(c)}</th>" for c in self.columns)
-        body = "\n".join("<tr>" + "".join(f"<td>{inline(c)}</td>" for c in row) + "</tr>" for row in self.rows)
+        body = "\n".join("<tr>" + "".join(map(_cell, row)) + "</tr>" for row in self.rows)
         return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
 
 
@@ -145,6 +147,12 @@ def inline(text: str) -> str:
     text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
     text = re.sub(r"(?<!\w)\*([^*]+)\*", r"<i>\1</i>", text)
     return re.sub(r"\[([^\]]+)\]\(([^)]+)\)", r'<a href="\2">\1</a>', text)
+
+
+def _cell(text: str) -> str:
+    """Numbers stay on one line, sentences do not."""
+    opening = '<td class="long">' if len(text) > LONG else "<td>"
+    return f"{opening}{inline(text)}</td>"
 
 
 def _block(text: str) -> str:

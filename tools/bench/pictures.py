@@ -34,6 +34,7 @@ SIZE, REFERENCE = (320, 180), 512  # samples of the converged image
 SAMPLES = 16
 NOISY = ("path", "cycles")
 RECONSTRUCTED = ("gradient-l2", "gradient-l1", "path-regularized", "auto", "auto-denoised", "cycles-denoised")
+LOSSLESS, NOISE, MAP = 100, 95, 80  # qualities: crops are magnified; noise hides some loss, and without any is most of the bytes
 ERROR, BIAS, DEVIATION = "-error", "-bias", "-deviation"
 
 
@@ -61,8 +62,8 @@ class Studio:
         for mode in filter(self.works, (*NOISY, *RECONSTRUCTED)):
             image = self.renderers.render(mode, SAMPLES, 0)[0]
             errors[mode] = relative_squared_error(image, *self.reference(mode))
-            store(displayed_bytes(image, white), self.scene, mode)
-            store(maps.colored(errors[mode]), self.scene, mode + ERROR, lossless=False)
+            store(displayed_bytes(image, white), self.scene, mode, NOISE if mode in NOISY else LOSSLESS)
+            store(maps.colored(errors[mode]), self.scene, mode + ERROR, MAP)
         crops = choose_crops([errors[mode] for mode in RECONSTRUCTED if mode in errors])
         parts = [(slice(None), slice(None)), *(window(*crop) for crop in crops)]
         return {"crops": crops, "errors": {mode: [float(error[part].mean()) for part in parts] for mode, error in errors.items()}}
@@ -73,8 +74,8 @@ class Studio:
         for mode in filter(self.works, modes):
             spread = behind.render_spread(self.renderers, mode, SAMPLES, self.reference(mode))
             found[mode] = spread.parts()
-            store(maps.colored(spread.bias_map()), self.scene, mode + BIAS, lossless=False)
-            store(maps.colored(spread.variance_map()), self.scene, mode + DEVIATION, lossless=False)
+            store(maps.colored(spread.bias_map()), self.scene, mode + BIAS, MAP)
+            store(maps.colored(spread.variance_map()), self.scene, mode + DEVIATION, MAP)
         return found
 
 
@@ -82,9 +83,8 @@ def displayed_bytes(image: np.ndarray, white: float) -> np.ndarray:
     return (255.0 * displayed(image, white) + 0.5).astype(np.uint8)
 
 
-def store(pixels: np.ndarray, scene: Scene, name: str, lossless: bool = True) -> None:
-    """Pictures without loss, since crops are magnified."""
-    Image.fromarray(pixels).save(FOLDER / file_of(scene.name, name), lossless=lossless, quality=100 if lossless else 80, method=6)
+def store(pixels: np.ndarray, scene: Scene, name: str, quality: int = LOSSLESS) -> None:
+    Image.fromarray(pixels).save(FOLDER / file_of(scene.name, name), lossless=quality == LOSSLESS, quality=quality, method=6)
 
 
 def file_of(scene: str, name: str) -> str:
@@ -120,7 +120,7 @@ def slider(scene: str) -> Slider | None:
     if labels["path"] not in groups["pictures"]:
         return None
     crops = [Crop(x / SIZE[0], y / SIZE[1], SIZE[0] / CROP[0]) for x, y in known.get("crops", [])]
-    caption = f"{SAMPLES} samples per pixel, the reference apart. Crops are where errors of the reconstructions are furthest apart."
+    caption = f"{SAMPLES} samples per pixel, the reference {REFERENCE}. Crops are where errors of the reconstructions are furthest apart."
     groups = {heading: files for heading, files in groups.items() if files}
     shown = labels["path-regularized"] if labels["path-regularized"] in groups["pictures"] else "Reference"
     return Slider(groups, caption, (labels["path"], shown), crops, "error-scale.svg" if "errors" in groups else "")
