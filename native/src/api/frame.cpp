@@ -63,8 +63,14 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
   });
   if (library) {
     if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
-    const std::string failure = denoise_combined(*library, frame, resolve(reconstruction, frame), delivered(frame), threads, never, &image);
-    if (!failure.empty()) object->device->warnings().add(failure);
+    std::string failure;
+    std::vector<float> denoised =
+        denoise_combined(*library, frame, resolve(reconstruction, frame), delivered(frame), threads, never, image, &failure);
+    if (denoised.empty()) {
+      object->device->warnings().add(failure);
+    } else {
+      image = std::move(denoised);
+    }
   }
   std::copy(image.begin(), image.end(), rgba);
   std::copy(estimate.begin(), estimate.end(), error);

@@ -37,8 +37,10 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
   return library;
 }
 
-std::string denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
-                             uint32_t threads, const std::function<bool()>& cancel, std::vector<float>* rgba) {
+namespace {
+
+std::vector<float> denoise_or_throw(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
+                                    uint32_t threads, const std::function<bool()>& cancel, const std::vector<float>& combined) {
   std::vector<float> albedo, normal;
   if (has_features(frame)) {
     tbb::task_arena(arena_size(threads)).execute([&] {
@@ -49,24 +51,37 @@ std::string denoise_combined(const OidnLibrary& library, const Frame& frame, uin
   const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   std::vector<float> noisy;
   if (blends) {
-    noisy.resize(rgba->size());
+    noisy.resize(combined.size());
     read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, region, noisy.data());
   }
-  NoisyPicture picture{region.width(), region.height(), blends ? noisy.data() : rgba->data(), 4};
+  NoisyPicture picture{region.width(), region.height(), blends ? noisy.data() : combined.data(), 4};
   if (!albedo.empty()) picture.albedo = albedo.data();
   if (!normal.empty()) picture.normal = normal.data();
   const float share = blends ? kShareOfNetwork : 1.0f;
+  const std::vector<float> image = denoise(library, picture, threads, cancel);
+  std::vector<float> result = combined;
+  for (size_t i = 0; i < image.size(); ++i) {
+    float& value = result[i / 3 * 4 + i % 3];
+    value += share * (image[i] - value);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<float> denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
+                                    uint32_t threads, const std::function<bool()>& cancel, const std::vector<float>& combined,
+                                    std::string* failure) {
+  const char* const what = "the picture was not denoised: ";
   try {
-    const std::vector<float> image = denoise(library, picture, threads, cancel);
-    for (size_t i = 0; i < image.size(); ++i) {
-      float& value = (*rgba)[i / 3 * 4 + i % 3];
-      value += share * (image[i] - value);
-    }
+    return denoise_or_throw(library, frame, reconstruction, region, threads, cancel, combined);
   } catch (const Error& e) {
     if (e.code() == GRADUS_ERROR_CANCELLED) throw;
-    return std::string("the picture was not denoised: ") + e.what();
+    *failure = std::string(what) + e.what();
+  } catch (const std::bad_alloc&) {
+    *failure = std::string(what) + "out of memory";
   }
-  return "";
+  return {};
 }
 
 }  // namespace gradus

@@ -264,14 +264,14 @@ void RenderLoop::reconstruct_frame() {
 void RenderLoop::denoise_frame() {
   const Bill bill(&stats_.seconds.denoise, &stats_.cpu_seconds.denoise);
   const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
-  std::vector<float> rgba = picture_.combined();
-  const std::string failure =
-      denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel, &rgba);
-  if (failure.empty()) {
-    stats_.denoiser = denoiser_->name();
-  } else {
+  std::string failure;
+  std::vector<float> rgba = denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel,
+                                             picture_.combined(), &failure);
+  if (rgba.empty()) {
     stats_.warnings.push_back(failure);
+    return;
   }
+  stats_.denoiser = denoiser_->name();
   picture_.show_denoised(std::move(rgba));
 }
 

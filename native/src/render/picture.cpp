@@ -59,11 +59,6 @@ bool Picture::is_reconstructed() const {
   return !combined_.empty();
 }
 
-std::vector<float> Picture::combined() const {
-  const std::lock_guard lock(mutex_);
-  return combined_;
-}
-
 bool Picture::read(uint32_t pass, float* pixels) const {
   const std::lock_guard lock(mutex_);
   const std::vector<float>* from = nullptr;

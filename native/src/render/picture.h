@@ -30,7 +30,8 @@ class Picture {
   void end_tiles();
 
   bool is_reconstructed() const;
-  std::vector<float> combined() const;
+  // For the thread that shows it, alone.
+  const std::vector<float>& combined() const { return combined_; }
   // False: there is nothing of this pass.
   bool read(uint32_t pass, float* pixels) const;
   size_t memory_bytes() const;

@@ -10,6 +10,7 @@
 #include "denoise/oidn_library.h"
 #include "frame/features.h"
 #include "reconstruct/feature_filter.h"
+#include "render/denoise_combined.h"
 #include "render/fake_integrator.h"
 
 namespace gradus {
@@ -152,6 +153,20 @@ TEST_F(DenoisedRender, FailureIsAWarningAndThePictureStays) {
   ASSERT_EQ(stats["warnings"].size(), 1u);
   EXPECT_NE(stats["warnings"][0].get<std::string>().find("the fake has no memory"), std::string::npos);
   EXPECT_TRUE(stats["denoiser"].is_null());
+}
+
+// Only what Open Image Denoise itself reported was caught, and the render failed.
+TEST_F(DenoisedRender, NoMemoryForItIsAWarningToo) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
+  settings.passes |= feature_passes();
+  const auto frame = finished(settings)->frame();
+  std::string why_not, failure;
+  OidnLibrary library = *find_oidn({kFake}, &why_not);
+  library.api.commit_device = [](OidnApi::Device*) { throw std::bad_alloc(); };
+  const std::vector<float> combined(4 * size_t(kAll.area()), 0.5f);
+  const auto never = [] { return false; };
+  EXPECT_TRUE(denoise_combined(library, *frame, GRADUS_RECONSTRUCTION_REGULARIZED, kAll, 1, never, combined, &failure).empty());
+  EXPECT_EQ(failure, "the picture was not denoised: out of memory");
 }
 
 TEST_F(DenoisedRender, CancelledMeanwhileItLeavesTheReconstruction) {
