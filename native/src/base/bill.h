@@ -17,7 +17,6 @@ class Bill {
   }
   Bill(const Bill&) = delete;
   Bill& operator=(const Bill&) = delete;
-  double seconds() const { return clock_.seconds(); }
 
  private:
   double *const seconds_, *const cpu_seconds_;

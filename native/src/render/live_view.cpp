@@ -1,9 +1,8 @@
 #include "render/live_view.h"
 
 #include "base/bill.h"
-#include "render/combine.h"
 #include "render/quarter_picture.h"
-#include "settings/pass_table.h"
+#include "render/show_combined.h"
 
 namespace gradus {
 
@@ -37,18 +36,14 @@ void LiveView::show_quarter() {
 }
 
 void LiveView::refresh(const Frame& frame, double sampled) {
-  const Bill bill(&seconds_, &cpu_seconds_);
-  const CancelTest cancel = [this] { return is_stopped(); };
-  const uint32_t reconstruction = shown(frame.settings.reconstruction);
-  SolveReport report;
-  std::vector<float> rgba, error;
-  std::vector<float>* wanted = wants(plan_.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
-  arena_->execute(
-      [&] { rgba = combine(frame, reconstruction, frame.settings.reconstruction_alpha, plan_.delivered, cancel, &report, wanted); });
-  if (cancel()) return;
-  picture_->show(std::move(rgba), std::move(error));
+  const double before = seconds_;
+  {
+    const Bill bill(&seconds_, &cpu_seconds_);
+    SolveReport report;
+    if (!show_combined(frame, shown(frame.settings.reconstruction), plan_, stop_, arena_, picture_, &report)) return;
+  }
   tracker_->new_image();
-  rule_.done(sampled, bill.seconds());
+  rule_.done(sampled, seconds_ - before);
 }
 
 }  // namespace gradus

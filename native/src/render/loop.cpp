@@ -13,6 +13,7 @@
 #include "render/denoise_combined.h"
 #include "render/pass_read.h"
 #include "render/resume.h"
+#include "render/show_combined.h"
 #include "render/tiles.h"
 #include "settings/pass_table.h"
 
@@ -246,19 +247,9 @@ void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
 }
 
 void RenderLoop::reconstruct_frame() {
-  const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
-  const GradusSettings& settings = frame_->settings;
-  std::vector<float> rgba, error;
-  std::vector<float>* wanted = wants(plan_.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
-  {
-    const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
-    arena_.execute([&] {
-      rgba = combine(*frame_, settings.reconstruction, settings.reconstruction_alpha, plan_.delivered, cancel, &stats_.solve, wanted);
-    });
-  }
-  if (cancel()) return;  // half of it is none
+  const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
+  if (!show_combined(*frame_, frame_->settings.reconstruction, plan_, stop_, &arena_, &picture_, &stats_.solve)) return;
   if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
-  picture_.show(std::move(rgba), std::move(error));
 }
 
 void RenderLoop::denoise_frame() {

@@ -6,8 +6,10 @@
 #include <set>
 
 #include "base/device.h"
+#include "plan/plan.h"
 #include "render/enlarge.h"
 #include "render/fake_integrator.h"
+#include "render/live_view.h"
 #include "render/refresh_rule.h"
 #include "support/path_scene.h"
 
@@ -171,14 +173,49 @@ TEST(LiveView, ALongBatchDoesNotKeepTheWatcherWaiting) {
   });
 }
 
+// Seconds of sampling are given; those of pictures are what is billed, however long that takes here.
 TEST(LiveView, TakesATwentiethOfTheTime) {
+  LoopInput input;
+  input.settings = settings_of(96, 64, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED);
+  const Plan plan = make_plan(input.settings, *empty_snapshot());
+  const std::atomic<bool> stop{false};
+  tbb::task_arena arena(2);
+  Picture picture(plan.delivered);
+  ProgressTracker tracker;
+  LiveView view(input, plan, stop, &arena, &picture, &tracker);
+  view.watch();
+  const auto frame = rendered(input.settings);
+  const auto is_due = [&](double sampled) { return view.refresh_is_due(GRADUS_RECONSTRUCTION_WEIGHTED, sampled, 0.5); };
+  EXPECT_TRUE(is_due(0.0)) << "nothing is known of the first one";
+  double sampled = 0.0;
+  for (uint32_t i = 1; i <= 5; ++i) {
+    const double before = view.seconds();
+    view.refresh(*frame, sampled);
+    const double cost = view.seconds() - before;
+    EXPECT_GT(cost, 0.0);
+    EXPECT_EQ(tracker.version(), i);
+    EXPECT_FALSE(is_due(sampled + 19.99 * cost));
+    sampled += 20.01 * cost;
+    EXPECT_TRUE(is_due(sampled));
+  }
+}
+
+// A picture of this size takes tens of milliseconds: once there is one, the next would come too late.
+TEST(LiveView, IsAskedForNoMoreOftenThanItPays) {
   GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED);
-  settings.time_limit = 3.0f;
-  const auto render = start(settings, slow_factory(std::chrono::milliseconds(1)));
-  watch(render.get(), region_of(settings));
-  const auto seconds = stats_of(*render)["seconds"];
-  EXPECT_GT(seconds["preview"], 0.0);
-  EXPECT_LT(seconds["preview"], 0.15 * seconds["sample"].get<double>());  // with the quarter, on a machine that others use
+  settings.time_limit = 0.4f;
+  std::atomic<bool> is_watched{false};
+  const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
+                              fake->before = [&](const WorkUnit&) {
+                                while (!is_watched) std::this_thread::yield();
+                                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                              };
+                            }));
+  read(*render, GRADUS_PASS_COMBINED, region_of(settings));
+  is_watched = true;
+  render->wait(-1.0);
+  EXPECT_GT(stats_of(*render)["seconds"]["preview"], 0.0);
+  EXPECT_LE(render->progress().version, 3u) << "the quarter, one of the frame, and what is delivered";
 }
 
 // The limit is one of sampling (contract 4.6).

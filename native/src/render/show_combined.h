@@ -1,0 +1,20 @@
+// Combined as it is shown: while samples are taken, and in the end.
+#pragma once
+
+#include <atomic>
+
+#include <tbb/task_arena.h>
+
+#include "frame/frame.h"
+#include "plan/plan.h"
+#include "reconstruct/solver.h"
+#include "render/picture.h"
+
+namespace gradus {
+
+// Reconstructs the frame in the arena, with its error where the plan has that pass, and shows it. False: stopped, and nothing is shown, for
+// half of it is none.
+bool show_combined(const Frame& frame, uint32_t reconstruction, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena,
+                   Picture* picture, SolveReport* report);
+
+}  // namespace gradus
