@@ -1,5 +1,7 @@
 #include "frame/frame.h"
 
+#include <numeric>
+
 namespace gradus {
 
 void Counters::add(const Counters& other) {
@@ -51,6 +53,12 @@ uint64_t Frame::memory_bytes() const {
     bytes += (plane.values[0].size() + plane.values[1].size() + plane.weight.size()) * sizeof(float);
   }
   return bytes;
+}
+
+double mean_samples(const Frame& frame) {
+  uint64_t sum = 0;
+  for (const std::vector<uint32_t>& counts : frame.count) sum = std::accumulate(counts.begin(), counts.end(), sum);
+  return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
 }
 
 }  // namespace gradus

@@ -104,6 +104,9 @@ class Frame {
   int32_t frame_number = 0;
 };
 
+// Samples of a pixel, on average over the region.
+double mean_samples(const Frame& frame);
+
 // Which halves an image is read from: [first, last).
 struct HalfRange {
   int first = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "bsdf/ggx.h"
@@ -23,6 +24,9 @@ bool needs_gradients(uint32_t reconstruction) {
 
 // Samples from which the host's denoiser takes more off the error than those that its time would buy (docs/method.md).
 constexpr uint32_t kDenoiserPays = 8;
+static_assert(kDenoiserPays <= kFirstCheck);  // tiles that stop by their noise have enough
+
+std::string too_few_to_denoise() { return "with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples"; }
 
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
   const bool wants_differences = wants(settings.passes, GRADUS_PASS_GRADIENT_X) || wants(settings.passes, GRADUS_PASS_GRADIENT_Y);
@@ -82,10 +86,12 @@ void choose_denoiser(const GradusSettings& settings, const HostDenoiser& denoise
   if (denoiser.name.empty()) {
     plan->skipped.emplace_back("denoiser", denoiser.why_not);
   } else if (automatic && settings.samples < kDenoiserPays) {
-    plan->skipped.emplace_back("denoiser",
-                               "automatic: with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples");
+    plan->skipped.emplace_back("denoiser", "automatic: " + too_few_to_denoise());
   } else {
     plan->denoises = true;
+    plan->denoiser = denoiser.name;
+    plan->denoises_if_it_pays = automatic && settings.time_limit > 0.0f;
+    if (plan->denoises_if_it_pays) return;
     plan->chosen.emplace_back("denoiser " + denoiser.name, automatic ? "automatic: it is there" : "set by the user");
   }
 }
@@ -180,8 +186,20 @@ uint32_t without_gradients(const Plan& plan) {
   return needs_gradients(plan.reconstruction) ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan.reconstruction;
 }
 
-bool delivers_unbiased(const Plan& plan, uint32_t reconstruction) {
-  return plan.unbiased && !plan.denoises && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
+bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped) {
+  if (!plan.denoises_if_it_pays) return plan.denoises;
+  char taken[80];
+  std::snprintf(taken, sizeof(taken), "automatic: %.1f samples were taken within the time limit", samples);
+  if (samples < kDenoiserPays) {
+    skipped->emplace_back("denoiser", taken + std::string(": ") + too_few_to_denoise());
+    return false;
+  }
+  chosen->emplace_back("denoiser " + plan.denoiser, taken);
+  return true;
+}
+
+bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises) {
+  return plan.unbiased && !denoises && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
 }
 
 namespace {

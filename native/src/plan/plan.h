@@ -14,6 +14,12 @@ namespace gradus {
 
 using Reasons = std::vector<std::pair<std::string, std::string>>;  // what, why
 
+// What the setting `denoiser` comes to here.
+struct HostDenoiser {
+  std::string name;     // empty: none
+  std::string why_not;  // that there is none
+};
+
 struct Plan {
   uint32_t integrator = GRADUS_INTEGRATOR_PATH;          // never AUTO
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_NONE;  // never AUTO
@@ -21,6 +27,8 @@ struct Plan {
   bool pilot = false;     // a few samples tell where gradients pay
   bool solves = false;    // Combined comes from a solver
   bool denoises = false;  // … and then from the host's denoiser
+  bool denoises_if_it_pays = false;  // which is seen when sampling has ended: denoises_after()
+  std::string denoiser;              // its name
   bool unbiased = true;   // what is sampled; see delivers_unbiased()
   bool adaptive = false;  // tiles take samples by their noise, and may stop early
   int channels = 3;
@@ -35,20 +43,17 @@ struct Plan {
 // by 0.82 per pixel at alpha 0.2 (contract 2.1).
 inline constexpr int kGuardRing = 35;
 
-// What the setting `denoiser` comes to here.
-struct HostDenoiser {
-  std::string name;     // empty: none
-  std::string why_not;  // that there is none
-};
-
 // Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced (contract 5.1).
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser = {"", "denoiser is none"});
 
 // The reconstruction where no gradients are sampled, because the integrator has none or the pilot found that they pay nowhere.
 uint32_t without_gradients(const Plan& plan);
 
-// Contract 2.2. reconstruction: what is done in the end, which may be that without gradients.
-bool delivers_unbiased(const Plan& plan, uint32_t reconstruction);
+// Whether the denoiser runs after so many samples per pixel. Where the plan left that open it says what was decided, and why.
+bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped);
+
+// Contract 2.2. reconstruction, denoises: what is done in the end, which may be that without gradients.
+bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises);
 
 // What the reconstruction reads besides the image: features (settings/pass_table.h).
 bool features_wanted(const Plan& plan);

@@ -83,9 +83,11 @@ void RenderLoop::render() {
   set_phase(GRADUS_PHASE_SAMPLING);
   sample();
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
+  const bool denoises = denoises_after(plan_, mean_samples(*frame_), &stats_.chosen, &stats_.skipped);
+  if (!denoises) frame_->settings.denoiser = GRADUS_DENOISER_NONE;
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
   reconstruct_frame();
-  if (plan_.denoises && !stop_.load(std::memory_order_relaxed)) denoise_frame();
+  if (denoises && !stop_.load(std::memory_order_relaxed)) denoise_frame();
   if (stop_.load(std::memory_order_relaxed)) throw cancelled();
 }
 

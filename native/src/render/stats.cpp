@@ -42,14 +42,6 @@ json shifts(const Counters& c) {
             {"border", c.fail_border}}}};
 }
 
-double mean_samples(const Frame& frame) {
-  uint64_t sum = 0;
-  for (int half = 0; half < kHalves; ++half) {
-    for (const uint32_t n : frame.count[half]) sum += n;
-  }
-  return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
-}
-
 json phases(const PhaseTimes& t) {
   return {{"sample", t.sample}, {"preview", t.preview}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0}};
 }
@@ -69,7 +61,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["integrator"] = choice_name(*find_option("integrator"), settings.integrator);
   j["reconstruction"] = choice_name(*find_option("reconstruction"), settings.reconstruction);
   j["denoiser"] = stats.denoiser.empty() ? json(nullptr) : json(stats.denoiser);
-  j["unbiased"] = delivers_unbiased(plan, settings.reconstruction);
+  j["unbiased"] = delivers_unbiased(plan, settings.reconstruction, settings.denoiser != GRADUS_DENOISER_NONE);
   j["samples"] = mean_samples(frame);
   j["spp_base"] = j["samples"];
   j["spp_offset"] = 0;

@@ -110,6 +110,32 @@ TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereItsTimeBuysMoreAsSamples) {
   EXPECT_EQ(json::parse(finished(settings)->stats_json())["denoiser"], "Open Image Denoise 2.7.5");
 }
 
+// The time limit, not `samples`, said how many there were.
+TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
+  settings.samples = 1000;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  settings.time_limit = 1e-3f;
+  const auto slow = [](FakeIntegrator* fake) {
+    fake->before = [](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
+  };
+  Render render(device, empty_snapshot(), settings, nullptr, fake_factory(slow));
+  render.wait(-1.0);
+  const json stats = json::parse(render.stats_json());
+  EXPECT_EQ(stats["samples"], 1.0);
+  EXPECT_TRUE(stats["denoiser"].is_null());
+  EXPECT_EQ(stats["plan"]["skipped"]["denoiser"],
+            "automatic: 1.0 samples were taken within the time limit: with fewer than 8 samples its time buys more as samples");
+  EXPECT_EQ(stats["unbiased"], true);
+  EXPECT_EQ(render.frame()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
+  settings.samples = 8;
+  settings.time_limit = 1e6f;
+  const json quick = json::parse(finished(settings)->stats_json());
+  EXPECT_EQ(quick["denoiser"], "Open Image Denoise 2.7.5");
+  EXPECT_EQ(quick["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"], "automatic: 8.0 samples were taken within the time limit");
+  EXPECT_EQ(quick["unbiased"], false);
+}
+
 TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
   settings.integrator = GRADUS_INTEGRATOR_PATH;

@@ -1,6 +1,8 @@
 // What is chosen, what is refused, and that the reasons are said.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "plan/plan.h"
 #include "render/fake_integrator.h"
 #include "settings/pass_table.h"
@@ -32,7 +34,7 @@ TEST(Plan, AutoIsPathWithFeatures) {
   EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_PATH});
   EXPECT_EQ(plan.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED});
   EXPECT_FALSE(plan.pilot);
-  EXPECT_FALSE(delivers_unbiased(plan, plan.reconstruction));
+  EXPECT_FALSE(delivers_unbiased(plan, plan.reconstruction, plan.denoises));
 }
 
 TEST(Plan, AutoIsGradientForWhatNeedsDifferences) {
@@ -117,7 +119,7 @@ TEST(Plan, ObeysOrRefuses) {
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_NONE), GRADUS_OK);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_WEIGHTED), GRADUS_ERROR_INVALID_ARGUMENT);
   for (const GradusReconstruction reconstruction : {GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_WEIGHTED}) {
-    EXPECT_FALSE(delivers_unbiased(plan_for(GRADUS_INTEGRATOR_GRADIENT, reconstruction), reconstruction));
+    EXPECT_FALSE(delivers_unbiased(plan_for(GRADUS_INTEGRATOR_GRADIENT, reconstruction), reconstruction, false));
   }
 }
 
@@ -159,11 +161,42 @@ TEST(Plan, DenoiserIsBiasedAndAsksForFeaturesAndMemory) {
   GradusSettings s = small_settings(64, 64, 4);
   s.reconstruction = GRADUS_RECONSTRUCTION_L2;
   const Plan plain = make_plan(s, *empty_snapshot()), denoised = make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
-  EXPECT_TRUE(delivers_unbiased(plain, plain.reconstruction));
-  EXPECT_FALSE(delivers_unbiased(denoised, denoised.reconstruction));
+  EXPECT_TRUE(delivers_unbiased(plain, plain.reconstruction, plain.denoises));
+  EXPECT_FALSE(delivers_unbiased(denoised, denoised.reconstruction, denoised.denoises));
   EXPECT_EQ(plain.passes & feature_passes(), 0u);
   EXPECT_EQ(denoised.passes & feature_passes(), feature_passes());
   EXPECT_GT(planned_bytes(denoised), planned_bytes(plain) + uint64_t{64} * 64 * 700);
+}
+
+TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {
+  struct Case {
+    uint32_t samples;
+    float time_limit, noise_threshold;
+    double taken;
+    bool denoises;
+  };
+  for (const Case& c : {Case{7, 0.0f, 0.0f, 7.0, false}, {8, 0.0f, 0.0f, 8.0, true}, {7, 60.0f, 0.0f, 7.0, false},
+                        {500, 60.0f, 0.0f, 7.9, false}, {500, 60.0f, 0.0f, 8.0, true}, {500, 0.0f, 0.1f, 16.0, true},
+                        {500, 60.0f, 0.1f, 5.0, false}}) {
+    GradusSettings s = small_settings(64, 64, c.samples);
+    s.denoiser = GRADUS_DENOISER_AUTO;
+    s.time_limit = c.time_limit;
+    s.noise_threshold = c.noise_threshold;
+    const Plan plan = make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
+    Reasons chosen = plan.chosen, skipped = plan.skipped;
+    EXPECT_EQ(denoises_after(plan, c.taken, &chosen, &skipped), c.denoises) << c.samples << " " << c.taken;
+    const auto names = [](const Reasons& list, const std::string& what) {
+      return std::count_if(list.begin(), list.end(), [&](const auto& reason) { return reason.first == what; });
+    };
+    EXPECT_EQ(names(chosen, "denoiser Some Denoiser 1.2.3"), c.denoises ? 1 : 0);
+    EXPECT_EQ(names(skipped, "denoiser"), c.denoises ? 0 : 1);
+  }
+  GradusSettings asked = small_settings(64, 64, 1);
+  asked.denoiser = GRADUS_DENOISER_OIDN;
+  asked.time_limit = 60.0f;
+  Reasons none;
+  EXPECT_TRUE(denoises_after(make_plan(asked, *empty_snapshot(), {"Some Denoiser 1.2.3", ""}), 1.0, &none, &none));
+  EXPECT_TRUE(none.empty());
 }
 
 TEST(Plan, NoCameraIsAnError) {
