@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "reconstruct/box_mean.h"
 #include "reconstruct/field.h"
 #include "reconstruct/rows.h"
 #include "reconstruct/solver_planes.h"
@@ -11,8 +12,10 @@
 namespace gradus {
 namespace {
 
+// Patches are of 3×3 pixels, and variances are means over as many.
+constexpr int kPatch = 1;
 // How far a pixel's neighbours, their patches, and those patches' variance reach.
-constexpr int kReach = 3;
+constexpr int kReach = 1 + 2 * kPatch;
 // Tiles stay in the second cache; with what they reach they are as tall as one thread's rows (reconstruct/rows.h).
 constexpr int kTileWidth = 250, kTileHeight = 26;
 // k²: squared differences are measured in this many variances (docs/method.md has what was tried).
@@ -60,41 +63,21 @@ float typical(const std::vector<float>& values) {
   return std::min(median_or_one(&magnitudes), kLargest);
 }
 
-// Means over 3×3 pixels; what lies outside of the field, where its memory holds zeros, counts as 0.
-Field smooth(const Field& field) {
-  const int w = field.width(), h = field.height();
-  Field columns(w, h, field.channels());
-  for (int c = 0; c < field.channels(); ++c) {
-    for (int y = 0; y < h; ++y) {
-      const float *below = field.row(y - 1, c), *middle = field.row(y, c), *above = field.row(y + 1, c);
-      float* to = columns.row(y, c);
-      for (int x = 0; x < w; ++x) to[x] = (below[x] + middle[x] + above[x]) * (1.0f / 9.0f);
-    }
-  }
-  Field result(w, h, field.channels());
-  for (int c = 0; c < field.channels(); ++c) {
-    for (int y = 0; y < h; ++y) {
-      const float* from = columns.row(y, c);
-      float* to = result.row(y, c);
-      for (int x = 0; x < w; ++x) to[x] = from[x - 1] + from[x] + from[x + 1];
-    }
-  }
-  return result;
-}
+// The first column that has a neighbour there.
+int first_column(Neighbour offset) { return std::max(0, -offset.x); }
 
-// By how much the squared difference of p and p + offset exceeds what noise explains, in variances, mean over the channels; 0 where there
-// is no such pixel.
+// By how much the squared difference of p and p + offset exceeds what noise explains, in variances, mean over the channels: of those pairs
+// that there are, the first one at the lower left.
 Field distances(const Field& values, const Field& variance, Neighbour offset, float negligible) {
-  const int w = values.width(), h = values.height(), channels = values.channels();
+  const int channels = values.channels(), begin = first_column(offset);
   const float share = 1.0f / static_cast<float>(channels);
-  Field result(w, h, 1);
-  for_rows(h - offset.y, [&](int y) {
-    const int begin = std::max(0, -offset.x), end = std::min(w, w - offset.x);
+  Field result(values.width() - std::abs(offset.x), values.height() - offset.y, 1);
+  for_rows(result.height(), [&](int y) {
     float* to = result.row(y);
     for (int c = 0; c < channels; ++c) {
-      const float *a = values.row(y, c), *b = values.row(y + offset.y, c) + offset.x;
-      const float *of_a = variance.row(y, c), *of_b = variance.row(y + offset.y, c) + offset.x;
-      for (int x = begin; x < end; ++x) {
+      const float *a = values.row(y, c) + begin, *b = values.row(y + offset.y, c) + begin + offset.x;
+      const float *of_a = variance.row(y, c) + begin, *of_b = variance.row(y + offset.y, c) + begin + offset.x;
+      for (int x = 0; x < result.width(); ++x) {
         const float difference = a[x] - b[x], noise = of_a[x] + of_b[x];
         to[x] += share * (difference * difference - noise) / (negligible + kVariances * noise);
       }
@@ -117,7 +100,7 @@ void gather(const Field& values, const Field& distance, Neighbour offset, Field*
       const int other = y + sign * offset.y;
       if (other < 0 || other >= h) continue;
       const int step = sign * offset.x, begin = std::max(0, -step), end = std::min(w, w - step);
-      const float* d = sign > 0 ? distance.row(y) : distance.row(other) + step;
+      const float* d = sign > 0 ? distance.row(y) - first_column(offset) : distance.row(other) + step - first_column(offset);
       for (int x = begin; x < end; ++x) {
         const float weight = weight_of(d[x]);
         weights->row(y)[x] += weight;
@@ -133,12 +116,12 @@ void filter_tile(const FeatureImage& image, int width, int height, const Part& t
                  std::min(height, tile.y1 + kReach)};
   const int channels = int(image.channels);
   const Field values = load(image.values, width, all, channels, -kLargest, kLargest);
-  const Field variance = smooth(load(image.variance, width, all, channels, 0.0f, kLargestVariance));
+  const Field variance = box_mean(load(image.variance, width, all, channels, 0.0f, kLargestVariance), kPatch);
   Field sum = values, weights(all.width(), all.height(), 1);
   for (int y = 0; y < all.height(); ++y) std::fill_n(weights.row(y), all.width(), 1.0f);
   for (const Neighbour offset : kNeighbours) {
     if (offset.y >= all.height() || std::abs(offset.x) >= all.width()) continue;
-    gather(values, smooth(distances(values, variance, offset, negligible)), offset, &sum, &weights);
+    gather(values, box_mean(distances(values, variance, offset, negligible), kPatch), offset, &sum, &weights);
   }
   for (int y = tile.y0; y < tile.y1; ++y) {
     float* to = result->data() + (size_t(y) * size_t(width) + size_t(tile.x0)) * size_t(channels);

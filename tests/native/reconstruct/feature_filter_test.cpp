@@ -81,6 +81,25 @@ TEST(FeatureFilter, DifferencesCountByTheVariance) {
   EXPECT_LT(left, 0.95);
 }
 
+// Of pixels at the border less was known, as if beyond it there were neither noise nor differences.
+TEST(FeatureFilter, AtTheBorderNeighboursCountByTheSameDistances) {
+  Noisy noisy(0.0f, 1);
+  const auto chequer = [](int x, int y) { return (x + y) % 2 ? 0.1f : -0.1f; };
+  for (int i = 0; i < kWidth * kHeight; ++i) noisy.image.values[size_t(i)] = 0.5f + chequer(i % kWidth, i / kWidth);
+  std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), 0.01f);
+  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  // Neighbours at the sides are 0.2 apart, where noise explains √0.02: (0.04 − 0.02)/(k² 0.02) = 2 variances.
+  const float side = 1.0f / std::pow(1.0f + 0.25f * 2.0f, 4.0f);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float columns = x == 0 || x == kWidth - 1 ? 1.0f : 2.0f, rows = y == 0 || y == kHeight - 1 ? 1.0f : 2.0f;
+      const float same = 1.0f + columns * rows, opposite = (columns + rows) * side;
+      const float expected = 0.5f + chequer(x, y) * (same - opposite) / (same + opposite);
+      ASSERT_NEAR(filtered.values[size_t(y * kWidth + x)], expected, 2e-3f) << x << ' ' << y;
+    }
+  }
+}
+
 // Each neighbour by its own distance: those to the left are read at another place than those to the right.
 TEST(FeatureFilter, AMirroredPictureIsFilteredAlike) {
   const auto mirrored = [](std::vector<float> values) {
