@@ -24,13 +24,13 @@ struct Plan {
   uint32_t integrator = GRADUS_INTEGRATOR_PATH;          // never AUTO
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_NONE;  // never AUTO
   bool gradients = false;
-  bool pilot = false;     // a few samples tell where gradients pay
-  bool solves = false;    // Combined comes from a solver
-  bool denoises = false;  // … and then from the host's denoiser
+  bool pilot = false;                // a few samples tell where gradients pay
+  bool solves = false;               // Combined comes from a solver
+  bool denoises = false;             // … and then from the host's denoiser
   bool denoises_if_it_pays = false;  // which is seen when sampling has ended: denoises_after()
   std::string denoiser;              // its name
-  bool unbiased = true;   // what is sampled; see delivers_unbiased()
-  bool adaptive = false;  // tiles take samples by their noise, and may stop early
+  bool unbiased = true;              // what is sampled; see delivers_unbiased()
+  bool adaptive = false;             // tiles take samples by their noise, and may stop early
   int channels = 3;
   uint64_t passes = 0;       // that the frame keeps: those asked for, and what the reconstruction reads
   uint32_t first_check = 0;  // samples before a tile may stop

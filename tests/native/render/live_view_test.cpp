@@ -203,7 +203,7 @@ TEST(LiveView, TakesATwentiethOfTheTime) {
 // A picture of this size takes tens of milliseconds: once there is one, the next would come too late.
 TEST(LiveView, IsAskedForNoMoreOftenThanItPays) {
   GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED);
-  settings.time_limit = 0.4f;
+  settings.time_limit = 0.25f;
   std::atomic<bool> is_watched{false};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
                               fake->before = [&](const WorkUnit&) {

@@ -175,8 +175,12 @@ TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {
     double taken;
     bool denoises;
   };
-  for (const Case& c : {Case{7, 0.0f, 0.0f, 7.0, false}, {8, 0.0f, 0.0f, 8.0, true}, {7, 60.0f, 0.0f, 7.0, false},
-                        {500, 60.0f, 0.0f, 7.9, false}, {500, 60.0f, 0.0f, 8.0, true}, {500, 0.0f, 0.1f, 16.0, true},
+  for (const Case& c : {Case{7, 0.0f, 0.0f, 7.0, false},
+                        {8, 0.0f, 0.0f, 8.0, true},
+                        {7, 60.0f, 0.0f, 7.0, false},
+                        {500, 60.0f, 0.0f, 7.9, false},
+                        {500, 60.0f, 0.0f, 8.0, true},
+                        {500, 0.0f, 0.1f, 16.0, true},
                         {500, 60.0f, 0.1f, 5.0, false}}) {
     GradusSettings s = small_settings(64, 64, c.samples);
     s.denoiser = GRADUS_DENOISER_AUTO;
