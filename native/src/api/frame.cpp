@@ -80,7 +80,11 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
 }  // namespace gradus::api
 
 GradusError gradus_frame_save(GradusFrame frame, const char* path) {
-  return api::guard([&] { save_frame(*api::find_handle<api::FrameObject>(frame)->get(), &api::require(path, "path")); });
+  return api::guard([&] {
+    const auto object = api::find_handle<api::FrameObject>(frame);
+    const std::string file = &api::require(path, "path");
+    object->device->arena().execute([&] { save_frame(*object->get(), file); });
+  });
 }
 
 GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame* frame) {

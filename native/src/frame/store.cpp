@@ -2,21 +2,22 @@
 #include "frame/pass_planes.h"
 
 #include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
-#include <ImfIntAttribute.h>
-#include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "frame/block_file.h"
+#include "frame/block_rows.h"
 #include "frame/cells.h"
 #include "frame/exr_stream.h"
 #include "frame/store_planes.h"
@@ -30,7 +31,6 @@ using nlohmann::json;
 
 constexpr int kFormat = 3;
 constexpr int kMaxSide = 1 << 16;
-constexpr int kBlockRows = 16;  // of the ZIP compression: blocks are written whole
 constexpr const char* kAttribute = "gradus";
 
 // What is wrong with a file, as the exception that load_frame() throws.
@@ -115,55 +115,23 @@ Imf::Header make_header(const Frame& frame, const std::vector<StoredPlane>& plan
   return header;
 }
 
-// Some rows of all channels, in the order of the file.
-class RowBlock {
- public:
-  RowBlock(const std::vector<StoredPlane>& planes, int width, int rows)
-      : planes_(planes), width_(width), rows_(rows), values_(planes.size() * size_t(width) * size_t(rows)) {}
-
-  Imf::FrameBuffer frame_buffer(int x0, int first_row, int rows) {
-    Imf::FrameBuffer buffer;
-    const Imath::Box2i window({x0, first_row}, {x0 + width_ - 1, first_row + rows - 1});
-    for (size_t i = 0; i < planes_.size(); ++i) {
-      buffer.insert(planes_[i].name,
-                    Imf::Slice::Make(type_of(planes_[i]), at(i, 0), window, sizeof(uint32_t), size_t(width_) * sizeof(uint32_t)));
-    }
-    return buffer;
-  }
-  // Row `row` of the block from, or to, row y of the frame's region.
-  void gather(int row, int y) {
-    for (size_t i = 0; i < planes_.size(); ++i) {
-      const unsigned char* from = planes_[i].data + size_t(y) * size_t(width_) * planes_[i].stride;
-      uint32_t* to = at(i, row);
-      for (int x = 0; x < width_; ++x) std::memcpy(to + x, from + size_t(x) * planes_[i].stride, sizeof(uint32_t));
-    }
-  }
-  void scatter(int row, int y) {
-    for (size_t i = 0; i < planes_.size(); ++i) {
-      unsigned char* to = planes_[i].data + size_t(y) * size_t(width_) * planes_[i].stride;
-      const uint32_t* from = at(i, row);
-      for (int x = 0; x < width_; ++x) std::memcpy(to + size_t(x) * planes_[i].stride, from + x, sizeof(uint32_t));
-    }
-  }
-
- private:
-  uint32_t* at(size_t plane, int row) { return values_.data() + (plane * size_t(rows_) + size_t(row)) * size_t(width_); }
-  const std::vector<StoredPlane>& planes_;
-  int width_, rows_;
-  std::vector<uint32_t> values_;
-};
-
-void write_rows(const Frame& frame, const std::vector<StoredPlane>& planes, const Imf::Header& header, WriterStream* stream) {
-  Imf::OutputFile file(*stream, header);
-  const Imath::Box2i& data = header.dataWindow();
-  const int width = frame.region.width(), height = frame.region.height();
-  RowBlock block(planes, width, kBlockRows);
-  for (int row = 0; row < height; row += kBlockRows) {
-    const int rows = std::min(kBlockRows, height - row);
-    for (int i = 0; i < rows; ++i) block.gather(i, height - 1 - (row + i));
-    file.setFrameBuffer(block.frame_buffer(data.min.x, data.min.y + row, rows));
-    file.writePixels(rows);
-  }
+void write_blocks(const BlockRows& rows, BlockFile* file) {
+  tbb::enumerable_thread_specific<BlockCodec> codecs;
+  int next = 0;
+  const auto number = [&](tbb::flow_control& control) {
+    if (next == rows.blocks()) control.stop();
+    return next++;
+  };
+  const auto pack = [&](int block) {
+    Bytes bytes(rows.bytes(block));
+    rows.gather(block, &bytes);
+    return codecs.local().pack(bytes);
+  };
+  const auto write = [&](const Bytes& packed) { file->write(packed); };
+  const auto tokens = 2 * size_t(tbb::this_task_arena::max_concurrency());
+  tbb::parallel_pipeline(tokens, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
+                                     tbb::make_filter<int, Bytes>(tbb::filter_mode::parallel, pack) &
+                                     tbb::make_filter<Bytes, void>(tbb::filter_mode::serial_in_order, write));
 }
 
 Frame make_frame(const Imf::Header& header, const json& description) {
@@ -196,13 +164,17 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   return frame;
 }
 
-void check_channels(const Imf::Header& header, const std::vector<StoredPlane>& planes) {
+void check_content(const Imf::Header& header, const std::vector<StoredPlane>& planes) {
   for (const StoredPlane& plane : planes) {
     const Imf::Channel* channel = header.channels().findChannel(plane.name);
     if (!channel || channel->type != type_of(plane) || channel->xSampling != 1 || channel->ySampling != 1) {
       throw damaged("channel " + plane.name + " is missing or of another type");
     }
   }
+  size_t channels = 0;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) ++channels;
+  if (channels != planes.size()) throw damaged("it has channels of something else");
+  if (header.compression() != Imf::ZIP_COMPRESSION) throw damaged("it was packed by another program");
 }
 
 void check_regions(const Frame& frame) {
@@ -217,28 +189,23 @@ void check_regions(const Frame& frame) {
     throw damaged("its settings name another size");
 }
 
-// Reads blocks of a file that others read at the same time: what takes long is to inflate them.
-class BlockReader {
- public:
-  BlockReader(const std::string& path, const Imath::Box2i& data, const std::vector<StoredPlane>& planes)
-      : file_(path.c_str()), data_(data), rows_(data.max.y - data.min.y + 1), block_(planes, data.max.x - data.min.x + 1, kBlockRows) {
-    if (file_.header().dataWindow() != data) throw damaged("it was replaced while it was read");
-    check_channels(file_.header(), planes);
-  }
-
-  void read(int number) {
-    const int first = kBlockRows * number, rows = std::min(kBlockRows, rows_ - first);
-    file_.setFrameBuffer(block_.frame_buffer(data_.min.x, data_.min.y + first, rows));
-    file_.readPixels(data_.min.y + first, data_.min.y + first + rows - 1);
-    for (int i = 0; i < rows; ++i) block_.scatter(i, rows_ - 1 - (first + i));
-  }
-
- private:
-  Imf::InputFile file_;
-  const Imath::Box2i data_;
-  const int rows_;
-  RowBlock block_;
-};
+void read_blocks(const Imf::InputFile& file, const BlockRows& rows) {
+  struct Reader {
+    BlockCodec codec;
+    Bytes packed, bytes;
+  };
+  tbb::enumerable_thread_specific<Reader> readers;
+  const int top = file.header().dataWindow().min.y;
+  tbb::parallel_for(0, rows.blocks(), [&](int block) {
+    Reader& reader = readers.local();
+    reader.bytes.resize(rows.bytes(block));
+    reader.packed.resize(rows.bytes(0));
+    int size = int(reader.packed.size());
+    file.rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()), size);
+    if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes)) throw damaged("a block of its rows is broken");
+    rows.scatter(reader.bytes, block);
+  });
+}
 
 Frame read_frame(const std::string& path) {
   Imf::InputFile file(path.c_str());
@@ -250,11 +217,8 @@ Frame read_frame(const std::string& path) {
   Frame frame = make_frame(header, description);
   check_regions(frame);
   const std::vector<StoredPlane> planes = stored_planes(&frame);
-  check_channels(header, planes);
-  tbb::enumerable_thread_specific<std::unique_ptr<BlockReader>> readers(
-      [&] { return std::make_unique<BlockReader>(path, header.dataWindow(), planes); });
-  const int blocks = (frame.region.height() + kBlockRows - 1) / kBlockRows;
-  tbb::parallel_for(0, blocks, [&](int block) { readers.local()->read(block); });
+  check_content(header, planes);
+  read_blocks(file, BlockRows(planes, frame.region.width(), frame.region.height()));
   return frame;
 }
 
@@ -263,7 +227,11 @@ Frame read_frame(const std::string& path) {
 void save_frame(const Frame& frame, const std::string& path) {
   // The planes are only read here; the list is shared with reading, which writes them.
   const std::vector<StoredPlane> planes = stored_planes(const_cast<Frame*>(&frame));
-  write_exr(path, [&](WriterStream* stream) { write_rows(frame, planes, make_header(frame, planes), stream); });
+  write_exr(path, [&](WriterStream* stream) {
+    BlockFile file(make_header(frame, planes), stream);
+    write_blocks(BlockRows(planes, frame.region.width(), frame.region.height()), &file);
+    file.finish();
+  });
 }
 
 std::shared_ptr<const Frame> load_frame(const std::string& path) {

@@ -9,6 +9,8 @@
 
 namespace gradus {
 
+// By the threads of the caller's arena.
+//
 // Writes PATH as a whole or not at all: under a temporary name beside it, synced, then renamed. Throws Error with path and cause.
 void save_frame(const Frame& frame, const std::string& path);
 // Throws invalid_argument with path and cause for a file that is missing, damaged or no frame.

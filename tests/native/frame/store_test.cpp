@@ -1,6 +1,11 @@
 // F6: stored frames are exact, whole or absent; damaged ones are refused. And frames read back resume and reconstruct alike.
 #include "frame/store.h"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -84,6 +89,47 @@ TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
   for (const uint32_t kind : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     EXPECT_EQ(combine(*frame, kind, 0.2f, frame->region, never, &report),
               combine(*load_frame(path()), kind, 0.2f, frame->region, never, &report));
+  }
+}
+
+// By OpenEXR alone: reads every channel and writes it again, as earlier versions wrote frames.
+void rewrite(const std::string& from, const std::string& to) {
+  Imf::InputFile file(from.c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+  std::vector<std::vector<uint32_t>> planes;
+  Imf::FrameBuffer buffer;
+  for (auto channel = file.header().channels().begin(); channel != file.header().channels().end(); ++channel) {
+    planes.emplace_back(size_t(width) * size_t(height));
+    buffer.insert(channel.name(), Imf::Slice::Make(channel.channel().type, planes.back().data(), window));
+  }
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.min.y, window.max.y);
+  Imf::OutputFile written(to.c_str(), file.header());
+  written.setFrameBuffer(buffer);
+  written.writePixels(height);
+}
+
+TEST_F(F6_Store, OpenExrReadsItAndWhatOpenExrPackedIsRead) {
+  for (const auto& [width, height] : {std::pair{61u, 37u}, {64u, 48u}, {1u, 1u}}) {
+    const auto frame = rendered(all_passes(width, height, 4));
+    save_frame(*frame, path());
+    rewrite(path(), path("old.exr"));
+    EXPECT_TRUE(same_samples(*frame, *load_frame(path("old.exr"))));
+  }
+}
+
+TEST_F(F6_Store, FilesOfAnotherCompressionAreNamed) {
+  save_frame(*rendered(small_settings(32, 32, 1)), path());
+  Imf::InputFile file(path().c_str());
+  Imf::Header header = file.header();
+  header.compression() = Imf::PIZ_COMPRESSION;
+  { Imf::OutputFile(path("piz.exr").c_str(), header); }
+  try {
+    load_frame(path("piz.exr"));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("packed by another program"), std::string::npos) << e.what();
   }
 }
 
