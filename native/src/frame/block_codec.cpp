@@ -139,8 +139,10 @@ bool BlockCodec::unpack(const unsigned char* packed, size_t size, Bytes* block) 
     return true;
   }
   bytes_.resize(block->size());
-  if (libdeflate_zlib_decompress(decompressor_.get(), packed, size, bytes_.data(), bytes_.size(), nullptr) != LIBDEFLATE_SUCCESS)
-    return false;
+  size_t read = 0;
+  const libdeflate_result result =
+      libdeflate_zlib_decompress_ex(decompressor_.get(), packed, size, bytes_.data(), bytes_.size(), &read, nullptr);
+  if (result != LIBDEFLATE_SUCCESS || read != size) return false;
   integrate(&bytes_);
   join(bytes_, block);
   return true;

@@ -199,7 +199,7 @@ void read_blocks(const Imf::InputFile& file, const BlockRows& rows) {
   tbb::parallel_for(0, rows.blocks(), [&](int block) {
     Reader& reader = readers.local();
     reader.bytes.resize(rows.bytes(block));
-    reader.packed.resize(rows.bytes(0));
+    reader.packed.resize(rows.most_bytes());  // OpenEXR reads as much, if the file says so
     int size = int(reader.packed.size());
     file.rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()), size);
     if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes)) throw damaged("a block of its rows is broken");

@@ -62,6 +62,9 @@ TEST(BlockCodec, WhatIsBrokenIsRefused) {
   Bytes longer(block.size() + 4), shorter(block.size() - 4);
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &longer));
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &shorter));
+  packed.push_back(0);
+  EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "it goes on";
+  packed.pop_back();
   packed[packed.size() / 2] ^= 0x55;
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "its sum is another";
   EXPECT_FALSE(codec.unpack(packed.data(), 0, &back));

@@ -168,6 +168,26 @@ TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
   EXPECT_GE(refused, 100);
 }
 
+// OpenEXR allows a block of sixteen rows where the picture has three.
+TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
+  save_frame(*rendered(small_settings(48, 3, 2)), path());
+  std::ifstream file(path(), std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const auto size_at = [&](size_t i) {
+    int32_t size = 0;
+    std::memcpy(&size, bytes.data() + i, sizeof(size));
+    return size_t(size);
+  };
+  size_t place = bytes.size() - 5;  // of the only block's size, which ends the file
+  while (place > 0 && place + 4 + size_at(place) != bytes.size()) --place;
+  ASSERT_GT(place, 0u);
+  const auto claimed = static_cast<int32_t>(4 * size_at(place));
+  std::memcpy(bytes.data() + place, &claimed, sizeof(claimed));
+  bytes.resize(bytes.size() + size_t(claimed));
+  std::ofstream(path("bad.exr"), std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+  EXPECT_THROW(load_frame(path("bad.exr")), Error);
+}
+
 TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
   const auto frame = rendered(all_passes(96, 64, 2));
   save_frame(*frame, path("reference.exr"));
