@@ -1,18 +1,24 @@
 #include "render/denoise_combined.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/device.h"
 #include "base/error.h"
+#include "base/types.h"
 #include "denoise/denoise.h"
 #include "frame/features.h"
 #include "reconstruct/feature_filter.h"
+#include "reconstruct/solver_planes.h"
 #include "render/pass_read.h"
 
 namespace gradus {
 namespace {
 
 // In the mean of a regression on features and of what the network makes of the noisy image: they err in different places, and their mean
-// errs less than either (docs/method.md).
-constexpr float kShareOfNetwork = 0.6f;
+// errs less than either. A geometric one, since the larger of two is more often wrong, of light above a tenth of the median
+// (docs/method.md).
+constexpr float kShareOfNetwork = 0.7f, kDark = 0.1f;
 
 // Without its noise, of the region.
 std::vector<float> read_guide(const Frame& frame, uint32_t pass, const Region& region) {
@@ -24,6 +30,27 @@ std::vector<float> read_guide(const Frame& frame, uint32_t pass, const Region& r
     pixels.insert(pixels.end(), row, row + 3 * size_t(region.width()));
   }
   return pixels;
+}
+
+// `combined`, RGBA, becomes its mean with `image`, RGB.
+void blend(const std::vector<float>& image, std::vector<float>* combined) {
+  std::vector<float> light;
+  light.reserve(image.size() / 3);
+  for (size_t i = 0; i < combined->size(); i += 4) {
+    const float sum = (*combined)[i] + (*combined)[i + 1] + (*combined)[i + 2];
+    if (sum > 0.0f && is_finite(sum)) light.push_back(sum / 3.0f);
+  }
+  const float dark = kDark * median_or_one(&light), least = 1e-3f * dark;
+  for (size_t i = 0; i < image.size(); ++i) {
+    float& value = (*combined)[i / 3 * 4 + i % 3];
+    const float regressed = std::max(value + dark, least), denoised = std::max(image[i] + dark, least);
+    value = regressed * std::pow(denoised / regressed, kShareOfNetwork) - dark;
+  }
+}
+
+// `combined`, RGBA, becomes `image`, RGB.
+void replace(const std::vector<float>& image, std::vector<float>* combined) {
+  for (size_t i = 0; i < image.size(); ++i) (*combined)[i / 3 * 4 + i % 3] = image[i];
 }
 
 }  // namespace
@@ -57,13 +84,9 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const Frame& fra
   NoisyPicture picture{region.width(), region.height(), blends ? noisy.data() : combined.data(), 4};
   if (!albedo.empty()) picture.albedo = albedo.data();
   if (!normal.empty()) picture.normal = normal.data();
-  const float share = blends ? kShareOfNetwork : 1.0f;
   const std::vector<float> image = denoise(library, picture, threads, cancel);
   std::vector<float> result = combined;
-  for (size_t i = 0; i < image.size(); ++i) {
-    float& value = result[i / 3 * 4 + i % 3];
-    value += share * (image[i] - value);
-  }
+  blends ? blend(image, &result) : replace(image, &result);
   return result;
 }
 

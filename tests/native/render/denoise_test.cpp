@@ -153,7 +153,9 @@ TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
   }
 }
 
-// A network makes nothing more of what is smooth: it looks at the noisy image, and the mean of both is delivered.
+double luminance(const float* pixel) { return (double(pixel[0]) + double(pixel[1]) + double(pixel[2])) / 3.0; }
+
+// A network makes nothing more of what is smooth: it looks at the noisy image, and the geometric mean of both is delivered.
 TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
@@ -162,8 +164,22 @@ TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
   const auto render = finished(settings, 1.0f);
   std::vector<float> expected = denoised(read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll), *render->frame());
   const auto regularized = read(*plain, GRADUS_PASS_COMBINED, kAll);
-  for (size_t i = 0; i < expected.size(); ++i) expected[i] = i % 4 == 3 ? regularized[i] : 0.6f * expected[i] + 0.4f * regularized[i];
+  std::vector<double> lights;
+  for (size_t i = 0; i < regularized.size(); i += 4) lights.push_back(luminance(&regularized[i]));
+  std::nth_element(lights.begin(), lights.begin() + ptrdiff_t(lights.size() / 2), lights.end());
+  const double dark = 0.1 * lights[lights.size() / 2];
+  for (size_t i = 0; i < expected.size(); ++i) {
+    const double share = i % 4 == 3 ? 0.0 : 0.7;
+    expected[i] = float(std::pow(expected[i] + dark, share) * std::pow(regularized[i] + dark, 1.0 - share) - dark);
+  }
   expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
+}
+
+// A black picture has no median, and nothing to take a logarithm of.
+TEST_F(DenoisedRender, ABlackPictureStaysFinite) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  for (const float value : read(*finished(settings, 0.0f), GRADUS_PASS_COMBINED, kAll)) ASSERT_TRUE(std::isfinite(value)) << value;
 }
 
 // The picture was there.
