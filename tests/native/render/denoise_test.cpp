@@ -41,12 +41,14 @@ GradusSettings settings_with(uint32_t denoiser) {
 class DenoisedRender : public ::testing::Test {
  protected:
   void TearDown() override { unsetenv("FAKE_OIDN"); }
-  std::unique_ptr<Render> start(const GradusSettings& settings, float noise = 1.0f) const {
-    return std::make_unique<Render>(device, empty_snapshot(), settings, nullptr,
-                                    fake_factory([=](FakeIntegrator* f) { f->noise = noise; }));
+  std::unique_ptr<Render> start(const GradusSettings& settings, float noise = 1.0f, float light = 1.0f) const {
+    return std::make_unique<Render>(device, empty_snapshot(), settings, nullptr, fake_factory([=](FakeIntegrator* f) {
+                                      f->noise = noise;
+                                      f->light = light;
+                                    }));
   }
-  std::unique_ptr<Render> finished(const GradusSettings& settings, float noise = 1.0f) const {
-    auto render = start(settings, noise);
+  std::unique_ptr<Render> finished(const GradusSettings& settings, float noise = 1.0f, float light = 1.0f) const {
+    auto render = start(settings, noise, light);
     render->wait(-1.0);
     return render;
   }
@@ -179,7 +181,7 @@ TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
 TEST_F(DenoisedRender, ABlackPictureStaysFinite) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
-  for (const float value : read(*finished(settings, 0.0f), GRADUS_PASS_COMBINED, kAll)) ASSERT_TRUE(std::isfinite(value)) << value;
+  for (const float value : read(*finished(settings, 1.0f, 0.0f), GRADUS_PASS_COMBINED, kAll)) ASSERT_TRUE(std::isfinite(value)) << value;
 }
 
 // The picture was there.

@@ -37,6 +37,7 @@ struct FakeIntegrator final : Integrator {
   GradusSettings settings;
   bool gradients;
   float noise = 1.0f;
+  float light = 1.0f;               // that all radiance is multiplied by
   int32_t quiet_until = 0;          // left of this column there is a tenth of the noise
   int32_t rays_below = 0;           // below this row a sample costs five rays in place of one
   uint32_t feature_seed = 0x10000;  // of the noise of features; 0: that of the image, which they explain then
@@ -61,7 +62,8 @@ struct FakeIntegrator final : Integrator {
       if (stop.load()) return;
       const int half = int(s % 2);
       const float value = value_of(x, y, s);
-      frame->components[0].primal[half][i] += Radiance(value, 0.5f * value, 2.0f * value, frame->channels == 4 ? 0.75f : 0.0f);
+      frame->components[0].primal[half][i] +=
+          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, frame->channels == 4 ? 0.75f : 0.0f);
       ++frame->count[half][i];
       counters->rays_primary += y < rays_below ? 5 : 1;
       for (PassPlane& plane : frame->passes) add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
