@@ -1,7 +1,7 @@
 // Blocks of OpenEXR's ZIP compression: sixteen rows, of each row one channel after the other, packed in zlib's format.
 //
-// OpenEXR does the same by zlib alone. That takes three times as long where most planes are smooth, and six times where they are noisy
-// sums: of these, most bytes are not worth packing.
+// OpenEXR does the same by zlib alone. That takes two to three times as long where most planes are smooth, and four times where they are
+// noisy sums: of these, most bytes are not worth packing.
 #pragma once
 
 #include <cstddef>
