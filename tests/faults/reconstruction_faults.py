@@ -6,6 +6,7 @@ from fault import Fault, native
 
 REGULARIZED = "native/src/reconstruct/regularized.cpp"
 FEATURE_REGRESSION = "native/src/reconstruct/feature_regression.cpp"
+REGRESSION_ERROR = "native/src/reconstruct/regression_error.cpp"
 LOCAL_REGRESSION = "native/src/reconstruct/local_regression.cpp"
 TILE = "native/src/reconstruct/regression_tile.h"
 ERROR_ESTIMATE = "native/src/reconstruct/error_estimate.cpp"
@@ -17,6 +18,7 @@ OF_FEATURES = (native("Features.HalvesAverageToThePass"),)
 OF_FILTER = (native("FeatureFilter.DifferencesCountByTheVariance"),)
 KEEPS_FEATURES = (native("B2_Regularized.KeepsWhatTheFeaturesExplain"),)
 OF_ERROR = (native("B2_Regularized.ErrorIsVarianceAndSquaredBias"),)
+OF_PARTS = (native("A8_RegressionError.*"),)
 OF_SHARES = (native("B2_Regression.PixelsAndWindowsCountByTheirErrors"),)
 OF_PIXELS = (native("B2_Regularized.BelievesPixelsByTheirVariance"),)
 OF_DIFFERENCES = (native("B2_Regularized.DifferencesCountByTheirVariance"),)
@@ -64,8 +66,8 @@ RECONSTRUCTION = (
         HALVES,
         "the second step takes the image for its noise",
         FEATURE_REGRESSION,
-        "of_noise = difference(image.half_difference, first.noise);",
-        "of_noise = difference(image.mean, first.noise);",
+        "of_noise = difference(image.half_difference, first->noise);",
+        "of_noise = difference(image.mean, first->noise);",
         OF_ERROR,
     ),
     Fault(
@@ -192,8 +194,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "four times, of windows' bias",
         TILE,
-        "bias = residual > zero ? unit * residual : zero;",
-        "bias = residual > zero ? 4.0f * unit * residual : zero;",
+        "bias = unit * residual;",
+        "bias = 4.0f * unit * residual;",
         OF_SHARES,
     ),
     Fault(
@@ -201,8 +203,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "four times, of the regression beside sampled differences",
         REGULARIZED,
-        "const float squared = error.row(y)[x] + kLeastError;",
-        "const float squared = 4.0f * error.row(y)[x] + kLeastError;",
+        "0.5f * kSharedDifference * both",
+        "2.0f * kSharedDifference * both",
         OF_DIFFERENCES,
     ),
     Fault(
@@ -259,13 +261,16 @@ RECONSTRUCTION = (
         "multiply(scale, &error);",
         (native("B2_Regularized.ScalesWithTheImage"),),
     ),
-    Fault(15, VARIANCE, "in Error: bias is left out", FEATURE_REGRESSION, "  add(first.bias, &error_);\n", "", OF_ERROR),
+    Fault(15, VARIANCE, "in Error: bias is left out", REGRESSION_ERROR, " + std::max(bias.row(y)[x], 0.0f);", ";", OF_ERROR),
+    Fault(15, VARIANCE, "in Error: bias below 0 counts", REGRESSION_ERROR, "std::max(bias.row(y)[x], 0.0f)", "bias.row(y)[x]", OF_PARTS),
+    Fault(15, VARIANCE, "in Error: noise is not a share of the light", REGRESSION_ERROR, " / light.row(y)[x]; }", "; }", OF_PARTS),
+    Fault(15, VARIANCE, "in Error: lost light is left out", REGRESSION_ERROR, " + kLost * lost.row(y)[x]", "", OF_PARTS),
     Fault(
         15,
         VARIANCE,
         "in Error: noise of the second step is left out",
         FEATURE_REGRESSION,
-        "  add(second.noise, &noise);\n",
+        "  add(second.noise, &first->noise);\n",
         "",
         GIVES_BACK,
     ),
@@ -278,7 +283,7 @@ RECONSTRUCTION = (
         "row[i] = row[i] - other[i];",
         OF_ESTIMATE,
     ),
-    Fault(16, SECOND_STEP, "of the image", FEATURE_REGRESSION, "  add(second.mean, &image_);\n", "", GIVES_BACK),
+    Fault(16, SECOND_STEP, "of the image", FEATURE_REGRESSION, "  add(second.mean, &first->mean);\n", "", GIVES_BACK),
     Fault(
         16,
         SECOND_STEP,

@@ -1,0 +1,51 @@
+// A8: what the error of the regression on features is made of.
+#include "reconstruct/regression_error.h"
+
+#include <gtest/gtest.h>
+
+#include "reconstruct/field_values.h"
+
+namespace gradus {
+namespace {
+
+constexpr int kWidth = 60, kHeight = 40;
+constexpr double kHidden = 1.7, kLost = 0.3;
+
+Field filled(int channels, const std::function<float(int x)>& value) {
+  Field field(kWidth, kHeight, channels);
+  for_values(&field, [&](float& v, int x, int, int) { v = value(x); });
+  return field;
+}
+Field constant(float value, int channels = 3) {
+  return filled(channels, [=](int) { return value; });
+}
+
+const Field kNone = constant(0.0f), kOne = constant(1.0f), kUnbiased = constant(0.0f, 1);
+
+TEST(A8_RegressionError, NoiseCountsForMoreThanTheWeightsShow) {
+  const Field noise = constant(0.1f), error = regression_error({kOne, kNone, kOne, noise}, kUnbiased);
+  EXPECT_NEAR(error.row(20)[30], kHidden * 0.01, 1e-6);
+}
+
+// In absolute squares the wall would have a thousand times its error within three pixels of the lamp.
+TEST(A8_RegressionError, NoiseOfALampIsNotThatOfTheWallBesideIt) {
+  const Field light = filled(3, [](int x) { return x < 30 ? 100.0f : 1.0f; });
+  const Field noise = filled(3, [](int x) { return x < 30 ? 10.0f : 0.1f; });
+  const Field error = regression_error({light, kNone, light, noise}, kUnbiased);
+  EXPECT_NEAR(error.row(20)[31], kHidden * 0.01, 0.1 * kHidden * 0.01);
+  EXPECT_NEAR(error.row(20)[28], kHidden * 100.0, 0.1 * kHidden * 100.0);
+}
+
+TEST(A8_RegressionError, BiasIsAddedAndNeverTakesAway) {
+  EXPECT_NEAR(regression_error({kOne, kNone, kOne, kNone}, constant(0.5f, 1)).row(20)[30], 0.5, 1e-6);
+  EXPECT_EQ(regression_error({kOne, kNone, kOne, kNone}, constant(-0.5f, 1)).row(20)[30], 0.0f);
+}
+
+TEST(A8_RegressionError, LightThatIsLostIsKnownUnlessNoiseHidesIt) {
+  const Field before = constant(1.2f);
+  EXPECT_NEAR(regression_error({before, kNone, kOne, kNone}, kUnbiased).row(20)[30], kLost * 0.04, 1e-4);
+  EXPECT_EQ(regression_error({before, constant(4.0f), kOne, kNone}, kUnbiased).row(20)[30], 0.0f);
+}
+
+}  // namespace
+}  // namespace gradus
