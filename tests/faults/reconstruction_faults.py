@@ -307,7 +307,7 @@ RECONSTRUCTION = (
         "it stays as noisy as it was sampled",
         REGULARIZED,
         "const Field alpha = regression.apply(read_alpha(frame, component), cancel);",
-        "const Field alpha = read_alpha(frame, component);",
+        "const Field alpha = cancel() ? Field() : read_alpha(frame, component);",
         OF_ALPHA,
     ),
     Fault(

@@ -515,7 +515,8 @@ GRADUS_API GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other);
 /* Size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height);
 /* Reconstructs Combined from the planes; RGBA. alpha: weight of the primal against the gradients; 0: automatic. denoiser: GradusDenoiser.
- * error: count / 4 floats for pass Error of what is reconstructed, before a denoiser; may be NULL. */
+ * error: count / 4 floats for pass Error; may be NULL. AUTO leaves the denoiser out of frames with fewer than
+ * 8 samples per pixel. */
 GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
                                                 size_t count, float* error);
 GRADUS_API GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count);

@@ -7,6 +7,7 @@
 #include "base/fpu.h"
 #include "frame/features.h"
 #include "frame/store.h"
+#include "plan/plan.h"
 #include "render/combine.h"
 #include "render/denoise_combined.h"
 #include "render/pass_read.h"
@@ -54,7 +55,8 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
   const auto never = [] { return false; };
   const uint32_t threads = frame.settings.threads > 0 ? frame.settings.threads : object->device->threads();
   std::string why_not;
-  const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
+  auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
+  if (denoiser == GRADUS_DENOISER_AUTO && !denoiser_pays(mean_samples(frame))) library.reset();
   std::vector<float> image, estimate;
   tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
@@ -70,6 +72,7 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
       object->device->warnings().add(failure);
     } else {
       image = std::move(denoised);
+      for (float& value : estimate) value *= denoised_error(resolve(reconstruction, frame));
     }
   }
   std::copy(image.begin(), image.end(), rgba);

@@ -32,7 +32,9 @@ void choose_automatically(const GradusSettings& settings, Plan* plan) {
   const bool wants_differences = wants(settings.passes, GRADUS_PASS_GRADIENT_X) || wants(settings.passes, GRADUS_PASS_GRADIENT_Y);
   if (!needs_gradients(settings.reconstruction) && !wants_differences) {  // on all of 13 scenes (docs/method.md)
     plan->integrator = GRADUS_INTEGRATOR_PATH;
-    plan->chosen.emplace_back("integrator path", "automatic: features make more of more paths than of differences");
+    const bool none = settings.reconstruction == GRADUS_RECONSTRUCTION_NONE;
+    plan->chosen.emplace_back("integrator path", none ? "automatic: nothing is reconstructed from differences"
+                                                      : "automatic: features make more of more paths than of differences");
     return;
   }
   plan->integrator = GRADUS_INTEGRATOR_GRADIENT;
@@ -85,7 +87,7 @@ void choose_denoiser(const GradusSettings& settings, const HostDenoiser& denoise
   const bool automatic = settings.denoiser == GRADUS_DENOISER_AUTO;
   if (denoiser.name.empty()) {
     plan->skipped.emplace_back("denoiser", denoiser.why_not);
-  } else if (automatic && settings.samples < kDenoiserPays) {
+  } else if (automatic && !denoiser_pays(settings.samples)) {
     plan->skipped.emplace_back("denoiser", "automatic: " + too_few_to_denoise());
   } else {
     plan->denoises = true;
@@ -105,15 +107,19 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
   }
   plan->delivered = whole ? full : Region{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
   plan->sampled = plan->delivered;
-  if (plan->solves) {
+  if (plan->solves || plan->denoises) {
     plan->sampled.x0 = std::max(full.x0, plan->delivered.x0 - kGuardRing);
     plan->sampled.y0 = std::max(full.y0, plan->delivered.y0 - kGuardRing);
+    if (plan->reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {  // its windows and squares begin where those of the full frame do
+      plan->sampled.x0 -= plan->sampled.x0 % kLargestSquare;
+      plan->sampled.y0 -= plan->sampled.y0 % kLargestSquare;
+    }
     plan->sampled.x1 = std::min(full.x1, plan->delivered.x1 + kGuardRing);
     plan->sampled.y1 = std::min(full.y1, plan->delivered.y1 + kGuardRing);
   }
   if (plan->sampled.area() > plan->delivered.area()) {
     plan->chosen.emplace_back("guard ring of 35 pixels",
-                              "the region is a part of the frame, and its reconstruction must not feel the border");
+                              "the region is a part of the frame, and its picture should hardly feel the border");
   }
 }
 
@@ -186,11 +192,13 @@ uint32_t without_gradients(const Plan& plan) {
   return needs_gradients(plan.reconstruction) ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan.reconstruction;
 }
 
+bool denoiser_pays(double samples) { return samples >= kDenoiserPays; }
+
 bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped) {
   if (!plan.denoises_if_it_pays) return plan.denoises;
   char taken[80];
   std::snprintf(taken, sizeof(taken), "automatic: %.1f samples were taken within the time limit", samples);
-  if (samples < kDenoiserPays) {
+  if (!denoiser_pays(samples)) {
     skipped->emplace_back("denoiser", taken + std::string(": ") + too_few_to_denoise());
     return false;
   }
@@ -252,8 +260,8 @@ uint64_t noise_floats(const Plan& plan) {
 // What the host's denoiser takes: picture and guides, twice, and its network, which goes through large pictures in tiles (as measured with
 // Open Image Denoise 2.3.3).
 uint64_t denoiser_bytes(const Plan& plan) {
-  const uint64_t area = uint64_t(plan.delivered.area()), tile = std::min(area, uint64_t{2160} * 2160);
-  return 22 * sizeof(float) * area + 800 * tile + (32 << 20);
+  const uint64_t area = uint64_t(plan.sampled.area()), tile = std::min(area, uint64_t{2160} * 2160);
+  return 23 * sizeof(float) * area + 800 * tile + (32 << 20);
 }
 
 bool reconstructs(const Plan& plan) { return plan.solves || plan.denoises; }

@@ -46,8 +46,14 @@ inline constexpr int kGuardRing = 35;
 // Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced (contract 5.1).
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser = {"", "denoiser is none"});
 
+// Of REGULARIZED, in pixels: all others are parts of it (reconstruct/feature_regression.cpp).
+constexpr int kLargestSquare = 16;
+
 // The reconstruction where no gradients are sampled, because the integrator has none or the pilot found that they pay nowhere.
 uint32_t without_gradients(const Plan& plan);
+
+// Whether the denoiser takes more off the error of so many samples per pixel than those that its time would buy.
+bool denoiser_pays(double samples);
 
 // Whether the denoiser runs after so many samples per pixel. Where the plan left that open it says what was decided, and why.
 bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped);

@@ -11,7 +11,7 @@ namespace gradus {
 // What is known of a frame's component, in three channels and the scale of 1 for its median luminance.
 struct HalvedImage {
   Field mean;
-  Field half_difference;  // (A − B)/2; the mean itself where a half has no samples: nothing is known of its noise
+  Field half_difference;  // (A − B)/2; a guess where a half has no samples
 };
 
 class FeatureRegression {

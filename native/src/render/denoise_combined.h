@@ -24,4 +24,8 @@ std::vector<float> denoise_combined(const OidnLibrary& library, const Frame& fra
                                     uint32_t threads, const std::function<bool()>& cancel, const std::vector<float>& combined,
                                     std::string* failure);
 
+// Squared error of what comes out, over that of what went in: as measured where it is a mean with REGULARIZED (docs/method.md), and 1, as
+// nobody knows, elsewhere.
+float denoised_error(uint32_t reconstruction);
+
 }  // namespace gradus

@@ -265,7 +265,7 @@ void RenderLoop::denoise_frame() {
     return;
   }
   stats_.denoiser = denoiser_->name();
-  picture_.show_denoised(std::move(rgba));
+  picture_.show_denoised(std::move(rgba), denoised_error(frame_->settings.reconstruction));
 }
 
 void RenderLoop::set_phase(GradusPhase phase) {

@@ -33,9 +33,10 @@ void Picture::show(std::vector<float> rgba, std::vector<float> error) {
   is_preview_ = false;
 }
 
-void Picture::show_denoised(std::vector<float> rgba) {
+void Picture::show_denoised(std::vector<float> rgba, float error) {
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
+  for (float& value : error_) value *= error;
 }
 
 void Picture::show_preview(std::vector<float> rgba) {

@@ -22,7 +22,8 @@ class Picture {
   // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
   void show(std::vector<float> rgba, std::vector<float> error);
   // In place of what was shown, whose error it keeps.
-  void show_denoised(std::vector<float> rgba);
+  // error: of what it was before, by this factor.
+  void show_denoised(std::vector<float> rgba, float error);
   // Combined for the time being: of other samples than the frame's.
   void show_preview(std::vector<float> rgba);
   void forget_preview();

@@ -1,4 +1,4 @@
-// When what a watcher sees is reconstructed again: so seldom that it takes a twentieth of the time.
+// When what a watcher sees is reconstructed again: so seldom that it takes a twentieth of the time, of a short render a quarter once.
 //
 // Seconds are those of the wall. They are what the artist waits for, on any number of threads and however well either part uses them; CPU
 // time of the process would hold what the host does besides.

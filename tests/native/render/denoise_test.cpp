@@ -177,6 +177,34 @@ TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
   expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
 }
 
+// Its error is known as a share of REGULARIZED's.
+TEST_F(DenoisedRender, ErrorIsThatOfTheDenoisedPicture) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+  const auto plain = read(*finished(settings), GRADUS_PASS_ERROR, kAll);
+  settings.denoiser = GRADUS_DENOISER_OIDN;
+  const auto with = read(*finished(settings), GRADUS_PASS_ERROR, kAll);
+  for (size_t i = 0; i < plain.size(); ++i) ASSERT_FLOAT_EQ(with[i], 0.7f * plain[i]) << i;
+}
+
+// A border is denoised with the samples around it.
+TEST_F(DenoisedRender, ABorderIsThatOfTheFullFrame) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
+  settings.integrator = GRADUS_INTEGRATOR_PATH;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;
+  const Region part{10, 5, 30, 20};
+  const auto whole = read(*finished(settings), GRADUS_PASS_COMBINED, kAll);
+  std::vector<float> expected;
+  for (int y = part.y0; y < part.y1; ++y) {
+    const auto row = whole.begin() + 4 * (y * 40 + part.x0);
+    expected.insert(expected.end(), row, row + ptrdiff_t{4} * part.width());
+  }
+  const uint32_t region[] = {10, 5, 30, 20};
+  std::copy(region, region + 4, settings.region);
+  expect_near(read(*finished(settings), GRADUS_PASS_COMBINED, part), expected);
+}
+
 // A black picture has no median, and nothing to take a logarithm of.
 TEST_F(DenoisedRender, ABlackPictureStaysFinite) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
