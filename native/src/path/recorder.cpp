@@ -23,7 +23,7 @@ PassShare share_of(const std::array<Rgb, 3>& parts) {
   PassShare share;
   for (int pass = 0; pass < 3; ++pass) {
     for (int c = 0; c < 3; ++c) {
-      share[pass][c] = sum[c] > 0.0f ? parts[pass][c] / sum[c] : (pass == 0 ? 1.0f : 0.0f);
+      share[pass][c] = sum[c] != 0.0f ? parts[pass][c] / sum[c] : (pass == 0 ? 1.0f : 0.0f);
     }
   }
   return share;
