@@ -53,26 +53,26 @@ uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
 void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
                       float* error) {
   const auto never = [] { return false; };
+  reconstruction = resolve(reconstruction, frame);
   const uint32_t threads = frame.settings.threads > 0 ? frame.settings.threads : object->device->threads();
   std::string why_not;
-  auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
-  if (denoiser == GRADUS_DENOISER_AUTO && !denoiser_pays(mean_samples(frame))) library.reset();
+  if (denoiser == GRADUS_DENOISER_AUTO && !denoiser_pays(mean_samples(frame))) denoiser = GRADUS_DENOISER_NONE;
+  const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
   std::vector<float> image, estimate;
   tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
     SolveReport report;
-    image = combine(frame, resolve(reconstruction, frame), alpha, delivered(frame), never, &report, error != nullptr ? &estimate : nullptr);
+    image = combine(frame, reconstruction, alpha, delivered(frame), never, &report, error != nullptr ? &estimate : nullptr);
   });
   if (library) {
     if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
     std::string failure;
-    std::vector<float> denoised =
-        denoise_combined(*library, frame, resolve(reconstruction, frame), delivered(frame), threads, never, image, &failure);
+    std::vector<float> denoised = denoise_combined(*library, frame, reconstruction, delivered(frame), threads, never, image, &failure);
     if (denoised.empty()) {
       object->device->warnings().add(failure);
     } else {
       image = std::move(denoised);
-      for (float& value : estimate) value *= denoised_error(resolve(reconstruction, frame));
+      for (float& value : estimate) value *= denoised_error(reconstruction);
     }
   }
   std::copy(image.begin(), image.end(), rgba);

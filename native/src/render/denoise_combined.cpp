@@ -22,16 +22,20 @@ constexpr float kShareOfNetwork = 0.7f, kDark = 0.1f;
 // Of REGULARIZED's: 0.68 at 8 samples, 0.76 at 32.
 constexpr float kErrorOfMean = 0.7f;
 
+// The part of an RGB picture of `whole` that lies in `region`.
+std::vector<float> crop(const std::vector<float>& rgb, const Region& whole, const Region& region) {
+  std::vector<float> part;
+  part.reserve(3 * size_t(region.area()));
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    const auto row = rgb.begin() + 3 * (ptrdiff_t(y - whole.y0) * whole.width() + (region.x0 - whole.x0));
+    part.insert(part.end(), row, row + 3 * ptrdiff_t(region.width()));
+  }
+  return part;
+}
+
 // Without its noise, of the region.
 std::vector<float> read_guide(const Frame& frame, uint32_t pass, const Region& region) {
-  const FeatureImage image = filter_feature(read_feature(frame, pass), frame.region.width(), frame.region.height());
-  std::vector<float> pixels;
-  pixels.reserve(3 * size_t(region.area()));
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    const float* const row = image.values.data() + 3 * frame.index(region.x0, y);
-    pixels.insert(pixels.end(), row, row + 3 * size_t(region.width()));
-  }
-  return pixels;
+  return crop(filter_feature(read_feature(frame, pass), frame.region.width(), frame.region.height()).values, frame.region, region);
 }
 
 // `combined`, RGBA, becomes its mean with `image`, RGB.
@@ -68,17 +72,6 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
 }
 
 namespace {
-
-// The part of an RGB picture of `whole` that lies in `region`.
-std::vector<float> crop(const std::vector<float>& rgb, const Region& whole, const Region& region) {
-  std::vector<float> part;
-  part.reserve(3 * size_t(region.area()));
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    const auto row = rgb.begin() + 3 * (ptrdiff_t(y - whole.y0) * whole.width() + (region.x0 - whole.x0));
-    part.insert(part.end(), row, row + 3 * ptrdiff_t(region.width()));
-  }
-  return part;
-}
 
 std::vector<float> denoise_or_throw(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
                                     uint32_t threads, const std::function<bool()>& cancel, const std::vector<float>& combined) {

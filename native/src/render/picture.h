@@ -21,8 +21,7 @@ class Picture {
   void show_tile(const Frame& frame, const Region& tile);
   // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
   void show(std::vector<float> rgba, std::vector<float> error);
-  // In place of what was shown, whose error it keeps.
-  // error: of what it was before, by this factor.
+  // In place of what was shown. error: its squared error, over that of what was shown.
   void show_denoised(std::vector<float> rgba, float error);
   // Combined for the time being: of other samples than the frame's.
   void show_preview(std::vector<float> rgba);
