@@ -32,4 +32,10 @@ const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
   return plane != frame.passes.end() ? &*plane : nullptr;
 }
 
+uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes) {
+  const uint64_t offsets = gradients ? uint64_t{kOffsets} : 0, radiances = uint64_t(components) * (1 + offsets);
+  const uint64_t half = radiances * sizeof(Radiance) + sizeof(uint32_t) + offsets * sizeof(float);
+  return kHalves * half + pass_bytes_per_pixel(passes) + (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
+}
+
 }  // namespace gradus

@@ -11,5 +11,7 @@ std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels);
 uint64_t kept_passes(const Frame& frame);
 // nullptr: there is none.
 const PassPlane* find_plane(const Frame& frame, uint32_t pass);
+// What Frame::memory_bytes() counts per pixel, with planes for these passes.
+uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes);
 
 }  // namespace gradus

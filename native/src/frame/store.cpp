@@ -148,9 +148,10 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   GradusSettings settings = settings_from_json(description.at("settings"));
   const uint64_t passes = description.at("planes");
   const Region region{data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
-  const uint64_t per_pixel =
-      uint64_t(components) * kHalves * sizeof(Radiance) * (gradients ? 1 + kOffsets : 1) + pass_bytes_per_pixel(passes);
-  if (per_pixel * uint64_t(region.area()) > machine_memory_bytes()) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
+  const bool has_fallback = wants(settings.passes, GRADUS_PASS_FALLBACK);
+  const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
+  const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes) * uint64_t(region.area()), available = machine_memory_bytes();
+  if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   Frame frame(uint32_t(display.max.x + 1), uint32_t(height), region, channels, components, gradients);
   frame.settings = settings;
@@ -160,7 +161,7 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   frame.samples = ranges_from_json(description.at("samples"));
   if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), region);
   frame.passes = make_pass_planes(passes, size_t(region.area()));
-  if (wants(settings.passes, GRADUS_PASS_FALLBACK)) frame.fallback.assign(size_t(region.area()), 0.0f);
+  if (has_fallback) frame.fallback.assign(size_t(region.area()), 0.0f);
   return frame;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "bsdf/ggx.h"
+#include "frame/pass_planes.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
 
@@ -269,18 +270,14 @@ bool reconstructs(const Plan& plan) { return plan.solves || plan.denoises; }
 // The frame of the picture that a watcher sees first (render/quarter_picture.h), and its reconstruction.
 uint64_t quarter_bytes(const Plan& plan) {
   const auto side = [](int32_t size) { return uint64_t(size) / 4 + 3; };
-  const uint64_t frame = kHalves * (sizeof(Radiance) + sizeof(uint32_t)) + pass_bytes_per_pixel(feature_passes());
+  const uint64_t frame = frame_bytes_per_pixel(1, false, feature_passes());
   return (frame + (4 + regularized_floats(plan)) * sizeof(float)) * side(plan.delivered.width()) * side(plan.delivered.height());
 }
 
 }  // namespace
 
 uint64_t planned_bytes(const Plan& plan) {
-  // Per half: the primal, and in a gradient render four offsets; then counts, and pair counts.
-  uint64_t bytes = kHalves * sizeof(Radiance) * (plan.gradients ? 1 + kOffsets : 1);
-  bytes += kHalves * (sizeof(uint32_t) + (plan.gradients ? kOffsets * sizeof(float) : 0));
-  bytes += pass_bytes_per_pixel(plan.passes);
-  if (wants(plan.passes, GRADUS_PASS_FALLBACK)) bytes += sizeof(float);
+  uint64_t bytes = frame_bytes_per_pixel(1, plan.gradients, plan.passes);
   bytes += 4 * sizeof(float);  // the noisy image that is shown meanwhile
   uint64_t floats = reconstruction_floats(plan);
   if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is

@@ -48,6 +48,21 @@ TEST(B6_Gate, SumsThatWouldOverflowStayOutAndAreCounted) {
   EXPECT_TRUE(is_finite(read_variance(frame)[15]));
 }
 
+// Loading a frame left its counts out of what it asks of the memory.
+TEST(Frame, BytesPerPixelAreThoseOfAllItsPlanes) {
+  constexpr size_t kPixels = 12;
+  for (const int components : {1, 3}) {
+    for (const bool gradients : {false, true}) {
+      for (const uint64_t passes : {uint64_t{0}, (uint64_t{1} << GRADUS_PASS_COUNT) - 1}) {
+        Frame frame(4, 3, Region{0, 0, 4, 3}, 4, components, gradients);
+        frame.passes = make_pass_planes(passes, kPixels);
+        if (passes != 0) frame.fallback.assign(kPixels, 0.0f);
+        EXPECT_EQ(frame.memory_bytes() - sizeof(Frame), kPixels * frame_bytes_per_pixel(components, gradients, passes));
+      }
+    }
+  }
+}
+
 // Differences come from the pair's own samples and the way back, each over its count.
 TEST(Frame, MergesPairsByTheirCounts) {
   Frame frame = small_frame();

@@ -133,6 +133,20 @@ TEST_F(F6_Store, FilesOfAnotherCompressionAreNamed) {
   }
 }
 
+TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
+  save_frame(*rendered(small_settings(32, 32, 1)), path());
+  Imf::InputFile file(path().c_str());
+  Imf::Header header = file.header();
+  header.displayWindow() = header.dataWindow() = Imath::Box2i({0, 0}, {65535, 65535});
+  { Imf::OutputFile(path("large.exr").c_str(), header); }
+  try {
+    load_frame(path("large.exr"));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), GRADUS_ERROR_OUT_OF_MEMORY) << e.what();
+  }
+}
+
 TEST_F(F6_Store, FailuresNameThePath) {
   const auto frame = rendered(small_settings(8, 8, 1));
   try {
