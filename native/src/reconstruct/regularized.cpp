@@ -63,11 +63,13 @@ HalvedImage read_halves(const Frame& frame, int component) {
 
 // Mean deviation of the pixels.
 float typical_noise(const HalvedImage& image) {
-  double sum = 0.0;
-  for (int y = 0; y < image.mean.height(); ++y) {
-    for (int x = 0; x < image.mean.width(); ++x) sum += std::sqrt(mean_of_squares(image.half_difference, x, y));
-  }
-  return float(sum / (double(image.mean.width()) * image.mean.height()));
+  const int w = image.mean.width(), h = image.mean.height();
+  const Sums sums = sum_rows(h, 1, [&](int y, int) {
+    double sum = 0.0;
+    for (int x = 0; x < w; ++x) sum += std::sqrt(mean_of_squares(image.half_difference, x, y));
+    return sum;
+  });
+  return float(sums[0] / (double(w) * h));
 }
 
 // Into units of the median luminance, within bounds.
