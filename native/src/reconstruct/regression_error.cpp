@@ -15,12 +15,8 @@ namespace {
 constexpr int kLightRadius = 1;
 // Squares of noise are averaged, since one says little.
 constexpr int kNoiseRadius = 3;
-// The weights follow the noise, and hide a third of its variance from what they leave of half the difference.
-constexpr float kHidden = 1.7f;
-// Around a pixel, where what went in and what came out should have the same mean; and the share of pixels' squared light that is lost where
-// it differs: rare bright samples lie in few of them.
+// Around a pixel, where what went in and what came out should have the same mean.
 constexpr int kLostRadius = 8;
-constexpr float kLost = 0.3f;
 
 // Squared loss of light around each pixel, less what noise makes of it, over the squared light there.
 Field lost_share(const Smoothed& smoothed) {

@@ -5,6 +5,11 @@
 
 namespace gradus {
 
+// The weights follow the noise, and hide a third of its variance from what they leave of half the difference.
+inline constexpr float kHidden = 1.7f;
+// Share of pixels' squared light that is lost where what went in and what came out differ: rare bright samples lie in few of them.
+inline constexpr float kLost = 0.3f;
+
 // Three channels each.
 struct Smoothed {
   const Field &mean, &half_difference;  // what there was, and half the difference of its halves
