@@ -1,6 +1,7 @@
 // Memory that the plan asks of the machine against what a render takes.
 #include <gtest/gtest.h>
 
+#include "base/device.h"
 #include "memory/allocations.h"
 #include "plan/plan.h"
 #include "render/fake_integrator.h"
@@ -14,8 +15,18 @@ struct Case {
   const char* name;
   uint32_t integrator, reconstruction;
   bool adaptive, transparent, gaps, error = false;
-  bool watched = false;
+  bool watched = false, denoised = false;
 };
+
+// What the plan allows for the network: the stand-in takes nothing.
+constexpr uint64_t kNetwork = uint64_t{800} * kWidth * kHeight + (32 << 20);
+
+std::shared_ptr<Device> device_with_denoiser() {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  settings.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+  return std::make_shared<Device>(settings);
+}
 
 class PlannedBytes : public ::testing::TestWithParam<Case> {};
 
@@ -27,6 +38,7 @@ GradusSettings settings_of(const Case& c) {
   settings.film_transparent = c.transparent ? 1 : 0;
   settings.noise_threshold = c.adaptive ? 1e-6f : 0.0f;
   settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | feature_passes();
+  if (c.denoised) settings.denoiser = GRADUS_DENOISER_OIDN;
   if (c.error) settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
   return settings;
 }
@@ -39,10 +51,12 @@ TEST_P(PlannedBytes, AreThoseOfTheRendersPeak) {
     if (GetParam().watched) fake->before = [](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
   });
   std::vector<float> seen(GetParam().watched ? 4 * size_t{kWidth} * kHeight : 0);
-  const uint64_t planned = planned_bytes(make_plan(settings, *test::empty_snapshot()));
+  const std::shared_ptr<Device> device = GetParam().denoised ? device_with_denoiser() : nullptr;
+  const HostDenoiser denoiser{device ? "a stand-in" : "", ""};
+  const uint64_t planned = planned_bytes(make_plan(settings, *test::empty_snapshot(), denoiser)) - (device ? kNetwork : 0);
   const int64_t before = live_bytes();
   forget_peak();
-  const auto render = test::start(settings, factory);
+  const auto render = std::make_unique<Render>(device, test::empty_snapshot(), settings, nullptr, factory);
   do {
     if (!seen.empty()) render->read_pass(GRADUS_PASS_COMBINED, seen.data(), seen.size());
   } while (!render->wait(seen.empty() ? -1.0 : 0.02));
@@ -72,6 +86,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlannedBytes, ::testing::ValuesIn([] {
                              all.push_back({"PathError", path, GRADUS_RECONSTRUCTION_NONE, false, transparent, false, true});
                              all.push_back({"L2Error", gradient, GRADUS_RECONSTRUCTION_L2, false, transparent, false, true});
                              all.push_back({"L2WithGapsError", gradient, GRADUS_RECONSTRUCTION_L2, false, transparent, true, true});
+                             all.push_back({"Denoised", path, GRADUS_RECONSTRUCTION_NONE, false, transparent, false, false, false, true});
                              all.push_back({"WeightedError", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, false, transparent, false, true});
                            }
                            all.push_back({"WatchedL2", gradient, GRADUS_RECONSTRUCTION_L2, false, false, false, false, true});
