@@ -51,6 +51,17 @@ def test_noise_falls_and_the_rest_stays(corner: bpy.types.Scene, render: Render,
 
 
 @pytest.mark.module
+def test_error_is_that_of_the_denoised_picture(corner: bpy.types.Scene, render: Render) -> None:
+    """In so small a picture half of all lies in a hundredth of the pixels, at edges, where the estimate is too small."""
+    truth = render(corner, samples=2048)["Combined"][..., :3]
+    corner.view_layers[0].gradus.use_pass_error = True
+    passes = render(corner, samples=16, reconstruction="REGULARIZED", denoiser="OIDN")
+    estimated, actual = passes["Error"][..., 0], np.mean((passes["Combined"][..., :3] - truth) ** 2, axis=2)
+    assert 0.25 < estimated.mean() / actual.mean() < 2.0
+    assert 0.5 < np.median(estimated) / np.median(actual) < 2.0
+
+
+@pytest.mark.module
 def test_stats_name_it(corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path), "--gradus-denoiser", "auto"])

@@ -50,6 +50,18 @@ TEST(ErrorPass, IsThatOfCombined) {
   }
 }
 
+// The fake scene's features are as noisy as its picture. What their noise makes of the regression is in no estimate, and shows with more
+// samples.
+TEST(ErrorPass, OfRegularizedIsThatOfCombined) {
+  for (const uint32_t samples : {2u, 4u, 8u}) {
+    const auto render = start_and_wait(error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, samples));
+    const double truth = true_error(read(*render, GRADUS_PASS_COMBINED, kAll));
+    const double ratio = mean(read(*render, GRADUS_PASS_ERROR, kAll)) / truth;
+    EXPECT_GT(ratio, 0.6) << samples;
+    EXPECT_LT(ratio, 1.4) << samples;
+  }
+}
+
 TEST(ErrorPass, IsRefusedWhereItWasNotAskedFor) {
   EXPECT_THROW(read(*start_and_wait(small_settings(kSide, kSide, 4)), GRADUS_PASS_ERROR, kAll), Error);
 }
