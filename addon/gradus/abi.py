@@ -59,6 +59,17 @@ class LightFlags(IntFlag):
 class CameraType(IntEnum):
     PERSPECTIVE = 0
     ORTHOGRAPHIC = 1
+    PANORAMA = 2
+
+
+class Panorama(IntEnum):
+    EQUIRECTANGULAR = 0
+    CUBE_FACE = 1
+    MIRROR_BALL = 2
+    FISHEYE_EQUIDISTANT = 3
+    FISHEYE_EQUISOLID = 4
+    FISHEYE_POLYNOMIAL = 5
+    CYLINDER = 6
 
 
 class MistFalloff(IntEnum):
@@ -295,7 +306,13 @@ class Camera(Struct):
         ("blades", c_uint32),
         ("blade_rotation", c_float),
         ("aperture_ratio", c_float),
-        ("reserved", c_uint32),
+        ("panorama", c_uint32),
+        ("fisheye_fov", c_float),
+        ("fisheye_polynomial", c_float * 5),
+        ("eye_offset", c_float),
+        ("convergence_distance", c_float),
+        ("pole_merge_from", c_float),
+        ("pole_merge_to", c_float),
     ]
 
 
@@ -467,6 +484,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     LightType,
     LightFlags,
     CameraType,
+    Panorama,
     MistFalloff,
     ImageSource,
     AlphaMode,

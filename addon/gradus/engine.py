@@ -34,7 +34,7 @@ class GradusRenderEngine(bpy.types.RenderEngine):
     bl_use_shading_nodes_custom = False  # True would hide the shader nodes of Cycles from the Add menu
     bl_use_gpu_context = False
     bl_use_custom_freestyle = False
-    bl_use_spherical_stereo = False
+    bl_use_spherical_stereo = True
 
     job: renderer.Job | None = None
     view: viewport.View | None = None

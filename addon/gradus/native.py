@@ -44,6 +44,7 @@ from .abi import (  # noqa: F401
     ObjectKind,
     OptionInfo,
     OptionType,
+    Panorama,
     Pass,
     Phase,
     PixelFilter,

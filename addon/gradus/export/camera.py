@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import native
+from . import panorama
 from .arrays import matrix_values
 from .report import ExportError
 
-_PERSPECTIVE, _ORTHOGRAPHIC = 0, 1
+_PERSPECTIVE, _ORTHOGRAPHIC, _PANORAMA = native.CameraType
 _MIN_FSTOP = 1e-5
 _DEFAULT_LENS = 35.0  # mm; what Blender takes for objects that are no camera
 _DEFAULT_SENSOR = 36.0  # mm
@@ -49,6 +50,15 @@ class ViewOverride:
         return cls(tuple(matrix_values(view_matrix.inverted().normalized())), window, kind, clip, width, height)
 
 
+@dataclass(frozen=True)
+class Eye:
+    """Of spherical stereo: how far it lies to the right of the camera; 0: in it."""
+
+    offset: float = 0.0
+    convergence_distance: float = 0.0
+    pole_merge: tuple[float, float] = (0.0, 0.0)
+
+
 @dataclass
 class CameraState:
     """A camera at one moment."""
@@ -62,6 +72,10 @@ class CameraState:
     blades: int = 0
     blade_rotation: float = 0.0
     aperture_ratio: float = 1.0
+    panorama: int = 0
+    fisheye_fov: float = 0.0
+    fisheye_polynomial: tuple[float, ...] = (0.0,) * 5
+    eye: Eye = Eye()
 
 
 def frame_window(
@@ -113,14 +127,44 @@ def _set_depth_of_field(state: CameraState, data: Any, matrix: Any) -> None:
 def _camera_matrix(camera: Any, engine: Any, scene: Any) -> Any:
     """Camera to world without scale; the eye's own in a stereo render."""
     if engine is not None and scene.render.use_multiview:
-        return engine.camera_model_matrix(camera).normalized()
+        return engine.camera_model_matrix(camera, use_spherical_stereo=engine.use_spherical_stereo(camera)).normalized()
     return camera.matrix_world.normalized()
 
 
 def _shift_x(camera: Any, engine: Any, scene: Any) -> float:
     if engine is not None and scene.render.use_multiview:
-        return engine.camera_shift_x(camera)
+        return engine.camera_shift_x(camera, use_spherical_stereo=engine.use_spherical_stereo(camera))
     return camera.data.shift_x
+
+
+def _eye(camera: Any, engine: Any, scene: Any) -> Eye:
+    sides = {"left": -0.5, "right": 0.5}
+    view = engine.active_view_get() if engine is not None and scene.render.use_multiview else ""
+    if view not in sides or not engine.use_spherical_stereo(camera):
+        return Eye()
+    stereo = camera.data.stereo
+    return Eye(
+        sides[view] * stereo.interocular_distance,
+        0.0 if stereo.convergence_mode == "PARALLEL" else stereo.convergence_distance,
+        (stereo.pole_merge_angle_from, stereo.pole_merge_angle_to) if stereo.use_pole_merge else (0.0, 0.0),
+    )
+
+
+def _set_panorama(state: CameraState, data: Any) -> None:
+    settings = panorama.settings_of(data)
+    state.type = _PANORAMA
+    state.panorama = panorama.TYPES[settings.panorama_type]
+    state.fisheye_fov = settings.fisheye_fov
+    state.fisheye_polynomial = panorama.polynomial(settings)
+
+
+def _refuse_unknown(camera: Any) -> None:
+    data = camera.data
+    if data.type == "CUSTOM":
+        raise ExportError(f"Camera '{camera.name}' is custom: Gradus runs no camera shaders")
+    settings = panorama.settings_of(data)
+    if data.type == "PANO" and (settings is None or settings.panorama_type not in panorama.TYPES):
+        raise ExportError(f"Camera '{camera.name}' has a panorama type that Gradus does not know")
 
 
 def camera_state(camera: Any, scene: Any, width: int, height: int, engine: Any = None) -> CameraState:
@@ -137,22 +181,27 @@ def camera_state(camera: Any, scene: Any, width: int, height: int, engine: Any =
         fit = resolve_fit("AUTO", width, height, aspect)
         return CameraState(values, frame_window(_DEFAULT_SENSOR / lens, fit, (0.0, 0.0), width, height, aspect), clip=(0.1, _FAR))
     data = camera.data
-    if data.type not in {"PERSP", "ORTHO"}:
-        kind = {"PANO": "panoramic", "CUSTOM": "custom"}.get(data.type, data.type.lower())
-        raise ExportError(f"Camera '{camera.name}' is {kind}: Gradus renders perspective and orthographic cameras")
-    fit = resolve_fit(data.sensor_fit, width, height, aspect)
-    sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
-    orthographic = data.type == "ORTHO"
-    extent = data.ortho_scale if orthographic else sensor / data.lens
+    _refuse_unknown(camera)
     shift = (_shift_x(camera, engine, scene), data.shift_y)
-    state = CameraState(
-        values,
-        frame_window(extent, fit, shift, width, height, aspect),
-        _ORTHOGRAPHIC if orthographic else _PERSPECTIVE,
-        (data.clip_start, data.clip_end),
-    )
+    clip = (data.clip_start, data.clip_end)
+    if data.type == "PANO":
+        state = CameraState(values, panorama.window(data, shift, width, height, aspect), clip=clip)
+        _set_panorama(state, data)
+    else:
+        state = CameraState(values, _flat_window(data, shift, width, height, aspect), clip=clip)
+        state.type = _ORTHOGRAPHIC if data.type == "ORTHO" else _PERSPECTIVE
+    state.eye = _eye(camera, engine, scene)
     _set_depth_of_field(state, data, matrix)
     return state
+
+
+def _flat_window(
+    data: Any, shift: tuple[float, float], width: int, height: int, aspect: tuple[float, float]
+) -> tuple[float, float, float, float]:
+    fit = resolve_fit(data.sensor_fit, width, height, aspect)
+    sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    extent = data.ortho_scale if data.type == "ORTHO" else sensor / data.lens
+    return frame_window(extent, fit, shift, width, height, aspect)
 
 
 def view_state(view: ViewOverride) -> CameraState:
@@ -179,4 +228,10 @@ def fill_camera(now: CameraState, previous: CameraState | None = None, following
     struct.blades = now.blades
     struct.blade_rotation = now.blade_rotation
     struct.aperture_ratio = now.aperture_ratio
+    struct.panorama = now.panorama
+    struct.fisheye_fov = now.fisheye_fov
+    struct.fisheye_polynomial[:] = now.fisheye_polynomial
+    struct.eye_offset = now.eye.offset
+    struct.convergence_distance = now.eye.convergence_distance
+    struct.pole_merge_from, struct.pole_merge_to = now.eye.pole_merge
     return struct

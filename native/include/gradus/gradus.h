@@ -203,7 +203,22 @@ typedef struct GradusLight {
   const char* name;
 } GradusLight;
 
-typedef enum GradusCameraType { GRADUS_CAMERA_PERSPECTIVE = 0, GRADUS_CAMERA_ORTHOGRAPHIC = 1 } GradusCameraType;
+typedef enum GradusCameraType {
+  GRADUS_CAMERA_PERSPECTIVE = 0,
+  GRADUS_CAMERA_ORTHOGRAPHIC = 1,
+  GRADUS_CAMERA_PANORAMA = 2
+} GradusCameraType;
+
+/* What a panorama's film measures, and so its window, x and y. Angles in radians; r = length of (x, y). */
+typedef enum GradusPanorama {
+  GRADUS_PANORAMA_EQUIRECTANGULAR = 0,       /* longitude to the right of the view axis, latitude */
+  GRADUS_PANORAMA_CUBE_FACE = 1,             /* equiangular: the angles of the direction's slopes */
+  GRADUS_PANORAMA_MIRROR_BALL = 2,           /* radii of the ball */
+  GRADUS_PANORAMA_FISHEYE_EQUIDISTANT = 3,   /* r = angle from the view axis */
+  GRADUS_PANORAMA_FISHEYE_EQUISOLID = 4,     /* r = sine of half the angle */
+  GRADUS_PANORAMA_FISHEYE_POLYNOMIAL = 5,    /* the angle is minus fisheye_polynomial of r */
+  GRADUS_PANORAMA_CYLINDER = 6               /* longitude, height on a cylinder of radius 1 */
+} GradusPanorama;
 
 typedef struct GradusCamera {
   uint32_t struct_size;
@@ -212,17 +227,23 @@ typedef struct GradusCamera {
   float matrix_previous[16];       /* one frame before and after, for vectors; equal to matrix if at rest */
   float matrix_next[16];
   float window[4];                 /* left, right, bottom, top of the FULL frame on the plane at distance 1
-                                      (perspective) or in metres (orthographic), shift included */
+                                      (perspective), in metres (orthographic) or as GradusPanorama says, shift included */
   float window_previous[4];
   float window_next[4];
   float clip_start;
   float clip_end;
   float aperture_radius;           /* 0 = pinhole */
-  float focus_distance;            /* along the view axis */
+  float focus_distance;            /* along the view axis; panorama: along the ray */
   uint32_t blades;                 /* below 3: round */
   float blade_rotation;
   float aperture_ratio;            /* anamorphic: width divided by it */
-  uint32_t reserved;
+  uint32_t panorama;               /* GradusPanorama */
+  float fisheye_fov;               /* angle of the image circle; nothing is seen outside */
+  float fisheye_polynomial[5];     /* from the constant term on; what r measures is up to the coefficients */
+  float eye_offset;                /* spherical stereo: the eye's distance to the right of the centre, wherever a ray goes; 0 = none */
+  float convergence_distance;      /* where the rays of both eyes meet; 0 = parallel */
+  float pole_merge_from;           /* altitudes between which the offset fades out; to = 0: it does not */
+  float pole_merge_to;
 } GradusCamera;
 
 typedef enum GradusMistFalloff { GRADUS_MIST_QUADRATIC = 0, GRADUS_MIST_LINEAR = 1, GRADUS_MIST_INVERSE_QUADRATIC = 2 } GradusMistFalloff;

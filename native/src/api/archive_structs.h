@@ -177,6 +177,13 @@ void visit(Archive& a, GradusCamera& camera) {
   a.value(camera.blades);
   a.value(camera.blade_rotation);
   a.value(camera.aperture_ratio);
+  a.value(camera.panorama);
+  a.value(camera.fisheye_fov);
+  a.values(camera.fisheye_polynomial);
+  a.value(camera.eye_offset);
+  a.value(camera.convergence_distance);
+  a.value(camera.pole_merge_from);
+  a.value(camera.pole_merge_to);
 }
 
 template <class Archive>

@@ -25,7 +25,8 @@ GRADUS_FIELDS(Instances, struct_size, reserved, count, meshes, ids, matrices, ma
 GRADUS_FIELDS(Light, struct_size, type, flags, visibility, matrix, strength, radius, angle, size, spread, cone, blend,
   sun_radiance_per_irradiance, material, max_bounces, pass_index, name)
 GRADUS_FIELDS(Camera, struct_size, type, matrix, matrix_previous, matrix_next, window, window_previous, window_next, clip_start,
-  clip_end, aperture_radius, focus_distance, blades, blade_rotation, aperture_ratio, reserved)
+  clip_end, aperture_radius, focus_distance, blades, blade_rotation, aperture_ratio, panorama, fisheye_fov, fisheye_polynomial,
+  eye_offset, convergence_distance, pole_merge_from, pole_merge_to)
 GRADUS_FIELDS(World, struct_size, visibility, material, importance, map_size, mist_start, mist_depth, mist_falloff, ao_distance)
 GRADUS_FIELDS(ImageTile, struct_size, number, source, width, height, reserved, path, data, data_size)
 GRADUS_FIELDS(Image, struct_size, alpha_mode, is_float, tile_count, tiles, color_space, name)
@@ -48,7 +49,9 @@ GRADUS_VALUES(Visibility, VISIBLE_CAMERA, VISIBLE_DIFFUSE, VISIBLE_GLOSSY, VISIB
   VISIBLE_ALL, HOLDOUT, SHADOW_CATCHER)
 GRADUS_VALUES(LightType, LIGHT_POINT, LIGHT_SPOT, LIGHT_SUN, LIGHT_RECTANGLE, LIGHT_ELLIPSE)
 GRADUS_VALUES(LightFlags, LIGHT_NO_SHADOW, LIGHT_SPOT_COSINE, LIGHT_DISK_FACING, LIGHT_NO_MIS)
-GRADUS_VALUES(CameraType, CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC)
+GRADUS_VALUES(CameraType, CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC, CAMERA_PANORAMA)
+GRADUS_VALUES(Panorama, PANORAMA_EQUIRECTANGULAR, PANORAMA_CUBE_FACE, PANORAMA_MIRROR_BALL, PANORAMA_FISHEYE_EQUIDISTANT,
+  PANORAMA_FISHEYE_EQUISOLID, PANORAMA_FISHEYE_POLYNOMIAL, PANORAMA_CYLINDER)
 GRADUS_VALUES(MistFalloff, MIST_QUADRATIC, MIST_LINEAR, MIST_INVERSE_QUADRATIC)
 GRADUS_VALUES(ImageSource, IMAGE_FILE, IMAGE_ENCODED, IMAGE_FLOAT, IMAGE_BYTE)
 GRADUS_VALUES(AlphaMode, ALPHA_STRAIGHT, ALPHA_PREMULTIPLIED, ALPHA_CHANNEL_PACKED, ALPHA_NONE)
@@ -79,10 +82,10 @@ constexpr StructLayout kStructs[] = {
     GRADUS_STRUCT(Material),       GRADUS_STRUCT(Settings),   GRADUS_STRUCT(OptionInfo), GRADUS_STRUCT(Progress),
 };
 constexpr EnumLayout kEnums[] = {
-    GRADUS_ENUM(Error),      GRADUS_ENUM(Domain),         GRADUS_ENUM(Visibility),  GRADUS_ENUM(LightType),   GRADUS_ENUM(LightFlags),
-    GRADUS_ENUM(CameraType), GRADUS_ENUM(MistFalloff),    GRADUS_ENUM(ImageSource), GRADUS_ENUM(AlphaMode),   GRADUS_ENUM(ObjectKind),
-    GRADUS_ENUM(Integrator), GRADUS_ENUM(Reconstruction), GRADUS_ENUM(Denoiser),    GRADUS_ENUM(PixelFilter), GRADUS_ENUM(Pass),
-    GRADUS_ENUM(OptionType), GRADUS_ENUM(Phase),
+    GRADUS_ENUM(Error),      GRADUS_ENUM(Domain),     GRADUS_ENUM(Visibility),     GRADUS_ENUM(LightType),   GRADUS_ENUM(LightFlags),
+    GRADUS_ENUM(CameraType), GRADUS_ENUM(Panorama),   GRADUS_ENUM(MistFalloff),    GRADUS_ENUM(ImageSource), GRADUS_ENUM(AlphaMode),
+    GRADUS_ENUM(ObjectKind), GRADUS_ENUM(Integrator), GRADUS_ENUM(Reconstruction), GRADUS_ENUM(Denoiser),    GRADUS_ENUM(PixelFilter),
+    GRADUS_ENUM(Pass),       GRADUS_ENUM(OptionType), GRADUS_ENUM(Phase),
 };
 
 std::string abi_text() {

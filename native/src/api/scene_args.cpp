@@ -137,7 +137,8 @@ std::vector<GradusLight> read_lights(const GradusLight* from, size_t count) {
 
 GradusCamera read_camera(const GradusCamera* from) {
   const GradusCamera camera = read_struct(from, "camera");
-  check_enum(camera.type, 2, "camera.type");
+  check_enum(camera.type, 3, "camera.type");
+  check_enum(camera.panorama, 7, "camera.panorama");
   return camera;
 }
 

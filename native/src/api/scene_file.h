@@ -8,7 +8,7 @@
 
 namespace gradus::api {
 
-inline constexpr uint32_t kSceneFormat = 2;
+inline constexpr uint32_t kSceneFormat = 3;
 
 struct FileHeader {
   char magic[8] = {'G', 'R', 'A', 'D', 'U', 'S', 'S', '\n'};

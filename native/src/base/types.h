@@ -36,4 +36,8 @@ struct Ray {
   float t_max = kInfinity;
 };
 
+// In the place of a ray where there is none.
+constexpr Ray kNoRay{Vec3(0.0f), 1.0f, Vec3(0.0f), 0.0f};
+inline bool is_none(const Ray& ray) { return ray.direction == Vec3(0.0f); }
+
 }  // namespace gradus

@@ -208,7 +208,7 @@ void PassRecorder::motion(const Vertex& vertex) {
   if (camera.project(vertex.point.position, Shutter::Now, &now) &&
       camera.project(context_.scene.position_at(vertex.point.hit, false), Shutter::Previous, &previous) &&
       camera.project(context_.scene.position_at(vertex.point.hit, true), Shutter::Next, &next)) {
-    add(GRADUS_PASS_VECTOR, Vec4(previous - now, now - next));
+    add(GRADUS_PASS_VECTOR, Vec4(camera.way(now, previous), camera.way(next, now)));
   }
 }
 
@@ -219,7 +219,7 @@ void PassRecorder::background_motion(const Vec3& direction) {
   Vec2 next;
   if (camera.project_direction(direction, Shutter::Now, &now) && camera.project_direction(direction, Shutter::Previous, &previous) &&
       camera.project_direction(direction, Shutter::Next, &next)) {
-    add(GRADUS_PASS_VECTOR, Vec4(previous - now, now - next));
+    add(GRADUS_PASS_VECTOR, Vec4(camera.way(now, previous), camera.way(next, now)));
   }
 }
 

@@ -69,6 +69,9 @@ void shade_vertex(const PathContext& context, const RayState& ray, Vertex* verte
 bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* segment) {
   clear(segment);
   segment->end = SegmentEnd::Exhausted;
+  if (is_none(ray.ray)) {
+    return false;
+  }
   see_lamps(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
   if (!segment->lamps.empty()) {
     Hit hit;
@@ -91,6 +94,10 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
   Ray part = ray->ray;
   float passed = 0.0f;
   vertex->wo = -part.direction;
+  if (is_none(part)) {
+    segment->end = SegmentEnd::Exhausted;
+    return;
+  }
   for (;;) {
     Hit hit;
     if (first != nullptr) {

@@ -22,7 +22,7 @@ struct LampSighting {
 enum class SegmentEnd : uint8_t {
   Surface,
   Escaped,
-  Exhausted,  // met more transparent surfaces than allowed: nothing is seen
+  Exhausted,  // nothing is seen: more transparent surfaces than allowed, or no ray
 };
 
 struct Segment {

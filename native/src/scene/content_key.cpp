@@ -23,6 +23,9 @@ void hash_camera(const GradusCamera& c, ContentHash* hash) {
   for (const float* w : {c.window, c.window_previous, c.window_next}) hash->bytes(w, 4 * sizeof(float));
   for (const float v : {c.clip_start, c.clip_end, c.aperture_radius, c.focus_distance, c.blade_rotation, c.aperture_ratio}) hash->value(v);
   hash->value(c.blades);
+  hash->value(c.panorama);
+  for (const float v : {c.fisheye_fov, c.eye_offset, c.convergence_distance, c.pole_merge_from, c.pole_merge_to}) hash->value(v);
+  hash->bytes(c.fisheye_polynomial, sizeof(c.fisheye_polynomial));
 }
 
 void hash_world(const GradusWorld& w, ContentHash* hash) {

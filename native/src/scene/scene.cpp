@@ -62,7 +62,7 @@ void Scene::set_lights(const GradusLight* lights, size_t count) {
 }
 
 void Scene::set_camera(const GradusCamera& camera) {
-  if (camera.type > GRADUS_CAMERA_ORTHOGRAPHIC) throw invalid_argument("camera: unknown type");
+  if (camera.type > GRADUS_CAMERA_PANORAMA || camera.panorama > GRADUS_PANORAMA_CYLINDER) throw invalid_argument("camera: unknown type");
   const Lock lock(state_->mutex);
   state_->camera = camera;
   state_->has_camera = true;

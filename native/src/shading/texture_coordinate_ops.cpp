@@ -1,6 +1,7 @@
 // Texture Coordinate, Camera Data and Vector Transform nodes.
 #include <cstring>
 
+#include "scene/panorama.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
@@ -34,6 +35,8 @@ Vec3 window(const ShadeContext& c) {
   const Vec3 p = to_camera(c, c.position);
   Vec2 plane(p);
   if (camera.type == GRADUS_CAMERA_PERSPECTIVE) plane = p.z != 0.0f ? plane / p.z : Vec2(0.0f);
+  if (camera.type == GRADUS_CAMERA_PANORAMA && (p == Vec3(0.0f) || !panorama_point(camera, safe_normalize(Vec3(p.x, p.y, -p.z)), &plane)))
+    return Vec3(0.0f);
   const float* w = camera.window;
   return Vec3(safe_divide(plane.x - w[0], w[1] - w[0]), safe_divide(plane.y - w[2], w[3] - w[2]), 0.0f);
 }

@@ -6,13 +6,6 @@
 
 namespace gradus {
 
-namespace {
-
-// In the place of a packet's ray that is not wanted: it is empty.
-constexpr Ray kNoRay{Vec3(0.0f), 1.0f, Vec3(0, 0, 1), 0.0f};
-
-}  // namespace
-
 // Traces an offset's ray. first: its nearest hit if it is known. What the two segments show is compared in any case, see seen().
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
   o->advance();

@@ -1,0 +1,66 @@
+"""Panoramic cameras: what each type measures on its film, and the window of the frame in that measure; see GradusPanorama."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..native import Panorama
+
+TYPES = {
+    "EQUIRECTANGULAR": Panorama.EQUIRECTANGULAR,
+    "EQUIANGULAR_CUBEMAP_FACE": Panorama.CUBE_FACE,
+    "MIRRORBALL": Panorama.MIRROR_BALL,
+    "FISHEYE_EQUIDISTANT": Panorama.FISHEYE_EQUIDISTANT,
+    "FISHEYE_EQUISOLID": Panorama.FISHEYE_EQUISOLID,
+    "FISHEYE_LENS_POLYNOMIAL": Panorama.FISHEYE_POLYNOMIAL,
+    "CENTRAL_CYLINDRICAL": Panorama.CYLINDER,
+}
+Window = tuple[float, float, float, float]
+
+
+def settings_of(data: Any) -> Any:
+    """Of a camera; they were Cycles' until Blender 4.5."""
+    return data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)
+
+
+def sensor_size(data: Any, width: int, height: int, aspect: tuple[float, float]) -> tuple[float, float]:
+    """In millimetres, with the frame's shape."""
+    x, y = width * aspect[0], height * aspect[1]
+    horizontal = x > y if data.sensor_fit == "AUTO" else data.sensor_fit == "HORIZONTAL"
+    size = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    return (size, size * y / x) if horizontal else (size * x / y, size)
+
+
+def _centred(width: float, height: float) -> Window:
+    return (-0.5 * width, 0.5 * width, -0.5 * height, 0.5 * height)
+
+
+def _whole_frame(kind: Panorama, panorama: Any, sensor: tuple[float, float]) -> Window:
+    if kind == Panorama.EQUIRECTANGULAR:
+        return (panorama.longitude_min, panorama.longitude_max, panorama.latitude_min, panorama.latitude_max)
+    if kind == Panorama.CYLINDER:
+        radius = panorama.central_cylindrical_radius
+        bottom, top = panorama.central_cylindrical_range_v_min, panorama.central_cylindrical_range_v_max
+        return (panorama.central_cylindrical_range_u_min, panorama.central_cylindrical_range_u_max, bottom / radius, top / radius)
+    if kind == Panorama.CUBE_FACE:
+        return _centred(0.5 * math.pi, 0.5 * math.pi)
+    if kind == Panorama.MIRROR_BALL:
+        return _centred(2.0, 2.0)
+    if kind == Panorama.FISHEYE_EQUIDISTANT:
+        return _centred(panorama.fisheye_fov, panorama.fisheye_fov)
+    scale = 1.0 / (2.0 * panorama.fisheye_lens) if kind == Panorama.FISHEYE_EQUISOLID else 1.0
+    return _centred(sensor[0] * scale, sensor[1] * scale)
+
+
+def window(data: Any, shift: tuple[float, float], width: int, height: int, aspect: tuple[float, float]) -> Window:
+    """Left, right, bottom, top of the frame. Shift is in frames."""
+    panorama = settings_of(data)
+    left, right, bottom, top = _whole_frame(TYPES[panorama.panorama_type], panorama, sensor_size(data, width, height, aspect))
+    x, y = shift[0] * (right - left), shift[1] * (top - bottom)
+    return (left + x, right + x, bottom + y, top + y)
+
+
+def polynomial(panorama: Any) -> tuple[float, ...]:
+    """Of the lens, from the constant term on."""
+    return tuple(getattr(panorama, f"fisheye_polynomial_k{power}") for power in range(5))

@@ -1,0 +1,115 @@
+"""Panoramas against Cycles, pixel by pixel: the points that are seen, distances, and what lies outside of the image circle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from support import images, recording
+
+EXACT = {"samples": 1, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "GAUSSIAN", "filter_width": 0.01, "max_bounces": 0}
+RADIUS = 50.0
+
+# Camera, then panorama settings, then the frame's.
+CASES: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
+    "equirectangular": ("EQUIRECTANGULAR", {}, {}),
+    "limits": ("EQUIRECTANGULAR", {"latitude_min": -0.5, "latitude_max": 1.2, "longitude_min": -2.0, "longitude_max": 0.7}, {}),
+    "shifted": ("EQUIRECTANGULAR", {}, {"shift": (0.1, -0.2)}),
+    "cube face": ("EQUIANGULAR_CUBEMAP_FACE", {}, {"shift": (0.1, -0.2)}),
+    "mirror ball": ("MIRRORBALL", {}, {"aspect": (2.0, 1.0)}),
+    "equidistant": ("FISHEYE_EQUIDISTANT", {}, {}),
+    "equidistant, wide": ("FISHEYE_EQUIDISTANT", {"fisheye_fov": 4.0}, {"size": (20, 34), "shift": (0.1, -0.2)}),
+    "equisolid": ("FISHEYE_EQUISOLID", {"fisheye_lens": 11.0}, {}),
+    "equisolid, portrait": ("FISHEYE_EQUISOLID", {"fisheye_fov": 2.0, "fisheye_lens": 15.0}, {"size": (20, 34), "aspect": (1.0, 2.0)}),
+    "equisolid, vertical fit": ("FISHEYE_EQUISOLID", {}, {"fit": "VERTICAL", "shift": (0.1, -0.2)}),
+    "polynomial": ("FISHEYE_LENS_POLYNOMIAL", {}, {"fit": "HORIZONTAL", "size": (20, 34)}),
+    "polynomial, bent": (
+        "FISHEYE_LENS_POLYNOMIAL",
+        {"fisheye_fov": 2.5, "fisheye_polynomial_k0": 0.01, "fisheye_polynomial_k1": -0.1, "fisheye_polynomial_k2": 0.001},
+        {"aspect": (1.0, 1.5)},
+    ),
+    "cylinder": ("CENTRAL_CYLINDRICAL", {}, {"shift": (0.1, -0.2)}),
+    "cylinder, limits": (
+        "CENTRAL_CYLINDRICAL",
+        {
+            "central_cylindrical_range_u_min": -2.0,
+            "central_cylindrical_range_u_max": 1.0,
+            "central_cylindrical_range_v_min": -0.5,
+            "central_cylindrical_range_v_max": 1.5,
+            "central_cylindrical_radius": 2.0,
+        },
+        {},
+    ),
+}
+
+
+def _prepare(scene: bpy.types.Scene) -> None:
+    """A ball around the camera."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=RADIUS)
+    images.prepare(scene)
+    cycles = scene.cycles
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising, cycles.max_bounces = 1, False, False, 0
+    cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
+    layer = scene.view_layers[0]
+    layer.use_pass_position = layer.use_pass_z = layer.use_pass_normal = True
+
+
+def _camera(scene: bpy.types.Scene, kind: str, settings: dict[str, Any], frame: dict[str, Any]) -> bpy.types.Object:
+    camera = recording.add_camera(type="PANO", sensor_width=36.0, sensor_height=20.0, sensor_fit=frame.get("fit", "AUTO"))
+    camera.location, camera.rotation_euler = (1.0, -2.0, 3.0), (1.1, 0.2, 0.4)
+    camera.data.shift_x, camera.data.shift_y = frame.get("shift", (0.0, 0.0))
+    panorama = camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles
+    if kind not in panorama.bl_rna.properties["panorama_type"].enum_items:
+        pytest.skip(f"this Blender has no {kind}")
+    panorama.panorama_type = kind
+    for name, value in settings.items():
+        setattr(panorama, name, value)
+    render = scene.render
+    render.resolution_x, render.resolution_y = frame.get("size", (36, 24))
+    render.pixel_aspect_x, render.pixel_aspect_y = frame.get("aspect", (1.0, 1.0))
+    if hasattr(render.image_settings, "use_exr_interleave"):
+        render.image_settings.use_exr_interleave = True  # 5.0 cannot write one part per pass where pixels are not square
+    return camera
+
+
+def _both(scene: bpy.types.Scene, render: Callable[..., Any]) -> tuple[Any, Any]:
+    ours = render(scene, **EXACT)
+    scene.render.engine = "CYCLES"
+    return ours, render(scene)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_shows_what_cycles_shows(scene: bpy.types.Scene, render: Callable[..., Any], case: str) -> None:
+    _prepare(scene)
+    _camera(scene, *CASES[case])
+    ours, cycles = _both(scene, render)
+    seen = np.any(cycles["Position"] != 0.0, axis=2)
+    assert np.array_equal(np.any(ours["Position"] != 0.0, axis=2), seen)
+    assert seen.any()
+    # The filter's hundredth of a pixel is up to 2 * pi * RADIUS / 24 / 100 wide; next to poles less matters.
+    away = np.linalg.norm(ours["Position"] - cycles["Position"], axis=2)[seen]
+    assert np.percentile(away, 90) < 0.15 and away.max() < 1.0
+    assert np.allclose(ours["Depth"][seen], cycles["Depth"][seen], rtol=5e-3)
+    assert np.allclose(ours["Normal"][seen], cycles["Normal"][seen], atol=0.15)
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+def test_outside_of_the_image_circle_is_black_and_opaque(
+    scene: bpy.types.Scene, render: Callable[..., Any], transparent: bool
+) -> None:
+    """As in Cycles: no ray leaves there, so nothing is seen through."""
+    _prepare(scene)
+    bpy.data.objects.remove(scene.objects["Sphere"])
+    world = scene.world or bpy.data.worlds.new("World")
+    scene.world = world
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs[0].default_value = (0.25, 0.5, 1.0, 1.0)
+    scene.render.film_transparent = transparent
+    _camera(scene, "FISHEYE_EQUIDISTANT", {}, {"size": (24, 24)})
+    ours, cycles = _both(scene, render)
+    assert np.array_equal(ours["Combined"][0, 0], (0, 0, 0, 1))
+    assert np.allclose(ours["Combined"][12, 12], (0, 0, 0, 0) if transparent else (0.25, 0.5, 1, 1))
+    assert np.allclose(ours["Combined"], cycles["Combined"], atol=1e-5)
