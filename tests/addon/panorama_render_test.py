@@ -97,9 +97,7 @@ def test_shows_what_cycles_shows(scene: bpy.types.Scene, render: Callable[..., A
 
 
 @pytest.mark.parametrize("transparent", [False, True])
-def test_outside_of_the_image_circle_is_black_and_opaque(
-    scene: bpy.types.Scene, render: Callable[..., Any], transparent: bool
-) -> None:
+def test_outside_of_the_image_circle_is_black_and_opaque(scene: bpy.types.Scene, render: Callable[..., Any], transparent: bool) -> None:
     """As in Cycles: no ray leaves there, so nothing is seen through."""
     _prepare(scene)
     bpy.data.objects.remove(scene.objects["Sphere"])
