@@ -28,6 +28,8 @@ SCENES = [
     Scene("cornell", SAMPLES / "cornell.blend", diffuse_interior=True, own=True),
     Scene("glass_and_chrome", SAMPLES / "glass_and_chrome.blend", own=True),
     Scene("many_lights", SAMPLES / "many_lights.blend", own=True),
+    Scene("animated", SAMPLES / "animated.blend", own=True),
+    Scene("textures_world", SAMPLES / "textures_world.blend", own=True),
     Scene("faceted", MADE / "faceted.blend", own=True, maker="faceted.py"),
     Scene("door-ajar", REAL / "door-ajar.blend", diffuse_interior=True),
     Scene("breakfast-room", REAL / "breakfast-room.blend", diffuse_interior=True),
@@ -37,6 +39,14 @@ SCENES = [
     Scene("material-testball", REAL / "material-testball.blend"),
     Scene("glass-teapot", REAL / "glass-teapot.blend"),
     Scene("moving-light", REAL / "moving-light.blend", diffuse_interior=True),
+    Scene("specular-motion", REAL / "specular-motion.blend"),
+    Scene("morph-sphere", REAL / "morph-sphere.blend"),
+    Scene("mannequin-mirror", REAL / "mannequin-mirror.blend"),
+    Scene("robot-room", REAL / "robot-room.blend"),
+    Scene("dutch-ship", REAL / "dutch-ship.blend"),
+    Scene("many-objects", REAL / "many-objects.blend"),
+    Scene("instances", REAL / "instances.blend"),
+    Scene("toy-car", REAL / "toy-car.blend"),
 ]
 QUICK = ("cornell", "door-ajar")
 
