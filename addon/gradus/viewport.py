@@ -19,7 +19,7 @@ import gpu
 from gpu_extras.presets import draw_texture_2d
 
 from . import native, options, passes, renderer, store, view_border
-from .export import ViewOverride
+from .export import ViewOverride, panorama
 from .native import Denoiser, Error, GradusError, Integrator, Pass, Phase, Reconstruction
 from .store import VIEWPORT, Key, Session
 
@@ -278,6 +278,11 @@ def _override(context: Any) -> ViewOverride:
     camera = space.camera if space.use_local_camera else context.scene.camera
     if data.view_perspective == "CAMERA" and camera is not None and camera.type == "CAMERA":
         clip = (camera.data.clip_start, camera.data.clip_end)
+        if camera.data.type == "PANO" and panorama.is_known(camera.data):
+            frame = view_border.camera_frame(context, context.scene)
+            if frame is not None:
+                size = (region.width, region.height)
+                return ViewOverride.from_panorama(camera.data, data.view_matrix, frame, context.scene.render, size)
     return ViewOverride.from_view(data.view_matrix, data.window_matrix, clip, region.width, region.height)
 
 

@@ -119,3 +119,18 @@ def test_view_from_matrices_equals_the_camera(scene: bpy.types.Scene, kind: str)
     found = recording.export(scene, view=view)[0].camera
     assert np.allclose(list(found.window), list(expected.window), atol=1e-5)
     assert np.allclose(list(found.matrix), list(expected.matrix), atol=1e-5)
+
+
+def test_view_through_a_panorama_shows_the_part_of_the_frame_in_view(scene: bpy.types.Scene) -> None:
+    """A frame that fills the middle half of a view: the window is twice as wide, about the same middle."""
+    from gradus.export import ViewOverride
+
+    camera = recording.add_camera(type="PANO", shift_x=0.1)
+    (camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles).panorama_type = "FISHEYE_EQUIDISTANT"
+    whole = list(recording.export(scene)[0].camera.window)
+    view = ViewOverride.from_panorama(camera.data, camera.matrix_world.inverted(), (20.0, 10.0, 60.0, 30.0), scene.render, (80, 40))
+    found = recording.export(scene, view=view)[0].camera
+    assert found.type == 2 and found.fisheye_fov == pytest.approx(3.14159265)
+    width, height = whole[1] - whole[0], whole[3] - whole[2]
+    expected = [whole[0] - width / 2, whole[1] + width / 2, whole[2] - height / 2, whole[3] + height / 2]
+    assert list(found.window) == pytest.approx(expected, abs=1e-5)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import bpy
 import numpy as np
 import pytest
+from mathutils import Vector
 from support import images, recording
 
 EXACT = {"samples": 1, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "GAUSSIAN", "filter_width": 0.01, "max_bounces": 0}
@@ -111,3 +113,55 @@ def test_outside_of_the_image_circle_is_black_and_opaque(scene: bpy.types.Scene,
     assert np.array_equal(ours["Combined"][0, 0], (0, 0, 0, 1))
     assert np.allclose(ours["Combined"][12, 12], (0, 0, 0, 0) if transparent else (0.25, 0.5, 1, 1))
     assert np.allclose(ours["Combined"], cycles["Combined"], atol=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["EQUIRECTANGULAR", "MIRRORBALL"])
+def test_window_coordinates_are_those_of_the_picture(scene: bpy.types.Scene, render: Callable[..., Any], kind: str) -> None:
+    """In 3.4 Cycles mirrors those of fisheyes, later it does not."""
+    _prepare(scene)
+    material = bpy.data.materials.new("Window")
+    material.use_nodes = True
+    tree = material.node_tree
+    emission, where = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(where.outputs["Window"], emission.inputs["Color"])
+    tree.links.new(emission.outputs[0], next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"])
+    scene.objects["Sphere"].data.materials.append(material)
+    _camera(scene, kind, {}, {"size": (24, 24)})
+    ours, cycles = _both(scene, render)
+    assert np.allclose(ours["Combined"], cycles["Combined"], atol=2e-3)
+    assert np.allclose(ours["Combined"][12, 6], (6.5 / 24, 12.5 / 24, 0, 1), atol=2e-3)
+
+
+@pytest.mark.parametrize("kind", ["EQUIRECTANGULAR", "MIRRORBALL", "FISHEYE_EQUIDISTANT"])
+def test_depth_of_field_has_the_shape_that_it_has_in_cycles(scene: bpy.types.Scene, render: Callable[..., Any], kind: str) -> None:
+    """A small lamp far out of focus is a picture of the aperture: triangular, and stretched."""
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=0.25)
+    images.prepare(scene)
+    camera = _camera(scene, kind, {}, {"size": (24, 24)})
+    scene.objects["Sphere"].location = camera.matrix_basis @ Vector((0.3, 0.4, -2.0))
+    material = bpy.data.materials.new("Lamp")
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    emission, output = (material.node_tree.nodes.new(f"ShaderNode{name}") for name in ("Emission", "OutputMaterial"))
+    emission.inputs["Strength"].default_value = 100.0
+    material.node_tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    scene.objects["Sphere"].data.materials.append(material)
+    dof = camera.data.dof
+    dof.use_dof, dof.focus_distance, dof.aperture_fstop, dof.aperture_blades = True, 0.7, 0.05, 3
+    dof.aperture_ratio, dof.aperture_rotation = 1.5, 0.3
+    cycles = scene.cycles
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising, cycles.max_bounces = 2048, False, False, 0
+    cycles.pixel_filter_type = "BOX"
+    settings = EXACT | {"samples": 2048, "pixel_filter": "BOX"}
+    ours = render(scene, **settings)["Combined"][..., 0]
+    dof.aperture_rotation += math.pi / 3
+    turned = render(scene, **settings)["Combined"][..., 0]
+    dof.aperture_rotation -= math.pi / 3
+    scene.render.engine = "CYCLES"
+    theirs = render(scene)["Combined"][..., 0]
+
+    def off(picture: np.ndarray) -> float:
+        return np.abs(picture - theirs).sum() / theirs.sum()
+
+    assert off(ours) < 0.08
+    assert off(turned) > 3 * off(ours)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable
 from typing import Any
@@ -109,6 +110,40 @@ def test_c1_camera_zoom(vectors: Callable[[], np.ndarray], scene: bpy.types.Scen
     # Averaged over samples within the pixel: half a filter width times the relative change.
     assert np.allclose(row[:, 0], x * (4.0 / 5.0 - 1.0), atol=0.25)
     assert np.allclose(row[:, 2], x * (1.0 - 4.0 / 3.2), atol=0.25)
+
+
+def _panorama(camera: bpy.types.Object, kind: str) -> Any:
+    """Its settings; the camera looks along Y, in a room whose walls are seen all around."""
+    camera.data.type = "PANO"
+    camera.location, camera.rotation_euler = (0, 0, 0), (math.pi / 2, 0, 0)
+    bpy.ops.mesh.primitive_cube_add(size=8.0, location=(0.5, 0.3, 0.2))
+    settings = camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles
+    settings.panorama_type = kind
+    return settings
+
+
+def test_c1_panorama_turns(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
+    """Everything moves by the same angle, over the seam, too; next to the poles a pixel is as small as rounding."""
+    _panorama(scene.camera, "EQUIRECTANGULAR")
+    _key(scene.camera, "rotation_euler", {1: (math.pi / 2, 0, -0.1), 2: (math.pi / 2, 0, 0), 3: (math.pi / 2, 0, 0.2)})
+    found = vectors()
+    pixels = found.shape[1] / (2 * math.pi)
+    assert np.allclose(found[3:-3], (-0.1 * pixels, 0, -0.2 * pixels, 0), atol=0.01)
+
+
+def test_c1_fisheye_zooms(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
+    """The radius in the picture is proportional to the focal length."""
+    settings = _panorama(scene.camera, "FISHEYE_EQUISOLID")
+    _key(settings, "fisheye_lens", {1: 10.0, 2: 15.0, 3: 18.0})
+    scene.gradus.pixel_filter, scene.gradus.filter_width = "GAUSSIAN", 0.01
+    found = vectors()
+    height, width, _ = found.shape
+    y, x = np.mgrid[0:height, 0:width] + 0.5
+    place = np.stack([x - width / 2, y - height / 2], axis=2)
+    expected = np.concatenate([place * (10 / 15 - 1), place * (1 - 18 / 15)], axis=2)
+    seen = np.any(found != 0.0, axis=2)
+    assert seen.sum() > 1000
+    assert np.allclose(found[seen], expected[seen], atol=0.016)  # the filter is half a hundredth wide
 
 
 def test_c1_rotation(vectors: Callable[[], np.ndarray]) -> None:

@@ -29,10 +29,11 @@ class ViewOverride:
 
     matrix: tuple[float, ...]  # 16, column-major, view to world, without scale
     window: tuple[float, float, float, float]  # left, right, bottom, top; as GradusCamera.window
-    type: str  # PERSP or ORTHO
+    type: str  # PERSP, ORTHO or PANO
     clip: tuple[float, float]
     width: int
     height: int
+    projection: panorama.Projection | None = None
 
     @classmethod
     def from_view(cls, view_matrix: Any, window_matrix: Any, clip: tuple[float, float], width: int, height: int) -> ViewOverride:
@@ -48,6 +49,24 @@ class ViewOverride:
             # The viewport's orthographic view sees what is behind its origin, too.
             clip = (-clip[1], clip[1])
         return cls(tuple(matrix_values(view_matrix.inverted().normalized())), window, kind, clip, width, height)
+
+    @classmethod
+    def from_panorama(
+        cls, data: Any, view_matrix: Any, frame: tuple[float, float, float, float], render: Any, size: tuple[int, int]
+    ) -> ViewOverride:
+        """Through a panoramic camera. frame: left, bottom, right, top of its frame in pixels of the view."""
+        left, bottom, right, top = frame
+        part = (
+            -left / (right - left),
+            (size[0] - left) / (right - left),
+            -bottom / (top - bottom),
+            (size[1] - bottom) / (top - bottom),
+        )
+        aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
+        shift = (data.shift_x, data.shift_y)
+        window = panorama.window(data, shift, (render.resolution_x, render.resolution_y), aspect, part)
+        matrix = tuple(matrix_values(view_matrix.inverted().normalized()))
+        return cls(matrix, window, "PANO", (data.clip_start, data.clip_end), *size, panorama.Projection.of(data))
 
 
 @dataclass(frozen=True)
@@ -72,9 +91,7 @@ class CameraState:
     blades: int = 0
     blade_rotation: float = 0.0
     aperture_ratio: float = 1.0
-    panorama: int = 0
-    fisheye_fov: float = 0.0
-    fisheye_polynomial: tuple[float, ...] = (0.0,) * 5
+    projection: panorama.Projection | None = None
     eye: Eye = Eye()
 
 
@@ -150,20 +167,11 @@ def _eye(camera: Any, engine: Any, scene: Any) -> Eye:
     )
 
 
-def _set_panorama(state: CameraState, data: Any) -> None:
-    settings = panorama.settings_of(data)
-    state.type = _PANORAMA
-    state.panorama = panorama.TYPES[settings.panorama_type]
-    state.fisheye_fov = settings.fisheye_fov
-    state.fisheye_polynomial = panorama.polynomial(settings)
-
-
 def _refuse_unknown(camera: Any) -> None:
     data = camera.data
     if data.type == "CUSTOM":
         raise ExportError(f"Camera '{camera.name}' is custom: Gradus runs no camera shaders")
-    settings = panorama.settings_of(data)
-    if data.type == "PANO" and (settings is None or settings.panorama_type not in panorama.TYPES):
+    if data.type == "PANO" and not panorama.is_known(data):
         raise ExportError(f"Camera '{camera.name}' has a panorama type that Gradus does not know")
 
 
@@ -185,11 +193,11 @@ def camera_state(camera: Any, scene: Any, width: int, height: int, engine: Any =
     shift = (_shift_x(camera, engine, scene), data.shift_y)
     clip = (data.clip_start, data.clip_end)
     if data.type == "PANO":
-        state = CameraState(values, panorama.window(data, shift, width, height, aspect), clip=clip)
-        _set_panorama(state, data)
+        state = CameraState(values, panorama.window(data, shift, (width, height), aspect), _PANORAMA, clip)
+        state.projection = panorama.Projection.of(data)
     else:
-        state = CameraState(values, _flat_window(data, shift, width, height, aspect), clip=clip)
-        state.type = _ORTHOGRAPHIC if data.type == "ORTHO" else _PERSPECTIVE
+        kind = _ORTHOGRAPHIC if data.type == "ORTHO" else _PERSPECTIVE
+        state = CameraState(values, _flat_window(data, shift, width, height, aspect), kind, clip)
     state.eye = _eye(camera, engine, scene)
     _set_depth_of_field(state, data, matrix)
     return state
@@ -206,8 +214,8 @@ def _flat_window(
 
 def view_state(view: ViewOverride) -> CameraState:
     """The state of the viewport."""
-    kind = _ORTHOGRAPHIC if view.type == "ORTHO" else _PERSPECTIVE
-    return CameraState(tuple(view.matrix), view.window, kind, view.clip)
+    kind = {"PERSP": _PERSPECTIVE, "ORTHO": _ORTHOGRAPHIC, "PANO": _PANORAMA}[view.type]
+    return CameraState(tuple(view.matrix), view.window, kind, view.clip, projection=view.projection)
 
 
 def fill_camera(now: CameraState, previous: CameraState | None = None, following: CameraState | None = None) -> native.Camera:
@@ -228,9 +236,10 @@ def fill_camera(now: CameraState, previous: CameraState | None = None, following
     struct.blades = now.blades
     struct.blade_rotation = now.blade_rotation
     struct.aperture_ratio = now.aperture_ratio
-    struct.panorama = now.panorama
-    struct.fisheye_fov = now.fisheye_fov
-    struct.fisheye_polynomial[:] = now.fisheye_polynomial
+    if now.projection is not None:
+        struct.panorama = now.projection.kind
+        struct.fisheye_fov = now.projection.fov
+        struct.fisheye_polynomial[:] = now.projection.polynomial
     struct.eye_offset = now.eye.offset
     struct.convergence_distance = now.eye.convergence_distance
     struct.pole_merge_from, struct.pole_merge_to = now.eye.pole_merge

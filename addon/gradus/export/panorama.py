@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 from ..native import Panorama
@@ -17,6 +18,27 @@ TYPES = {
     "CENTRAL_CYLINDRICAL": Panorama.CYLINDER,
 }
 Window = tuple[float, float, float, float]
+_WHOLE = (0.0, 1.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Projection:
+    """What the frame's window does not say."""
+
+    kind: Panorama
+    fov: float  # of the image circle
+    polynomial: tuple[float, ...]  # of the lens, from the constant term on
+
+    @classmethod
+    def of(cls, data: Any) -> Projection:
+        settings = settings_of(data)
+        polynomial = tuple(getattr(settings, f"fisheye_polynomial_k{power}") for power in range(5))
+        return cls(TYPES[settings.panorama_type], settings.fisheye_fov, polynomial)
+
+
+def is_known(data: Any) -> bool:
+    settings = settings_of(data)
+    return settings is not None and settings.panorama_type in TYPES
 
 
 def settings_of(data: Any) -> Any:
@@ -24,12 +46,12 @@ def settings_of(data: Any) -> Any:
     return data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)
 
 
-def sensor_size(data: Any, width: int, height: int, aspect: tuple[float, float]) -> tuple[float, float]:
+def sensor_size(data: Any, size: tuple[int, int], aspect: tuple[float, float]) -> tuple[float, float]:
     """In millimetres, with the frame's shape."""
-    x, y = width * aspect[0], height * aspect[1]
+    x, y = size[0] * aspect[0], size[1] * aspect[1]
     horizontal = x > y if data.sensor_fit == "AUTO" else data.sensor_fit == "HORIZONTAL"
-    size = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
-    return (size, size * y / x) if horizontal else (size * x / y, size)
+    side = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    return (side, side * y / x) if horizontal else (side * x / y, side)
 
 
 def _centred(width: float, height: float) -> Window:
@@ -53,14 +75,14 @@ def _whole_frame(kind: Panorama, panorama: Any, sensor: tuple[float, float]) -> 
     return _centred(sensor[0] * scale, sensor[1] * scale)
 
 
-def window(data: Any, shift: tuple[float, float], width: int, height: int, aspect: tuple[float, float]) -> Window:
-    """Left, right, bottom, top of the frame. Shift is in frames."""
+def window(data: Any, shift: tuple[float, float], size: tuple[int, int], aspect: tuple[float, float], part: Window = _WHOLE) -> Window:
+    """Left, right, bottom, top of a part of the frame. Shift is in frames, as the part is."""
     panorama = settings_of(data)
-    left, right, bottom, top = _whole_frame(TYPES[panorama.panorama_type], panorama, sensor_size(data, width, height, aspect))
-    x, y = shift[0] * (right - left), shift[1] * (top - bottom)
-    return (left + x, right + x, bottom + y, top + y)
-
-
-def polynomial(panorama: Any) -> tuple[float, ...]:
-    """Of the lens, from the constant term on."""
-    return tuple(getattr(panorama, f"fisheye_polynomial_k{power}") for power in range(5))
+    left, right, bottom, top = _whole_frame(TYPES[panorama.panorama_type], panorama, sensor_size(data, size, aspect))
+    width, height = right - left, top - bottom
+    return (
+        left + width * (part[0] + shift[0]),
+        left + width * (part[1] + shift[0]),
+        bottom + height * (part[2] + shift[1]),
+        bottom + height * (part[3] + shift[1]),
+    )

@@ -202,7 +202,10 @@ TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
   const float bad[4] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, 0.0f};
   for (int i = 0; i < 100000; ++i) {
     GradusCamera desc{};
-    desc.type = random() % 2;
+    desc.type = random() % 3;
+    desc.panorama = random() % 7;
+    desc.fisheye_fov = 3.0f;
+    desc.fisheye_polynomial[1] = -1.0f;
     for (int k = 0; k < 16; ++k) desc.matrix[k] = k % 5 == 0 ? 1.0f : 0.0f;
     desc.window[0] = desc.window[2] = -0.5f;
     desc.window[1] = desc.window[3] = 0.5f;
@@ -213,6 +216,8 @@ TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
     float* const fields[] = {desc.matrix + random() % 16, desc.window + random() % 4, &desc.clip_start,     &desc.clip_end,
                              &desc.aperture_radius,       &desc.focus_distance,       &desc.blade_rotation, &desc.aperture_ratio};
     *fields[i % 8] = bad[random() % 4];
+    if (i % 5 == 0) desc.fisheye_polynomial[random() % 5] = bad[random() % 4];
+    if (i % 7 == 0) desc.fisheye_fov = bad[random() % 4];
     desc.blades = i % 7;
     const Ray ray = Camera(desc, 64, 48).ray(Vec2(20.5f, 30.5f), Vec2(0.3f, 0.6f));
     Hit hit;

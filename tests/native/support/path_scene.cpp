@@ -288,8 +288,8 @@ void add_lamps_with_extent(PathScene* scene, uint32_t flags, float roughness) {
 }  // namespace
 
 const char* name_of(Scenario scenario) {
-  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",       "GlossyFloor", "RoughMetal",  "Mirror",
-                                      "Glass",       "RoughGlass",  "Transparent", "LampsSeen",   "LampsUnseen", "Facets"};
+  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",     "GlossyFloor", "RoughMetal", "Mirror", "Glass",
+                                      "RoughGlass",  "Transparent", "LampsSeen", "LampsUnseen", "Facets",     "Fisheye"};
   return names[static_cast<int>(scenario)];
 }
 
@@ -364,6 +364,13 @@ void build(Scenario scenario, PathScene* scene) {
       break;
     case Scenario::LampsUnseen:
       add_lamps_with_extent(scene, GRADUS_LIGHT_NO_MIS, 0.6f);  // light sampling alone is noisy on sharper surfaces
+      break;
+    case Scenario::Fisheye:  // from within the box; the image circle ends inside of the frame
+      add_ceiling_light(scene, 8.0f, 0.6f);
+      scene->ball(Vec3(0.3f, -0.6f, -0.3f), 0.35f, scene->material(glossy(0.3f)), 10, true);
+      scene->camera(Vec3(0, 0, 0.7f), Vec3(0, -0.1f, 0), 3.6f, GRADUS_CAMERA_PANORAMA);
+      scene->camera_desc.panorama = GRADUS_PANORAMA_FISHEYE_EQUIDISTANT;
+      scene->camera_desc.fisheye_fov = 3.0f;
       break;
     case Scenario::Count:
       break;

@@ -36,7 +36,8 @@ class PathScene {
   void world(const Rgb& radiance);
   // map_size: width of the map that its light is sampled by.
   void world(uint64_t material, uint32_t map_size) { scene.world(material, map_size); }
-  // At `from`, looking at `at`, y up; field: width of the frame at distance 1 (orthographic: in metres).
+  // At `from`, looking at `at`, y up; field: width of the frame at distance 1 (orthographic: in metres; panorama: as
+  // GradusPanorama says).
   void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
 
   GradusCamera camera_desc{};
@@ -84,6 +85,7 @@ enum class Scenario {
   LampsSeen,
   LampsUnseen,
   Facets,
+  Fisheye,
   Count
 };
 const char* name_of(Scenario scenario);
