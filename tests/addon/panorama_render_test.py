@@ -52,11 +52,13 @@ def _prepare(scene: bpy.types.Scene) -> None:
     """A ball around the camera."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=RADIUS)
     images.prepare(scene)
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.mist_settings.depth = 2 * RADIUS
     cycles = scene.cycles
     cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising, cycles.max_bounces = 1, False, False, 0
     cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
     layer = scene.view_layers[0]
-    layer.use_pass_position = layer.use_pass_z = layer.use_pass_normal = True
+    layer.use_pass_position = layer.use_pass_z = layer.use_pass_normal = layer.use_pass_mist = True
 
 
 def _camera(scene: bpy.types.Scene, kind: str, settings: dict[str, Any], frame: dict[str, Any]) -> bpy.types.Object:
@@ -94,7 +96,8 @@ def test_shows_what_cycles_shows(scene: bpy.types.Scene, render: Callable[..., A
     # The filter's hundredth of a pixel is up to 2 * pi * RADIUS / 24 / 100 wide; next to poles less matters.
     away = np.linalg.norm(ours["Position"] - cycles["Position"], axis=2)[seen]
     assert np.percentile(away, 90) < 0.15 and away.max() < 1.0
-    assert np.allclose(ours["Depth"][seen], cycles["Depth"][seen], rtol=5e-3)
+    assert np.allclose(ours["Depth"], cycles["Depth"], rtol=5e-3)
+    assert np.allclose(ours["Mist"], cycles["Mist"], atol=5e-3)
     assert np.allclose(ours["Normal"][seen], cycles["Normal"][seen], atol=0.15)
 
 
@@ -103,8 +106,7 @@ def test_outside_of_the_image_circle_is_black_and_opaque(scene: bpy.types.Scene,
     """As in Cycles: no ray leaves there, so nothing is seen through."""
     _prepare(scene)
     bpy.data.objects.remove(scene.objects["Sphere"])
-    world = scene.world or bpy.data.worlds.new("World")
-    scene.world = world
+    world = scene.world
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs[0].default_value = (0.25, 0.5, 1.0, 1.0)
     scene.render.film_transparent = transparent

@@ -23,6 +23,8 @@ class PassRecorder {
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // The ray left the scene.
   void escaped(const PathState& state);
+  // The film sees nothing there: all is mist, as in Cycles.
+  void no_ray() { add(GRADUS_PASS_MIST, 1.0f); }
   // A lamp or the world on the path's last segment, with the whole of the light that arrives from there.
   void sighting(const Rgb& light) {
     if (!features_done_) add_albedo(light);

@@ -70,6 +70,7 @@ class PathTracer {
       state_.ray.ray = context_.camera.ray(film, lens);
       extend(sampler, first != nullptr ? &first->hit : nullptr, vertex);
     }
+    if (recorder_ != nullptr && is_none(state_.ray.ray)) recorder_->no_ray();
     if (step(sampler, RaySource{}, vertex)) {
       follow_rays(sampler, vertex);
     }
