@@ -237,6 +237,9 @@ class Mesh(Struct):
         ("generated_size", c_float * 3),
         ("generated_points", POINTER(c_float)),
         ("name", c_char_p),
+        ("shutter_positions", POINTER(c_float)),
+        ("shutter_key_count", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -264,6 +267,10 @@ class Instances(Struct):
         ("name_index", POINTER(c_uint32)),
         ("name_count", c_size_t),
         ("names", POINTER(c_char_p)),
+        ("shutter_first", POINTER(c_uint32)),
+        ("shutter_count", POINTER(c_uint32)),
+        ("shutter_size", c_size_t),
+        ("shutter_matrices", POINTER(c_float)),
     ]
 
 
@@ -313,6 +320,14 @@ class Camera(Struct):
         ("convergence_distance", c_float),
         ("pole_merge_from", c_float),
         ("pole_merge_to", c_float),
+        ("shutter_key_count", c_uint32),
+        ("shutter_open", c_float),
+        ("shutter_close", c_float),
+        ("shutter_curve_count", c_uint32),
+        ("reserved", c_uint32),
+        ("shutter_curve", POINTER(c_float)),
+        ("shutter_matrices", POINTER(c_float)),
+        ("shutter_windows", POINTER(c_float)),
     ]
 
 

@@ -11,6 +11,7 @@ import bpy
 
 from . import compat, cycles_settings, frame_store, native, options, output, passes, pixels, settings, stats, store
 from .export import Cancelled as ExportCancelled
+from .export.shutter import shutter_of
 from .failure import Failure
 from .native import Error, GradusError, Phase
 from .store import FINAL, POLL_SECONDS, PREVIEW, Cancelled, Key, Session
@@ -122,11 +123,20 @@ class Job:
     def export(self, view: str) -> None:
         if view:
             self.engine.active_view_set(view)
-        vectors = any(info.plane == passes.Pass.VECTOR for info in self.infos)
+        vectors = self.wants_vectors()
         with self.clock.phase("export"):
             report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop, vectors)
         self.settings.width, self.settings.height = report.width, report.height
         self.warn(report.warnings)
+
+    def wants_vectors(self) -> bool:
+        """Under motion blur they are 0 unless they are asked for, as in Cycles: whoever blurs by them would blur twice."""
+        if not any(info.plane == passes.Pass.VECTOR for info in self.infos):
+            return False
+        if shutter_of(self.scene, self.layer) is None or host_value("vector_with_motion_blur", self.scene, self.overrides):
+            return True
+        self.warn(["Pass Vector is 0: the picture has motion blur (Motion Blur > Vector Pass gives it all the same)"])
+        return False
 
     def warn(self, texts: list[str]) -> None:
         for text in self.session.take_new_warnings(texts):

@@ -158,6 +158,16 @@ SETTINGS: tuple[Setting, ...] = (
         native=False,
     ),
     Setting(
+        "vector_with_motion_blur",
+        BOOL,
+        False,
+        "Vector Pass",
+        "Fill pass Vector although the picture has motion blur: whoever blurs by it would blur twice",
+        0,
+        1,
+        native=False,
+    ),
+    Setting(
         "frame_store",
         FOLDER,
         "",

@@ -47,13 +47,6 @@ def test_a_shadow_catcher_is_named(scene: bpy.types.Scene, plane: bpy.types.Obje
     assert warnings(scene) == ["Object 'Plane' is a shadow catcher and is rendered as an ordinary surface"]
 
 
-def test_motion_blur_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    scene.render.use_motion_blur = True
-    assert warnings(scene) == ["Motion blur is not rendered yet: everything is sharp"]
-    scene.view_layers[0].use_motion_blur = False
-    assert warnings(scene) == []
-
-
 def test_a_camera_of_scale_0_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     """It gave a black picture without a word. (Cycles shows the world's colour all over.)"""
     scene.camera.scale = (1.0, 1.0, 0.0)

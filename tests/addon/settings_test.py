@@ -37,6 +37,7 @@ DOCUMENTED = {
     "roughness_threshold": 0.1,
     "strict": False,
     "preview_samples": 32,
+    "vector_with_motion_blur": False,
 }
 """Names that tests and users rely on, and their defaults."""
 

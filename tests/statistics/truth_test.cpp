@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -25,8 +26,8 @@ int reference_samples() { return test::full_run() ? 280 : 28; }
 uint32_t cell_side() { return test::full_run() ? 1 : 4; }
 
 // Light sources are large, so that BSDF sampling alone finds them.
-enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, Sky, ManyLights, Count };
-const char* const kNames[] = {"Box", "GlassBalls", "RoughMetal", "Textures", "Environment", "Sky", "ManyLights"};
+enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, Sky, ManyLights, Motion, Count };
+const char* const kNames[] = {"Box", "GlassBalls", "RoughMetal", "Textures", "Environment", "Sky", "ManyLights", "Motion"};
 
 uint64_t checker(PathScene* scene, uint32_t closure, const Vec3& a, const Vec3& b, float scale) {
   test::ProgramBuilder p;
@@ -57,6 +58,16 @@ void add_many_lights(PathScene* scene) {
   scene->light(ball);
 }
 
+// A large light that swings, a ball that swells while it flies, and an eye that moves aside.
+void add_motion(PathScene* scene) {
+  scene->scene.way = {test::translation(Vec3(-0.2f, 0, 0)), test::translation(Vec3(0.3f, -0.4f, 0)) * glm::rotate(Mat4(1.0f), 0.5f, Vec3(0, 0, 1))};
+  test::add_ceiling_light(scene, 1.5f, 1.4f);
+  scene->scene.way = {Mat4(1.0f), test::translation(Vec3(-0.3f, 0.3f, 0))};
+  scene->swelling = 1.5f;
+  scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.3f, scene->material(test::matte(Rgb(0.5f))), 6, true);
+  scene->open_shutter({1.0f, 0.2f, 1.0f}, {Mat4(1.0f), test::translation(Vec3(0.1f, 0, 0))});
+}
+
 void build(Truth truth, PathScene* scene) {
   test::Surface floor = test::matte(Rgb(0.6f));
   if (truth == Truth::RoughMetal) {
@@ -77,6 +88,8 @@ void build(Truth truth, PathScene* scene) {
     scene->quad(Vec3(-0.8f, -0.9f, -0.8f), Vec3(1.2f, 0, 0.3f), Vec3(0, 1.3f, 0), wall);
   } else if (truth == Truth::ManyLights) {
     add_many_lights(scene);
+  } else if (truth == Truth::Motion) {
+    add_motion(scene);
   } else {
     test::add_ceiling_light(scene, 1.5f, 1.6f);
   }
@@ -85,7 +98,7 @@ void build(Truth truth, PathScene* scene) {
     scene->ball(Vec3(0.45f, -0.5f, 0.2f), 0.45f, scene->material(test::glass(0.3f)), 10, true);
   } else if (truth == Truth::RoughMetal) {
     scene->ball(Vec3(0.0f, -0.3f, 0.0f), 0.6f, scene->material(test::glossy(0.5f)), 10, true);
-  } else if (truth != Truth::Textures) {
+  } else if (truth != Truth::Textures && truth != Truth::Motion) {
     scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(test::matte(Rgb(0.5f))), 6);
   }
 }

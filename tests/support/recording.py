@@ -29,6 +29,16 @@ class RecordedMesh:
     default_uv: str
     attributes: dict[str, tuple[int, bool, np.ndarray]]  # name: domain, is_uv, values
     generated: tuple[list[float], list[float]]
+    shutter: np.ndarray | None  # positions by key, vertex
+
+
+def _shutter_matrices(record: Any, count: int) -> list[np.ndarray | None]:
+    """By instance; None where it is at rest."""
+    first, counts = values(record.shutter_first, count), values(record.shutter_count, count)
+    if first is None:
+        return [None] * count
+    matrices = values(record.shutter_matrices, record.shutter_size, 4, 4)
+    return [matrices[first[i] : first[i] + counts[i]] if counts[i] else None for i in range(count)]
 
 
 @dataclass
@@ -42,6 +52,7 @@ class Recording:
     instances: dict[str, Any] = field(default_factory=dict)
     lights: list[Any] = field(default_factory=list)
     camera: Any = None
+    shutter: dict[str, Any] = field(default_factory=dict)
     world: Any = None
 
     def scene_set_mesh(self, _scene: int, key: int, reference: Any) -> None:
@@ -65,6 +76,7 @@ class Recording:
             (mesh.default_uv or b"").decode(),
             attributes,
             (list(mesh.generated_location), list(mesh.generated_size)),
+            values(mesh.shutter_positions, mesh.shutter_key_count, mesh.vertex_count, 3),
         )
 
     def scene_set_image(self, _scene: int, key: int, reference: Any) -> None:
@@ -118,6 +130,7 @@ class Recording:
             "uvs": values(record.uvs, count, 2),
             "shadow_terminator_offset": values(record.shadow_terminator_offsets, count),
             "materials": [list(materials[first[i] : first[i] + counts[i]]) if counts[i] else [] for i in range(count)],
+            "shutter": _shutter_matrices(record, count),
             "names": [record.names[record.name_index[i]].decode() for i in range(count)],
         }
 
@@ -127,7 +140,15 @@ class Recording:
 
     def scene_set_camera(self, _scene: int, reference: Any) -> None:
         self.calls.append("camera")
-        self.camera = type(reference._obj).from_buffer_copy(reference._obj)
+        camera = reference._obj
+        self.camera = type(camera).from_buffer_copy(camera)
+        self.shutter = {
+            "open": camera.shutter_open,
+            "close": camera.shutter_close,
+            "curve": values(camera.shutter_curve, camera.shutter_curve_count),
+            "matrices": values(camera.shutter_matrices, camera.shutter_key_count, 4, 4),
+            "windows": values(camera.shutter_windows, camera.shutter_key_count, 4),
+        }
 
     def scene_set_world(self, _scene: int, reference: Any) -> None:
         self.calls.append("world")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from array import array
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,7 @@ from .. import native
 from . import panorama
 from .arrays import matrix_values
 from .report import ExportError
+from .shutter import Shutter
 
 _PERSPECTIVE, _ORTHOGRAPHIC, _PANORAMA = native.CameraType
 _MIN_FSTOP = 1e-5
@@ -218,8 +220,17 @@ def view_state(view: ViewOverride) -> CameraState:
     return CameraState(tuple(view.matrix), view.window, kind, view.clip, projection=view.projection)
 
 
-def fill_camera(now: CameraState, previous: CameraState | None = None, following: CameraState | None = None) -> native.Camera:
-    """A native Camera; without other moments it is at rest."""
+def fill_camera(
+    now: CameraState,
+    previous: CameraState | None = None,
+    following: CameraState | None = None,
+    shutter: Shutter | None = None,
+    keys: Sequence[CameraState] = (),
+) -> tuple[native.Camera, list[Any]]:
+    """A native Camera, and what must stay alive until it has been copied; without other moments it is at rest.
+
+    keys: the camera while the shutter is open.
+    """
     struct = native.Camera()
     previous = previous or now
     following = following or now
@@ -243,4 +254,13 @@ def fill_camera(now: CameraState, previous: CameraState | None = None, following
     struct.eye_offset = now.eye.offset
     struct.convergence_distance = now.eye.convergence_distance
     struct.pole_merge_from, struct.pole_merge_to = now.eye.pole_merge
-    return struct
+    if shutter is None:
+        return struct, []
+    matrices = array("f", [value for state in keys for value in state.matrix])
+    windows = array("f", [value for state in keys for value in state.window])
+    struct.shutter_open, struct.shutter_close = shutter.open, shutter.close
+    struct.shutter_curve_count = len(shutter.curve or ())
+    struct.shutter_curve = native.pointer(shutter.curve)
+    struct.shutter_key_count = len(keys)
+    struct.shutter_matrices, struct.shutter_windows = native.pointer(matrices or None), native.pointer(windows or None)
+    return struct, [shutter, matrices, windows]

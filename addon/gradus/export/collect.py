@@ -14,6 +14,7 @@ from typing import Any
 from . import left_out, shadow_terminator
 from .arrays import read
 from .object_random import name_hash
+from .shutter import SHARP, Blur, blur_of
 from .visibility import ALL_RAYS, visibility
 
 InstanceKey = tuple[int, ...]
@@ -34,6 +35,7 @@ class Entry:
     pass_index: int
     color: tuple[float, ...]
     shadow_terminator_offset: float
+    blur: Blur = SHARP
     generated: tuple[float, ...] = (0.0, 0.0, 0.0)
     uv: tuple[float, ...] = (0.0, 0.0)
     materials: tuple[Any, ...] = ()
@@ -76,6 +78,7 @@ class _Facts:
     pass_index: int
     color: tuple[float, ...]
     shadow_terminator_offset: float
+    blur: Blur
 
 
 class _Parts:
@@ -97,7 +100,7 @@ class _Parts:
             key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
             bits = visibility(obj, parent, self._view_layer)
             terminator = shadow_terminator.geometry_offset(obj)
-            found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color), terminator)
+            found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color), terminator, blur_of(owner, parent))
             self._warnings.extend(left_out.of_object(owner, self._view_layer))
             if parent is not None:
                 self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
@@ -178,6 +181,7 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, parts: _Parts) -
         facts.pass_index,
         facts.color,
         facts.shadow_terminator_offset,
+        facts.blur,
     )
     if copies:
         entry.generated = tuple(instance.orco)

@@ -1,10 +1,12 @@
-"""One sync: everything of the rendered frame is read first, then (for vectors) the frames around it, then instances and camera are set."""
+"""One sync: everything of the rendered frame is read first, then (for vectors and motion blur) the moments around it, then instances and
+camera are set."""
 
 from __future__ import annotations
 
 import time
 from array import array
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -16,6 +18,7 @@ from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
 from .mesh import MeshArrays
 from .report import ExportError, ExportReport, Poll, Warnings
+from .shutter import blur_of, shutter_of
 from .target import Target
 
 
@@ -44,8 +47,11 @@ class Exporter:
         vectors: whether the Vector pass is wanted; None: where the view layer has it.
         """
         start = time.perf_counter()
-        wants_motion = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors
-        run = _Sync(self, depsgraph, engine, view, wants_motion and view is None and not is_preview, Poll(cancelled))
+        wants_vectors = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors
+        wanted = motion.Wanted()
+        if view is None and not is_preview:
+            wanted = motion.Wanted(wants_vectors, shutter_of(depsgraph.scene_eval, depsgraph.view_layer_eval))
+        run = _Sync(self, depsgraph, engine, view, wanted, Poll(cancelled))
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
             table.begin()
@@ -63,14 +69,23 @@ class Exporter:
 
     def sync_camera(self, depsgraph: Any, view: camera.ViewOverride) -> None:
         """Sets the viewport's camera alone: for redraws in which nothing but the view changed."""
-        self._target.set_camera(camera.fill_camera(camera.view_state(view)))
+        self._target.set_camera(camera.fill_camera(camera.view_state(view))[0])
+
+
+@dataclass
+class _Deforming:
+    """A mesh whose positions may differ between moments, and the instance that stands for it."""
+
+    place: int
+    arrays: MeshArrays
+    entry: Entry
 
 
 class _Sync:
     """The state of one call of Exporter.sync."""
 
     def __init__(
-        self, exporter: Exporter, depsgraph: Any, engine: Any, view: camera.ViewOverride | None, wants_motion: bool, poll: Poll
+        self, exporter: Exporter, depsgraph: Any, engine: Any, view: camera.ViewOverride | None, wanted: motion.Wanted, poll: Poll
     ) -> None:
         self._depsgraph = depsgraph
         self._engine = engine
@@ -82,10 +97,10 @@ class _Sync:
         self.warnings = Warnings()
         self._scene = depsgraph.scene_eval
         self.size = self._resolution()
-        self._wants_motion = wants_motion
+        self._wanted = wanted
         resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
-        self._deforming: dict[InstanceKey, tuple[int, MeshArrays]] = {}
+        self._deforming: dict[InstanceKey, _Deforming] = {}
 
     def _resolution(self) -> tuple[int, int]:
         if self._view is not None:
@@ -109,27 +124,47 @@ class _Sync:
         self._set_world()
         self._set_lights(collected)
         mesh_of = self._read_meshes(collected)
-        moments = self._moments()
-        for key, (place, arrays) in self._deforming.items():
-            arrays.motion = motion.mesh_motion(key, arrays, moments)
-            mesh_of[place] = self._set_mesh(arrays)
+        moments = self._moments(collected)
+        for key, found in self._deforming.items():
+            self._add_motion(key, found, moments)
+            mesh_of[found.place] = self._set_mesh(found.arrays)
         self._set_instances(collected, mesh_of, moments)
-        around = [moment.camera for moment in moments] or [None, None]
-        self._target.set_camera(camera.fill_camera(now, *around))
+        self._set_camera(now, moments)
+
+    def _camera_object(self) -> Any:
+        found = getattr(self._engine, "camera_override", None) or self._scene.camera
+        if found is None:
+            raise ExportError(f"Scene '{self._scene.name}' has no camera")
+        return found
 
     def _camera(self) -> camera.CameraState:
         if self._view is not None:
             return camera.view_state(self._view)
-        found = getattr(self._engine, "camera_override", None) or self._scene.camera
-        if found is None:
-            raise ExportError(f"Scene '{self._scene.name}' has no camera")
-        return camera.camera_state(found, self._scene, *self.size, self._engine)
+        return camera.camera_state(self._camera_object(), self._scene, *self.size, self._engine)
 
-    def _moments(self) -> list[motion.Moment]:
-        if not self._wants_motion:
-            return []
-        deforming = {key: arrays for key, (_, arrays) in self._deforming.items()}
-        return motion.read_moments(self._depsgraph, self._engine, deforming, self.size, self._poll)
+    def _set_camera(self, now: camera.CameraState, moments: motion.Moments) -> None:
+        around = [moments[time].camera for time in motion.AROUND] if self._wanted.vectors else [None, None]
+        shutter = self._wanted.shutter
+        keys = motion.camera_blur(self._camera_object(), now, shutter, moments) if shutter is not None else []
+        struct, _keep = camera.fill_camera(now, *around, shutter, keys)
+        self._target.set_camera(struct)
+
+    def _moments(self, collected: Collected) -> motion.Moments:
+        if not self._wanted.any():
+            return {}
+        times = self._wanted.times({blur_of(self._camera_object()), *(entry.blur for entry in collected.surfaces)})
+        deforming = {key: found.arrays for key, found in self._deforming.items()}
+        return motion.read_moments(self._depsgraph, self._engine, times, deforming, self.size, self._poll)
+
+    def _add_motion(self, key: InstanceKey, found: _Deforming, moments: motion.Moments) -> None:
+        arrays, shutter = found.arrays, self._wanted.shutter
+        if self._wanted.vectors:
+            arrays.motion = motion.mesh_motion(key, arrays, moments)
+        if shutter is None or arrays.blur is not None:
+            return
+        arrays.blur = motion.mesh_blur(key, arrays, found.entry.blur, shutter, moments)
+        if arrays.blur is None and found.entry.blur.deform and motion.changes_topology(key, moments):
+            self.warnings.add(f"Object '{found.entry.name}' has another mesh at every moment: its deformation is not blurred")
 
     # Meshes
 
@@ -146,8 +181,8 @@ class _Sync:
             arrays = self._read_mesh(entry, wanted)
             if arrays is None:
                 continue
-            if self._wants_motion and motion.may_deform(entry):
-                self._deforming[entry.key] = (place, arrays)
+            if self._wanted.any() and motion.may_deform(entry):
+                self._deforming[entry.key] = _Deforming(place, arrays, entry)
             else:
                 keys[place] = self._set_mesh(arrays)
         return keys
@@ -159,7 +194,11 @@ class _Sync:
             undeformed = original.data
         if len(entry.data.polygons) == 0:
             return None
-        return mesh.read_mesh(entry.data, wanted, undeformed)
+        arrays = mesh.read_mesh(entry.data, wanted, undeformed)
+        if self._wanted.shutter is not None:
+            render = self._scene.render
+            arrays.blur = motion.velocity_blur(entry.data, arrays, entry.blur, self._wanted.shutter, render.fps / render.fps_base)
+        return arrays
 
     def _set_mesh(self, arrays: MeshArrays) -> int:
         key = self._mesh_keys.key(arrays.content_hash())
@@ -168,10 +207,13 @@ class _Sync:
             self._target.set_mesh(key, struct)
         return key
 
-    def _set_instances(self, collected: Collected, mesh_of: dict[int, int], moments: list[motion.Moment]) -> None:
+    def _set_instances(self, collected: Collected, mesh_of: dict[int, int], moments: motion.Moments) -> None:
         arrays = instances.instance_arrays(collected, mesh_of, self._ids.key)
-        if moments:
-            arrays.previous, arrays.following = (motion.instance_motion(arrays.entries, arrays.matrices, moment) for moment in moments)
+        if self._wanted.vectors:
+            around = (moments[time] for time in motion.AROUND)
+            arrays.previous, arrays.following = (motion.instance_motion(arrays.entries, arrays.matrices, moment) for moment in around)
+        if self._wanted.shutter is not None:
+            arrays.blur = motion.instance_blur(arrays.entries, arrays.matrices, self._wanted.shutter, moments)
         struct, _keep = instances.fill_instances(arrays)
         self._target.set_instances(struct)
 

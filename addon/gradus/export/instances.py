@@ -9,6 +9,7 @@ from typing import Any
 
 from .. import native
 from .collect import Collected, Entry, InstanceKey
+from .motion import InstanceBlur
 
 
 def _pick(values: array, entries: list[Entry]) -> array:
@@ -34,6 +35,7 @@ class InstanceArrays:
     material_count: array
     previous: array | None = None
     following: array | None = None
+    blur: InstanceBlur | None = None
 
 
 def instance_arrays(collected: Collected, mesh_of: dict[int, int], instance_id: Callable[[InstanceKey], int]) -> InstanceArrays:
@@ -84,6 +86,9 @@ def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]
         "material_count": arrays.material_count,
         "materials": arrays.materials,
     }
+    if arrays.blur is not None:
+        columns |= {"shutter_first": arrays.blur.first, "shutter_count": arrays.blur.count, "shutter_matrices": arrays.blur.matrices}
+        struct.shutter_size = len(arrays.blur.matrices) // 16
     for name, values in columns.items():
         setattr(struct, name, native.pointer(values))
     struct.materials_size = len(arrays.materials)

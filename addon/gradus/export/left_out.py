@@ -38,8 +38,6 @@ def _is_hair(modifier: Any) -> bool:
 
 
 def of_scene(scene: Any, view_layer: Any) -> Iterator[str]:
-    if scene.render.use_motion_blur and view_layer.use_motion_blur:
-        yield "Motion blur is not rendered yet: everything is sharp"
     camera = scene.camera
     if camera is not None and any(column.to_3d().length_squared == 0.0 for column in camera.matrix_world.col[:3]):
         yield f"Camera '{camera.name}' has scale 0: it has no direction to look to"

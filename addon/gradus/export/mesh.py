@@ -36,6 +36,7 @@ class MeshArrays:
     texture_space: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
     generated_points: array | None = None
     motion: tuple[array, array] | None = None  # positions one frame before and after
+    blur: array | None = None  # positions while the shutter is open, key after key
 
     def content_hash(self) -> bytes:
         """Equal for equal content, whatever object it comes from. SHA-1 because processors have it built in: 50 MB in 26 ms."""
@@ -47,6 +48,7 @@ class MeshArrays:
             ("m", self.face_materials),
             ("n", self.normals),
             ("g", self.generated_points),
+            ("b", self.blur),
             *zip("pf", self.motion or (), strict=False),
         )
         for mark, values in optional:
@@ -172,5 +174,7 @@ def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:
     struct.generated_location[:] = arrays.texture_space[:3]
     struct.generated_size[:] = arrays.texture_space[3:]
     struct.generated_points = native.pointer(arrays.generated_points)
+    struct.shutter_positions = native.pointer(arrays.blur)
+    struct.shutter_key_count = len(arrays.blur) // len(arrays.positions) if arrays.blur else 0
     struct.name = native.text(arrays.name)
     return struct, [positions, times, records, arrays]

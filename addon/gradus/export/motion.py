@@ -1,5 +1,4 @@
-"""The moments around the rendered frame, for vectors: matrices, deforming positions and the camera one frame before and
-after.
+"""The moments around the rendered frame: for vectors one frame before and after, for motion blur those at which the shutter is open.
 
 Stepping evaluates the same depsgraph in place, so whatever is needed of the rendered frame must have been read
 before. Objects are found again by their instance key, never by name.
@@ -9,7 +8,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,22 +16,46 @@ from typing import Any
 from .camera import CameraState, camera_state
 from .collect import Entry, InstanceKey, collect
 from .mesh import MeshArrays, corner_vertices, read_positions
+from .shutter import Blur, Shutter, blur_of
 
-OFFSETS = (-1, 1)
+AROUND = (-1.0, 1.0)
 _BECOME_MESHES = frozenset({"CURVE", "SURFACE", "FONT", "META"})
 
 
 @dataclass
 class Moment:
-    """What moved, at one other frame."""
+    """What moved, at another time."""
 
     matrices: dict[InstanceKey, array] = field(default_factory=dict)
     positions: dict[InstanceKey, array] = field(default_factory=dict)
     camera: CameraState | None = None
 
 
+Moments = dict[float, Moment]
+"""By frames relative to the one rendered, which is not among them."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which motion an export is to read."""
+
+    vectors: bool = False
+    shutter: Shutter | None = None
+
+    def any(self) -> bool:
+        return self.vectors or self.shutter is not None
+
+    def times(self, blurs: Iterable[Blur]) -> list[float]:
+        """In order, without the frame itself."""
+        found = set(AROUND if self.vectors else ())
+        if self.shutter is not None:
+            for keys in {blur.keys for blur in blurs} - {0}:
+                found.update(self.shutter.times(keys))
+        return sorted(found - {0.0})
+
+
 def may_deform(entry: Entry) -> bool:
-    """Whether the positions of an instance's mesh may differ between frames."""
+    """Whether the positions of an instance's mesh may differ between moments."""
     original = entry.object.original
     if original.type in _BECOME_MESHES:
         return True
@@ -42,12 +65,12 @@ def may_deform(entry: Entry) -> bool:
 
 
 @contextmanager
-def other_frames(scene: Any, engine: Any) -> Iterator[Callable[[int], None]]:
-    """Gives a function that moves the evaluation by whole frames; returns to the frame in the end, whatever happens."""
+def other_frames(scene: Any, engine: Any) -> Iterator[Callable[[float], None]]:
+    """Gives a function that moves the evaluation by frames; returns to the frame in the end, whatever happens."""
     time = scene.frame_current + scene.frame_subframe
-    current = 0
+    current = 0.0
 
-    def step(offset: int) -> None:
+    def step(offset: float) -> None:
         nonlocal current
         whole = math.floor(time + offset)
         current = offset
@@ -56,24 +79,25 @@ def other_frames(scene: Any, engine: Any) -> Iterator[Callable[[int], None]]:
     try:
         yield step
     finally:
-        if current != 0:
-            step(0)
+        if current != 0.0:
+            step(0.0)
 
 
 def read_moments(
     depsgraph: Any,
     engine: Any,
+    times: list[float],
     deforming: dict[InstanceKey, MeshArrays],
     size: tuple[int, int],
     poll: Callable[[], None],
-) -> list[Moment]:
-    """The frames before and after. deforming: one instance for each mesh that may deform, with its arrays at the rendered frame."""
-    moments = []
+) -> Moments:
+    """Visits the times in order. deforming: one instance for each mesh that may deform, with its arrays at the rendered frame."""
+    moments: Moments = {}
     with other_frames(depsgraph.scene, engine) as step:
-        for offset in OFFSETS:
+        for time in times:
             poll()
-            step(offset)
-            moments.append(_read_moment(depsgraph, engine, deforming, size, poll))
+            step(time)
+            moments[time] = _read_moment(depsgraph, engine, deforming, size, poll)
     return moments
 
 
@@ -106,9 +130,12 @@ def _same_topology_positions(entry: Entry, arrays: MeshArrays) -> array | None:
     return read_positions(mesh)
 
 
-def mesh_motion(key: InstanceKey, arrays: MeshArrays, moments: list[Moment]) -> tuple[array, array] | None:
+# ------------------------------------------------------------------------------------------------ for vectors
+
+
+def mesh_motion(key: InstanceKey, arrays: MeshArrays, moments: Moments) -> tuple[array, array] | None:
     """Positions before and after; None for a mesh at rest, or one whose topology changes."""
-    found = [moment.positions.get(key) for moment in moments]
+    found = [moments[time].positions.get(key) for time in AROUND]
     if all(values is None for values in found):
         return None
     still = arrays.positions.tobytes()
@@ -124,3 +151,82 @@ def instance_motion(entries: list[Entry], matrices: array, moment: Moment) -> ar
     for position, entry in enumerate(entries):
         moved.extend(moment.matrices.get(entry.key) or matrices[16 * position : 16 * position + 16])
     return moved
+
+
+# ------------------------------------------------------------------------------------------------ for motion blur
+
+
+def _keys(times: list[float], now: Any, at: Callable[[float], Any]) -> list[Any] | None:
+    """What is there at the times; None where something is missing, or all is as it is now."""
+    found = [now if time == 0.0 else at(time) for time in times]
+    if any(value is None for value in found) or all(value == now for value in found):
+        return None
+    return found
+
+
+def mesh_blur(key: InstanceKey, arrays: MeshArrays, blur: Blur, shutter: Shutter, moments: Moments) -> array | None:
+    """Positions at the mesh's keys, one after the other; None for a mesh that stands still or whose topology changes."""
+    if not blur.keys or not blur.deform:
+        return None
+    found = _keys(shutter.times(blur.keys), arrays.positions, lambda time: moments[time].positions.get(key))
+    return None if found is None else _joined(found)
+
+
+def changes_topology(key: InstanceKey, moments: Moments) -> bool:
+    return any(key in moment.matrices and key not in moment.positions for moment in moments.values())
+
+
+def velocity_blur(mesh: Any, arrays: MeshArrays, blur: Blur, shutter: Shutter, frames_per_second: float) -> array | None:
+    """Positions at opening and closing by the attribute `velocity` (metres per second) of baked simulations and caches, whose topology
+    may change from frame to frame; None without one."""
+    velocity = mesh.attributes.get("velocity")
+    if velocity is None or not blur.keys or not blur.deform or velocity.domain != "POINT" or velocity.data_type != "FLOAT_VECTOR":
+        return None
+    import numpy as np  # Blender's own; its import takes a while, and few scenes have velocities
+
+    values = np.zeros(len(velocity.data) * 3, dtype=np.float32)
+    velocity.data.foreach_get("vector", values)
+    if not values.any():
+        return None
+    now = np.frombuffer(arrays.positions, dtype=np.float32)
+    moved = [now + values * np.float32(time / frames_per_second) for time in (shutter.open, shutter.close)]
+    return array("f", np.concatenate(moved).tobytes())
+
+
+@dataclass
+class InstanceBlur:
+    """Matrices of those instances that move, one after the other."""
+
+    first: array = field(default_factory=lambda: array("I"))
+    count: array = field(default_factory=lambda: array("I"))
+    matrices: array = field(default_factory=lambda: array("f"))
+
+
+def instance_blur(entries: list[Entry], matrices: array, shutter: Shutter, moments: Moments) -> InstanceBlur | None:
+    """None where nothing moves."""
+    result = InstanceBlur()
+    for position, entry in enumerate(entries):
+        keys = None
+        if entry.blur.keys:
+            now = matrices[16 * position : 16 * position + 16]
+            keys = _keys(shutter.times(entry.blur.keys), now, lambda time, key=entry.key: moments[time].matrices.get(key))
+        result.first.append(len(result.matrices) // 16)
+        result.count.append(len(keys or ()))
+        for matrix in keys or ():
+            result.matrices.extend(matrix)
+    return result if result.matrices else None
+
+
+def camera_blur(camera: Any, now: CameraState, shutter: Shutter, moments: Moments) -> list[CameraState]:
+    """The camera at its keys; [] where it rests."""
+    blur = blur_of(camera)
+    if not blur.keys:
+        return []
+    return _keys(shutter.times(blur.keys), now, lambda time: moments[time].camera) or []
+
+
+def _joined(parts: list[array]) -> array:
+    whole = array("f")
+    for part in parts:
+        whole.extend(part)
+    return whole

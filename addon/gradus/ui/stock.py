@@ -27,7 +27,7 @@ EXCLUDED = {
     "DATA_PT_area": "ours has the shape",
     "DATA_PT_falloff_curve": "a falloff of Blender Internal",
     "RENDER_PT_gpencil": "grease pencil is Blender's own",
-    "RENDER_PT_motion_blur_curve": "motion blur is not rendered yet",
+    "RENDER_PT_motion_blur_curve": "ours is below our panel of motion blur",
     "RENDER_PT_hair": "hair is not rendered yet",
     "DATA_PT_volume_render": "volumes are not rendered yet",
     "DATA_PT_lightprobe": "light probes are EEVEE's",

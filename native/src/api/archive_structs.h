@@ -32,6 +32,8 @@ void visit(Archive& a, GradusMesh& m) {
   a.array(m.face_materials, m.face_count);
   a.array(m.normals, 3 * domain_size(m, m.normal_domain));
   a.array(m.generated_points, uint64_t{3} * m.vertex_count);
+  a.value(m.shutter_key_count);
+  a.array(m.shutter_positions, uint64_t{3} * m.vertex_count * m.shutter_key_count);
   uint32_t has_default_uv = m.default_uv != nullptr;
   a.value(has_default_uv);
   if (has_default_uv) a.text(m.default_uv);
@@ -136,6 +138,10 @@ void visit(Archive& a, GradusInstances& in) {
   a.array(in.material_count, in.count);
   a.array(in.materials, in.materials_size);
   a.array(in.name_index, in.count);
+  a.value(in.shutter_size);
+  a.array(in.shutter_first, in.count);
+  a.array(in.shutter_count, in.count);
+  a.array(in.shutter_matrices, uint64_t{16} * in.shutter_size);
   a.texts(in.names, in.name_count);
 }
 
@@ -184,6 +190,13 @@ void visit(Archive& a, GradusCamera& camera) {
   a.value(camera.convergence_distance);
   a.value(camera.pole_merge_from);
   a.value(camera.pole_merge_to);
+  a.value(camera.shutter_key_count);
+  a.value(camera.shutter_open);
+  a.value(camera.shutter_close);
+  a.value(camera.shutter_curve_count);
+  a.array(camera.shutter_curve, camera.shutter_curve_count);
+  a.array(camera.shutter_matrices, uint64_t{16} * camera.shutter_key_count);
+  a.array(camera.shutter_windows, uint64_t{4} * camera.shutter_key_count);
 }
 
 template <class Archive>

@@ -19,14 +19,16 @@ GRADUS_FIELDS(ColorSpace, struct_size, curve_count, name, curve, matrix)
 GRADUS_FIELDS(Attribute, struct_size, domain, channels, is_uv, name, data)
 GRADUS_FIELDS(Mesh, struct_size, key_count, key_times, vertex_count, positions, corner_count, corner_vertices, triangle_count,
   triangle_corners, triangle_faces, face_count, face_materials, normal_domain, attribute_count, normals, attributes, default_uv,
-  generated_location, generated_size, generated_points, name)
+  generated_location, generated_size, generated_points, name, shutter_positions, shutter_key_count, reserved)
 GRADUS_FIELDS(Instances, struct_size, reserved, count, meshes, ids, matrices, matrices_previous, matrices_next, visibility, random_ids,
-  pass_indices, colors, generated, uvs, shadow_terminator_offsets, material_first, material_count, materials_size, materials, name_index, name_count, names)
+  pass_indices, colors, generated, uvs, shadow_terminator_offsets, material_first, material_count, materials_size, materials, name_index,
+  name_count, names, shutter_first, shutter_count, shutter_size, shutter_matrices)
 GRADUS_FIELDS(Light, struct_size, type, flags, visibility, matrix, strength, radius, angle, size, spread, cone, blend,
   sun_radiance_per_irradiance, material, max_bounces, pass_index, name)
 GRADUS_FIELDS(Camera, struct_size, type, matrix, matrix_previous, matrix_next, window, window_previous, window_next, clip_start,
   clip_end, aperture_radius, focus_distance, blades, blade_rotation, aperture_ratio, panorama, fisheye_fov, fisheye_polynomial,
-  eye_offset, convergence_distance, pole_merge_from, pole_merge_to)
+  eye_offset, convergence_distance, pole_merge_from, pole_merge_to, shutter_key_count, shutter_open, shutter_close,
+  shutter_curve_count, reserved, shutter_curve, shutter_matrices, shutter_windows)
 GRADUS_FIELDS(World, struct_size, visibility, material, importance, map_size, mist_start, mist_depth, mist_falloff, ao_distance)
 GRADUS_FIELDS(ImageTile, struct_size, number, source, width, height, reserved, path, data, data_size)
 GRADUS_FIELDS(Image, struct_size, alpha_mode, is_float, tile_count, tiles, color_space, name)

@@ -34,6 +34,7 @@ struct Ray {
   float t_min = 0.0f;
   Vec3 direction;
   float t_max = kInfinity;
+  float time = 0.0f;  // of the shutter: 0 its opening, 1 its closing
 };
 
 // In the place of a ray where there is none.

@@ -14,7 +14,7 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
   Ray rays[kTogether];
   Hit hits[kTogether];
   for (int i = 0; i < kTogether; ++i) {
-    rays[i] = context_.camera.ray(pixel_centre(x + i, y) + filter_offset_, Vec2(0.0f));
+    rays[i] = context_.camera.ray({pixel_centre(x + i, y) + filter_offset_});
   }
   context_.scene.intersect4(rays, GRADUS_VISIBLE_CAMERA, hits);
   for (size_t i = 0; i < kTogether; ++i) {

@@ -16,7 +16,7 @@ struct PixelSample {
   int half = 0;         // even numbers A, odd ones B (contract 1.2)
   Sampler sampler;
   Vec2 film = Vec2(0.0f);
-  CameraVertex* first = nullptr;  // what the camera ray meets; nullptr with a lens, which sets the rays of neighbours apart
+  CameraVertex* first = nullptr;  // what the camera ray meets; nullptr where lens or time set the rays of neighbours apart
 };
 
 // Samples that a unit takes of a pixel.
@@ -48,7 +48,7 @@ PixelSample make_pixel_sample(const PathContext& context, const Frame& frame, in
 template <class Body>
 void for_each_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, CameraVertices* vertices,
                      const std::atomic<bool>& stop, Body&& body) {
-  const bool shares_rays = !context.camera.has_lens();
+  const bool shares_rays = !context.camera.has_lens() && !context.scene.features.has_motion;
   for (const Region& cell : make_cells(unit.tile)) {
     const uint32_t most = most_samples(unit, frame, cell), first = unit_first(unit, frame.index(cell.x0, cell.y0));
     for (uint32_t i = 0; i < most; ++i) {

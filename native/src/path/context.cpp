@@ -51,4 +51,11 @@ PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const 
       uniform_visibility(is_uniform(snapshot)),
       kinds_matter(kinds_matter_in(snapshot)) {}
 
+CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film) {
+  CameraSample sample{film};
+  if (context.camera.has_lens()) sample.lens = sampler.get2(dimension::kLens);
+  if (context.scene.features.has_motion) sample.time = context.scene.shutter.sample(sampler.get1(dimension::kTime));
+  return sample;
+}
+
 }  // namespace gradus

@@ -4,6 +4,7 @@
 #include "frame/frame.h"
 #include "gradus/gradus.h"
 #include "path/film_filter.h"
+#include "sampling/sampler.h"
 #include "scene/camera.h"
 #include "scene/snapshot.h"
 
@@ -30,6 +31,9 @@ struct PathContext {
   // an emission or a transparency.
   bool kinds_matter = false;
 };
+
+// Lens and time of a sample, where the scene asks for them.
+CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film);
 
 inline Vec2 pixel_centre(int32_t x, int32_t y) { return Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f); }
 

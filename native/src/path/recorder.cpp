@@ -140,12 +140,12 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
   if (plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr) {
     ambient_occlusion(sampler, weight, vertex);
   }
-  mist(weight, vertex.point.position);
+  mist(weight, vertex.point.position, vertex.point.hit.time);
   if (1.0f - mean_component(vertex.shade.transparency) < context_.settings.alpha_threshold) {
     return;  // too thin for data passes
   }
   const InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
-  add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position));
+  add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position, vertex.point.hit.time));
   add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
   add(GRADUS_PASS_OBJECT_INDEX, static_cast<float>(instance.pass_index));
   add(GRADUS_PASS_MATERIAL_INDEX, static_cast<float>(context_.scene.materials[vertex.point.material]->pass_index));
@@ -183,13 +183,14 @@ void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, 
   add(GRADUS_PASS_AMBIENT_OCCLUSION, blocked ? Rgb(0.0f) : weight);
 }
 
-void PassRecorder::mist(const Rgb& weight, const Vec3& position) {
+void PassRecorder::mist(const Rgb& weight, const Vec3& position, float time) {
   if (plane(GRADUS_PASS_MIST) == nullptr) {
     return;
   }
   const GradusWorld& world = context_.scene.world;
   const bool orthographic = context_.scene.camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
-  const float distance = orthographic ? std::fabs(context_.camera.depth(position)) : glm::length(position - context_.camera.position());
+  const float distance = orthographic ? std::fabs(context_.camera.depth(position, time))
+                                      : glm::length(position - context_.camera.position(time));
   const float range = std::max(world.mist_depth, 1e-6f);
   float value = std::clamp((distance - world.mist_start) / range, 0.0f, 1.0f);
   if (world.mist_falloff == GRADUS_MIST_QUADRATIC) {
@@ -205,9 +206,9 @@ void PassRecorder::motion(const Vertex& vertex) {
   Vec2 now;
   Vec2 previous;
   Vec2 next;
-  if (camera.project(vertex.point.position, Shutter::Now, &now) &&
-      camera.project(context_.scene.position_at(vertex.point.hit, false), Shutter::Previous, &previous) &&
-      camera.project(context_.scene.position_at(vertex.point.hit, true), Shutter::Next, &next)) {
+  if (camera.project(context_.scene.position_at(vertex.point.hit, Moment::Now), Moment::Now, &now) &&
+      camera.project(context_.scene.position_at(vertex.point.hit, Moment::Previous), Moment::Previous, &previous) &&
+      camera.project(context_.scene.position_at(vertex.point.hit, Moment::Next), Moment::Next, &next)) {
     add(GRADUS_PASS_VECTOR, Vec4(camera.way(now, previous), camera.way(next, now)));
   }
 }
@@ -217,8 +218,8 @@ void PassRecorder::background_motion(const Vec3& direction) {
   Vec2 now;
   Vec2 previous;
   Vec2 next;
-  if (camera.project_direction(direction, Shutter::Now, &now) && camera.project_direction(direction, Shutter::Previous, &previous) &&
-      camera.project_direction(direction, Shutter::Next, &next)) {
+  if (camera.project_direction(direction, Moment::Now, &now) && camera.project_direction(direction, Moment::Previous, &previous) &&
+      camera.project_direction(direction, Moment::Next, &next)) {
     add(GRADUS_PASS_VECTOR, Vec4(camera.way(now, previous), camera.way(next, now)));
   }
 }

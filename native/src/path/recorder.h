@@ -46,7 +46,7 @@ class PassRecorder {
   void camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
   void colors(const Rgb& weight, const Vertex& vertex);
   void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
-  void mist(const Rgb& weight, const Vec3& position);
+  void mist(const Rgb& weight, const Vec3& position, float time);
   void motion(const Vertex& vertex);
   void background_motion(const Vec3& direction);
   void features(const PathState& state, const Vertex& vertex);

@@ -129,12 +129,12 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
 }
 
 Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, float distance) {
-  return Ray{offset_origin(from, direction), 0.0f, direction, distance};
+  return Ray{offset_origin(from, direction), 0.0f, direction, distance, from.hit.time};
 }
 
 Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& to) {
   const Vec3 direction = glm::normalize(to.position - from.position);
-  return ray_between(offset_origin(from, direction), offset_origin(to, -direction), direction);
+  return ray_between(offset_origin(from, direction), offset_origin(to, -direction), direction, from.hit.time);
 }
 
 Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind, uint16_t* transparent_depth) {

@@ -25,7 +25,7 @@ struct PathResult {
 
 // Looks on and does nothing: plain path tracing.
 struct NoObserver {
-  void begin(const Sampler&, const Vec2&, const Vec2&) {}
+  void begin(const Sampler&, const CameraSample&) {}
   void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
   void lamp(const RaySource&, const Contribution&, const LampSighting&) {}
   void passed(const Segment&) {}
@@ -56,8 +56,8 @@ class PathTracer {
     result_ = PathResult{};
     result_.radiance.w = 1.0f;
     state_ = PathState{};
-    const Vec2 lens = context_.camera.has_lens() ? sampler.get2(dimension::kLens) : Vec2(0.0f);
-    observer_.begin(sampler, film, lens);
+    const CameraSample sample = camera_sample(context_, sampler, film);
+    observer_.begin(sampler, sample);
     ++counters_.rays_primary;
     Vertex* vertex = &s_.vertices[0];
     segment_ = &s_.segment;
@@ -67,7 +67,7 @@ class PathTracer {
       state_.ray = first->ray;
       if (records()) shade_vertex(context_, state_.ray.state, vertex);
     } else {
-      state_.ray.ray = context_.camera.ray(film, lens);
+      state_.ray.ray = context_.camera.ray(sample);
       extend(sampler, first != nullptr ? &first->hit : nullptr, vertex);
     }
     if (recorder_ != nullptr && is_none(state_.ray.ray)) recorder_->no_ray();

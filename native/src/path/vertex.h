@@ -24,7 +24,7 @@ struct Vertex {
 
 // What light sampling may know about a vertex.
 inline Receiver receiver_of(const Vertex& vertex) {
-  Receiver receiver{vertex.point.position, vertex.light_normal(), false, &vertex.choice};
+  Receiver receiver{vertex.point.position, vertex.light_normal(), false, vertex.point.hit.time, &vertex.choice};
   const Closures& closures = vertex.shade.closures;
   for (int i = 0; i < closures.count(); ++i) {
     const LobeType type = closures.lobe(i).type;

@@ -39,9 +39,14 @@ void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progres
   if (error != RTC_ERROR_NONE) throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed with code " + std::to_string(int(error)));
 }
 
-void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, const MeshData& mesh, const Vec3* positions) {
+// positions: key after key.
+void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, const MeshData& mesh, const Vec3* positions,
+                      unsigned keys) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(Vec3), mesh.vertex_count);
+  rtcSetGeometryTimeStepCount(geometry, keys);
+  for (unsigned k = 0; k < keys; ++k)
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, positions, k * mesh.vertex_count * sizeof(Vec3),
+                               sizeof(Vec3), mesh.vertex_count);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangle_vertices.data(), 0, 3 * sizeof(uint32_t),
                              mesh.triangle_count);
   rtcSetGeometryMask(geometry, mask);
@@ -50,10 +55,12 @@ void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned ma
   rtcReleaseGeometry(geometry);
 }
 
-void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced, const Mat4& to_world) {
+void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced, const InstanceData& instance) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, instanced);
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &to_world[0][0]);
+  const std::vector<Mat4> keys = instance.keys ? instance.keys->keys() : std::vector<Mat4>{instance.to_world};
+  rtcSetGeometryTimeStepCount(geometry, unsigned(keys.size()));
+  for (unsigned i = 0; i < keys.size(); ++i) rtcSetGeometryTransform(geometry, i, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &keys[i][0][0]);
   rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
@@ -66,7 +73,9 @@ std::shared_ptr<const MeshScene> build_mesh_scene(const std::shared_ptr<Device>&
   built->device = device;
   built->mesh = mesh;
   built->scene = rtcNewScene(device->embree());
-  attach_triangles(device->embree(), built->scene, 0, 0xffffffffu, *mesh, mesh->rest_positions());
+  const bool deforms = mesh->shutter_keys > 0;
+  attach_triangles(device->embree(), built->scene, 0, 0xffffffffu, *mesh,
+                   deforms ? mesh->shutter_positions.data() : mesh->rest_positions(), deforms ? mesh->shutter_keys : 1);
   commit_scene(device->embree(), built->scene, progress, at, at);
   return built;
 }
@@ -84,6 +93,7 @@ std::unique_ptr<std::vector<Vec3>> transform_positions(const MeshData& mesh, con
 using UserCounts = std::unordered_map<const MeshData*, uint64_t>;
 
 bool lies_in_top_level(const InstanceData& instance, const UserCounts& users) {
+  if (instance.moves()) return false;
   const uint64_t count = users.at(instance.mesh.get());
   return count == 1 || count * instance.mesh->triangle_count <= kMaxCopiedTriangles;
 }
@@ -116,7 +126,7 @@ std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Devic
     if (lies_in_top_level(instance, users)) {
       built->flat_positions.push_back(transform_positions(*instance.mesh, input.to_internal(i)));
       built->meshes.push_back(instance.mesh);
-      attach_triangles(device->embree(), built->scene, unsigned(i), masks[i], *instance.mesh, built->flat_positions.back()->data());
+      attach_triangles(device->embree(), built->scene, unsigned(i), masks[i], *instance.mesh, built->flat_positions.back()->data(), 1);
       continue;
     }
     auto& mesh_scene = kept[instance.mesh.get()];
@@ -125,7 +135,7 @@ std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Devic
       mesh_scene = old != cache->end() ? old->second : build_mesh_scene(device, instance.mesh, progress, done);
       built->mesh_scenes.push_back(mesh_scene);
     }
-    attach_instance(device->embree(), built->scene, unsigned(i), masks[i], mesh_scene->scene, instance.to_world);
+    attach_instance(device->embree(), built->scene, unsigned(i), masks[i], mesh_scene->scene, instance);
   }
   commit_scene(device->embree(), built->scene, progress, kMeshShare, 1.0f);
   size_t flat = 0;

@@ -52,9 +52,34 @@ Camera::Pose Camera::make_pose(const float* matrix, const float* window) {
 }
 
 Camera::Camera(const GradusCamera& desc, uint32_t width, uint32_t height) : desc_(desc), width_(width), height_(height) {
-  poses_[int(Shutter::Now)] = make_pose(desc.matrix, desc.window);
-  poses_[int(Shutter::Previous)] = make_pose(desc.matrix_previous, desc.window_previous);
-  poses_[int(Shutter::Next)] = make_pose(desc.matrix_next, desc.window_next);
+  poses_[int(Moment::Now)] = make_pose(desc.matrix, desc.window);
+  poses_[int(Moment::Previous)] = make_pose(desc.matrix_previous, desc.window_previous);
+  poses_[int(Moment::Next)] = make_pose(desc.matrix_next, desc.window_next);
+  if (desc.shutter_key_count >= 2 && desc.shutter_matrices != nullptr) add_keys();
+}
+
+void Camera::add_keys() {
+  std::vector<glm::dmat4> keys;
+  for (uint32_t i = 0; i < std::min(desc_.shutter_key_count, kMaxShutterKeys); ++i) {
+    const float* window = desc_.shutter_windows != nullptr ? desc_.shutter_windows + size_t{4} * i : desc_.window;
+    const Pose pose = make_pose(desc_.shutter_matrices + size_t{16} * i, window);
+    keys.emplace_back(Mat4(pose.axes));
+    keys.back()[3] = glm::dvec4(glm::dvec3(pose.position), 1.0);
+    windows_.push_back(pose.window);
+  }
+  keys_ = MatrixKeys(keys);
+}
+
+const Camera::Pose& Camera::pose_at(float time, Pose* room) const {
+  if (!moves()) return pose(Moment::Now);
+  const Mat4 m = keys_.at(time);
+  room->axes = Mat3(m);
+  room->inverse = glm::inverse(room->axes);
+  room->position = Vec3(m[3]);
+  const KeyPlace place = key_place(time, windows_.size());
+  const std::array<float, 4>&a = windows_[place.before], &b = windows_[place.before + 1];
+  for (size_t i = 0; i < 4; ++i) room->window[i] = a[i] * (1.0f - place.share) + b[i] * place.share;
+  return *room;
 }
 
 Vec2 Camera::lens_point(const Vec2& u) const {
@@ -64,16 +89,18 @@ Vec2 Camera::lens_point(const Vec2& u) const {
   return p * desc_.aperture_radius;
 }
 
-Ray Camera::ray(const Vec2& film, const Vec2& lens) const {
-  const Pose& now = pose(Shutter::Now);
+Ray Camera::ray(const CameraSample& sample) const {
+  const Vec2& film = sample.film;
+  Pose room;
+  const Pose& now = pose_at(sample.time, &room);
   const float x = now.window[0] + (now.window[1] - now.window[0]) * (film.x / float(width_));
   const float y = now.window[2] + (now.window[3] - now.window[2]) * (film.y / float(height_));
-  if (is_panorama()) return panorama_ray(now, Vec2(x, y), lens);
+  if (is_panorama()) return panorama_ray(now, Vec2(x, y), sample);
   const bool orthographic = desc_.type == GRADUS_CAMERA_ORTHOGRAPHIC;
   Vec3 origin = orthographic ? Vec3(x, y, 0.0f) : Vec3(0.0f);
   Vec3 direction = orthographic ? Vec3(0, 0, -1) : Vec3(x, y, -1.0f);
   if (has_lens()) {
-    const Vec3 offset(lens_point(lens), 0.0f);
+    const Vec3 offset(lens_point(sample.lens), 0.0f);
     // All rays of a film point meet on the plane of focus.
     const float focus = std::max(desc_.focus_distance, 1e-5f);
     direction = direction * focus - offset;
@@ -89,17 +116,18 @@ Ray Camera::ray(const Vec2& film, const Vec2& lens) const {
   ray.direction = glm::normalize(now.axes * direction);
   ray.t_min = std::max(0.0f, desc_.clip_start * slant);
   ray.t_max = desc_.clip_end * slant;
+  ray.time = sample.time;
   return ray;
 }
 
 // The lens lies across the direction of each film point, and all its rays meet at the distance of focus.
-Ray Camera::panorama_ray(const Pose& pose, const Vec2& point, const Vec2& lens) const {
+Ray Camera::panorama_ray(const Pose& pose, const Vec2& point, const CameraSample& sample) const {
   Vec3 origin(0.0f), direction;
   if (!panorama_direction(desc_, point, &direction)) return kNoRay;
   if (has_lens()) {
     Vec3 u, v;
     panorama_lens_axes(desc_, direction, &u, &v);
-    const Vec2 offset = lens_point(lens);
+    const Vec2 offset = lens_point(sample.lens);
     origin = u * offset.x + v * offset.y;
     direction = glm::normalize(direction * std::max(desc_.focus_distance, 1e-5f) - origin);
   }
@@ -109,6 +137,7 @@ Ray Camera::panorama_ray(const Pose& pose, const Vec2& point, const Vec2& lens) 
   ray.direction = glm::normalize(pose.axes * direction);
   ray.t_min = std::max(0.0f, desc_.clip_start);
   ray.t_max = desc_.clip_end;
+  ray.time = sample.time;
   return ray;
 }
 
@@ -131,7 +160,7 @@ bool Camera::panorama_plane(const Pose& pose, const Vec3& local, Vec2* point) co
 Vec2 Camera::way(const Vec2& from, const Vec2& to) const {
   Vec2 step = to - from;
   if (is_panorama() && panorama_wraps(desc_)) {
-    const auto& w = pose(Shutter::Now).window;
+    const auto& w = pose(Moment::Now).window;
     const float turn = 2.0f * kPi / (w[1] - w[0]) * float(width_);
     step.x -= turn * std::round(step.x / turn);
   }
@@ -154,25 +183,27 @@ bool Camera::to_film(const Pose& pose, Vec3 local, bool at_infinity, Vec2* film)
   return true;
 }
 
-bool Camera::project(const Vec3& world, Shutter when, Vec2* film) const {
+bool Camera::project(const Vec3& world, Moment when, Vec2* film) const {
   const Pose& p = pose(when);
   return to_film(p, p.inverse * (world - p.position), false, film);
 }
 
-bool Camera::project_direction(const Vec3& direction, Shutter when, Vec2* film) const {
+bool Camera::project_direction(const Vec3& direction, Moment when, Vec2* film) const {
   // An orthographic camera sees no point at infinity but the one along its axis, everywhere.
   if (desc_.type == GRADUS_CAMERA_ORTHOGRAPHIC) return false;
   const Pose& p = pose(when);
   return to_film(p, p.inverse * direction, true, film);
 }
 
-float Camera::depth(const Vec3& world) const {
-  const Pose& now = pose(Shutter::Now);
+float Camera::depth(const Vec3& world, float time) const {
+  Pose room;
+  const Pose& now = pose_at(time, &room);
   return is_panorama() ? glm::length(world - now.position) : -(now.inverse * (world - now.position)).z;
 }
 
-Vec3 Camera::position() const { return pose(Shutter::Now).position; }
-
-Vec3 Camera::forward() const { return glm::normalize(pose(Shutter::Now).axes * Vec3(0, 0, -1)); }
+Vec3 Camera::position(float time) const {
+  Pose room;
+  return pose_at(time, &room).position;
+}
 
 }  // namespace gradus

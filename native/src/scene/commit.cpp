@@ -55,6 +55,7 @@ uint64_t geometry_key(const Snapshot& snapshot, const std::vector<uint32_t>& mas
   for (const InstanceData& instance : snapshot.instances) {
     hash.value(instance.mesh->content_hash);
     hash.bytes(&instance.to_world, sizeof(instance.to_world));
+    if (instance.keys) hash.array(instance.keys->keys());
   }
   return hash.result();
 }
@@ -89,6 +90,18 @@ void place_camera(const Scene::State& state, Snapshot* snapshot) {
   snapshot->camera = state.camera;
   for (float* matrix : {snapshot->camera.matrix, snapshot->camera.matrix_previous, snapshot->camera.matrix_next})
     move_matrix(matrix, snapshot->origin);
+  auto keys = std::make_shared<CameraKeys>(state.camera_keys);
+  for (size_t i = 0; i < keys->matrices.size(); i += 16) move_matrix(keys->matrices.data() + i, snapshot->origin);
+  refer_to(*keys, &snapshot->camera);
+  snapshot->camera_keys = std::move(keys);
+  snapshot->shutter = Shutter(snapshot->camera);
+}
+
+// Whether the moment within the shutter makes a difference.
+void find_motion(Snapshot* snapshot) {
+  const bool moves = snapshot->camera.shutter_key_count > 0 || std::any_of(snapshot->instances.begin(), snapshot->instances.end(),
+                                                                           [](const InstanceData& i) { return i.moves(); });
+  snapshot->features.has_motion = moves && snapshot->shutter.opens();
 }
 
 void place_world(const Scene::State& state, const MaterialIndex& indices, Snapshot* snapshot) {
@@ -208,6 +221,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     monitor.check();
     build_geometry(device_, chosen, monitor.step(0.25f, 0.8f), state_.get(), snapshot.get());
     place_camera(*state_, snapshot.get());
+    find_motion(snapshot.get());
     place_world(*state_, materials, snapshot.get());
     build_lights(device_, place_lamps(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());

@@ -17,7 +17,7 @@ void hash_light(const LightSource& light, ContentHash* hash) {
   hash->value(d.material);
 }
 
-void hash_camera(const GradusCamera& c, ContentHash* hash) {
+void hash_camera(const GradusCamera& c, const CameraKeys& keys, ContentHash* hash) {
   hash->value(c.type);
   for (const float* m : {c.matrix, c.matrix_previous, c.matrix_next}) hash_matrix(m, hash);
   for (const float* w : {c.window, c.window_previous, c.window_next}) hash->bytes(w, 4 * sizeof(float));
@@ -26,6 +26,10 @@ void hash_camera(const GradusCamera& c, ContentHash* hash) {
   hash->value(c.panorama);
   for (const float v : {c.fisheye_fov, c.eye_offset, c.convergence_distance, c.pole_merge_from, c.pole_merge_to}) hash->value(v);
   hash->bytes(c.fisheye_polynomial, sizeof(c.fisheye_polynomial));
+  for (const float v : {c.shutter_open, c.shutter_close}) hash->value(v);
+  hash->array(keys.curve);
+  hash->array(keys.matrices);
+  hash->array(keys.windows);
 }
 
 void hash_world(const GradusWorld& w, ContentHash* hash) {
@@ -62,7 +66,7 @@ uint64_t content_key(const Scene::State& state) {
   }
   hash_images(state, &hash);
   for (const LightSource& light : state.lights) hash_light(light, &hash);
-  if (state.has_camera) hash_camera(state.camera, &hash);
+  if (state.has_camera) hash_camera(state.camera, state.camera_keys, &hash);
   if (state.has_world) hash_world(state.world, &hash);
   return hash.result();
 }

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include "scene/emitter_table.h"
+#include "scene/light_bounds.h"
 #include "scene/mesh.h"
 #include "scene/scene_state.h"
 #include "scene/snapshot.h"
@@ -42,7 +43,7 @@ void find_triangles(const Snapshot& snapshot, const CommitMonitor& monitor, Emit
     monitor.check();
     for (uint32_t t = 0; t < instance.mesh->triangle_count; ++t) {
       if (instance.mesh->is_dropped(t) || !is_light(snapshot.materials[snapshot.material_of(i, t)].get())) continue;
-      const std::array<Vec3, 3> p = snapshot.corners(i, t);
+      const std::array<Vec3, 3> p = snapshot.corners(i, t, 0.5f);
       const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
       if (area > 0.0f && is_finite(area)) triangles.push_back({i, t, area});
     }
@@ -78,8 +79,8 @@ float radiance_estimate(const Snapshot& snapshot, const EmissiveTriangle& triang
   return measure_radiance(snapshot, triangle) + 0.05f * std::max(material.emission_estimate, 0.0f) + 1e-6f;
 }
 
-LightBounds triangle_bounds(const Snapshot& snapshot, const EmissiveTriangle& triangle, bool measure) {
-  const std::array<Vec3, 3> p = snapshot.corners(triangle.instance, triangle.triangle);
+// Without its power.
+LightBounds bounds_of_corners(const std::array<Vec3, 3>& p) {
   LightBounds b;
   b.lower = glm::min(p[0], glm::min(p[1], p[2]));
   b.upper = glm::max(p[0], glm::max(p[1], p[2]));
@@ -87,6 +88,16 @@ LightBounds triangle_bounds(const Snapshot& snapshot, const EmissiveTriangle& tr
   const float length = glm::length(n);
   if (length > 0.0f) b.axis = n / length;
   b.two_sided = true;
+  return b;
+}
+
+// All places where it is while the shutter is open, as far as a few moments tell: only the choice among lights depends on them.
+LightBounds triangle_bounds(const Snapshot& snapshot, const EmissiveTriangle& triangle, bool measure) {
+  constexpr int kMoments = 5;
+  const bool moves = snapshot.instances[triangle.instance].moves();
+  LightBounds b = bounds_of_corners(snapshot.corners(triangle.instance, triangle.triangle, 0.0f));
+  for (int i = 1; i < kMoments && moves; ++i)
+    b = unite(b, bounds_of_corners(snapshot.corners(triangle.instance, triangle.triangle, float(i) / (kMoments - 1))));
   b.power = std::min(radiance_estimate(snapshot, triangle, measure) * triangle.area, 1e30f);
   return b;
 }

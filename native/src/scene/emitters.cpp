@@ -34,6 +34,7 @@ void set_triangle_point(uint32_t index, const SurfacePoint& surface, EmitterPoin
   point->instance = surface.hit.instance;
   point->triangle = surface.hit.triangle;
   point->barycentric = surface.hit.barycentric;
+  point->time = surface.hit.time;
   point->position = surface.position;
   point->normal = surface.geometric_normal;
   point->error = surface.error;
@@ -49,11 +50,12 @@ struct Finding {
 void sample_triangle(const Snapshot& snapshot, uint32_t index, const Receiver& receiver, const Vec2& u, EmitterPoint* point,
                      Finding* finding) {
   const EmissiveTriangle& t = snapshot.emitters->triangles[index];
-  const std::array<Vec3, 3> corners = snapshot.corners(t.instance, t.triangle);
+  const std::array<Vec3, 3> corners = snapshot.corners(t.instance, t.triangle, receiver.time);
   const SphericalTriangle seen(corners, receiver.position);
   Hit hit;
   hit.instance = t.instance;
   hit.triangle = t.triangle;
+  hit.time = receiver.time;
   hit.barycentric = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
   set_triangle_point(index, snapshot.surface_point(hit), point);
   finding->solid_angle = seen.sampled_solid_angle();
@@ -124,6 +126,7 @@ SurfacePoint surface_of(const Snapshot& snapshot, const EmitterPoint& point) {
   hit.instance = point.instance;
   hit.triangle = point.triangle;
   hit.barycentric = point.barycentric;
+  hit.time = point.time;
   return snapshot.surface_point(hit);
 }
 
@@ -164,7 +167,14 @@ Rgb lamp_emission(const Snapshot& snapshot, const Lamp& lamp, const EmitterPoint
 }
 
 float triangle_solid_angle(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver) {
-  return SphericalTriangle(snapshot.corners(point.instance, point.triangle), receiver.position).sampled_solid_angle();
+  return SphericalTriangle(snapshot.corners(point.instance, point.triangle, point.time), receiver.position).sampled_solid_angle();
+}
+
+// That of the table is the area at rest.
+float triangle_area(const Snapshot& snapshot, const EmitterPoint& point) {
+  if (!snapshot.instances[point.instance].moves()) return snapshot.emitters->triangles[point.index].area;
+  const std::array<Vec3, 3> p = snapshot.corners(point.instance, point.triangle, point.time);
+  return 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
 }
 
 // Geometry and solid angle density of an emissive triangle.
@@ -179,7 +189,7 @@ void view_triangle(const Snapshot& snapshot, const EmitterPoint& point, const Re
   view->cosine = std::fabs(glm::dot(point.normal, view->direction));
   if (!(view->cosine > 0.0f)) return;
   const float angle = solid_angle != nullptr ? *solid_angle : triangle_solid_angle(snapshot, point, receiver);
-  view->pdf = angle > 0.0f ? 1.0f / angle : distance2 / (view->cosine * snapshot.emitters->triangles[point.index].area);
+  view->pdf = angle > 0.0f ? 1.0f / angle : distance2 / (view->cosine * triangle_area(snapshot, point));
 }
 
 void view_world(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver, EmitterView* view) {
@@ -276,7 +286,7 @@ EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction) {
 }
 
 Ray ray_to_emitter(const Vec3& start, const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view) {
-  if (to.at_infinity()) return Ray{start, 0.0f, view.direction, kInfinity};
+  if (to.at_infinity()) return Ray{start, 0.0f, view.direction, kInfinity, from.hit.time};
   Vec3 target = from.position + view.direction * view.distance;
   if (to.kind == EmitterKind::Triangle) {
     SurfacePoint end;
@@ -285,7 +295,7 @@ Ray ray_to_emitter(const Vec3& start, const SurfacePoint& from, const EmitterPoi
     end.error = to.error;
     target = offset_origin(end, -view.direction);
   }
-  return ray_between(start, target, view.direction);
+  return ray_between(start, target, view.direction, from.hit.time);
 }
 
 }  // namespace gradus

@@ -29,6 +29,7 @@ struct EmitterPoint {
   Vec3 normal = Vec3(0.0f);       // geometric; 0 for points
   Vec3 direction = Vec3(0.0f);    // towards the emitter: world and suns
   float error = 0.0f;             // bound on the rounding error of `position` along the normal
+  float time = 0.0f;              // of the shutter, as the ray's that it is for
   bool at_infinity() const {
     return kind == EmitterKind::World || (kind == EmitterKind::Lamp && normal == Vec3(0.0f) && direction != Vec3(0.0f));
   }
@@ -52,6 +53,7 @@ struct Receiver {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0.0f);
   bool transmits = false;  // also lit from behind
+  float time = 0.0f;       // of the shutter
   // Where the choice among emitters is kept for the next that asks from here; nullptr: nowhere.
   EmitterChoice* memo = nullptr;
   bool operator==(const Receiver& other) const {

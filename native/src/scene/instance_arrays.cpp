@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "scene/matrix_keys.h"
 
 namespace gradus {
 
@@ -31,6 +32,12 @@ void check(const GradusInstances& d) {
   require(d.count == 0 || d.matrices, "matrices missing");
   require(!d.material_first || d.material_count, "material_count missing");
   require(d.materials_size == 0 || d.materials, "materials missing");
+  require(!d.shutter_first || d.shutter_count, "shutter_count missing");
+  require(d.shutter_size == 0 || d.shutter_matrices, "shutter_matrices missing");
+  for (size_t i = 0; d.shutter_first && i < d.count; ++i) {
+    require(d.shutter_count[i] != 1 && d.shutter_count[i] <= kMaxShutterKeys, "shutter_count is out of range");
+    require(uint64_t(d.shutter_first[i]) + d.shutter_count[i] <= d.shutter_size, "shutter_first is out of range");
+  }
   require(!d.name_index || d.name_count == 0 || d.names, "names missing");
   for (size_t i = 0; d.material_first && i < d.count; ++i)
     require(uint64_t(d.material_first[i]) + d.material_count[i] <= d.materials_size, "material_first is out of range");
@@ -57,6 +64,9 @@ InstanceArrays copy_instances(const GradusInstances& d) {
   a.material_first = copy<uint32_t>(d.material_first, d.count);
   if (d.material_first) a.material_count = copy<uint32_t>(d.material_count, d.count);
   a.materials = copy<uint64_t>(d.materials, d.materials_size);
+  a.shutter_first = copy<uint32_t>(d.shutter_first, d.count);
+  if (d.shutter_first) a.shutter_count = copy<uint32_t>(d.shutter_count, d.count);
+  a.shutter_matrices = copy<Mat4>(d.shutter_matrices, d.shutter_size);
   a.name_index = copy<uint32_t>(d.name_index, d.count);
   for (size_t i = 0; d.names && i < d.name_count; ++i) a.names.emplace_back(d.names[i] ? d.names[i] : "");
   return a;
@@ -83,6 +93,9 @@ void InstanceArrays::hash(ContentHash* hash) const {
   hash->array(material_first);
   hash->array(material_count);
   hash->array(materials);
+  hash->array(shutter_first);
+  hash->array(shutter_count);
+  hash->array(shutter_matrices);
 }
 
 }  // namespace gradus

@@ -25,6 +25,8 @@ struct InstanceArrays {
   std::vector<float> shadow_terminator_offsets;
   std::vector<uint32_t> material_first, material_count;  // empty: no materials
   std::vector<uint64_t> materials;
+  std::vector<uint32_t> shutter_first, shutter_count;  // empty: nothing moves while the shutter is open
+  std::vector<Mat4> shutter_matrices;
   std::vector<uint32_t> name_index;
   std::vector<std::string> names;
 

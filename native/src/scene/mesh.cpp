@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "scene/matrix_keys.h"
+#include "scene/turn.h"
+
 namespace gradus {
 
 namespace {
@@ -17,6 +20,16 @@ std::array<Vec3, 3> positions_of_key(const MeshData& mesh, uint32_t triangle, ui
   const Vec3* p = mesh.positions.data() + size_t(key) * mesh.vertex_count;
   const uint32_t* v = mesh.triangle_vertices.data() + size_t(triangle) * 3;
   return {p[v[0]], p[v[1]], p[v[2]]};
+}
+
+// A normal of the rest key, turned as the smooth normal of its vertex turns until then.
+Vec3 turned_with_vertex(const MeshData& mesh, uint32_t vertex, float time, const Vec3& normal) {
+  const KeyPlace place = key_place(time, mesh.shutter_keys);
+  const Vec3* key = mesh.shutter_normals.data() + size_t(place.before + 1) * mesh.vertex_count;
+  const Vec3 then = key[vertex] * (1.0f - place.share) + key[mesh.vertex_count + vertex] * place.share;
+  const Vec3& rest = mesh.shutter_normals[vertex];
+  const float length = glm::length(then);
+  return length > 1e-6f && rest != Vec3(0.0f) ? turned(normal, rest, then / length) : normal;
 }
 
 }  // namespace
@@ -35,9 +48,29 @@ std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangl
   return a;
 }
 
+std::array<Vec3, 3> triangle_positions_in_shutter(const MeshData& mesh, uint32_t triangle, float time) {
+  if (mesh.shutter_keys == 0) return triangle_positions(mesh, triangle);
+  const KeyPlace place = key_place(time, mesh.shutter_keys);
+  const Vec3* a = mesh.shutter_positions.data() + size_t(place.before) * mesh.vertex_count;
+  const Vec3* b = a + mesh.vertex_count;
+  std::array<Vec3, 3> p;
+  for (size_t k = 0; k < 3; ++k) {
+    const uint32_t v = mesh.triangle_vertices[size_t(triangle) * 3 + k];
+    p[k] = a[v] * (1.0f - place.share) + b[v] * place.share;
+  }
+  return p;
+}
+
 bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 3>* normals) {
   if (mesh.normals.empty() || mesh.normal_domain == GRADUS_DOMAIN_FACE) return false;
   for (uint32_t k = 0; k < 3; ++k) (*normals)[k] = mesh.normals[element(mesh, mesh.normal_domain, triangle, k)];
+  return true;
+}
+
+bool triangle_normals_in_shutter(const MeshData& mesh, uint32_t triangle, float time, std::array<Vec3, 3>* normals) {
+  if (!triangle_normals(mesh, triangle, normals)) return false;
+  for (uint32_t k = 0; k < 3 && mesh.shutter_keys > 0; ++k)
+    (*normals)[k] = turned_with_vertex(mesh, mesh.triangle_vertices[size_t(triangle) * 3 + k], time, (*normals)[k]);
   return true;
 }
 

@@ -29,6 +29,9 @@ struct MeshData {
   std::vector<float> key_times;             // one per key, ascending
   uint32_t rest_key = 0;                    // the key at time 0 (or nearest to it): what is rendered
   std::vector<Vec3> positions;              // key after key, and one element of padding (Embree reads 16 bytes)
+  uint32_t shutter_keys = 0;                // evenly over the time that the shutter is open; 0: stands still then
+  std::vector<Vec3> shutter_positions;      // key after key, padded likewise
+  std::vector<Vec3> shutter_normals;        // smooth normals of the vertices: of the rest key, then of each of these keys
   std::vector<uint32_t> triangle_vertices;  // 3 per triangle; kDroppedVertex three times: dropped
   std::vector<uint32_t> triangle_corners;   // 3 per triangle
   std::vector<uint32_t> triangle_faces;     // empty: one face per triangle
@@ -69,8 +72,12 @@ T interpolate(const std::array<T, 3>& v, const Vec2& barycentric) {
 // Local vertex positions of a triangle at a time (frames relative to the one rendered), linear between keys.
 std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle);
 std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangle, float time);
+// At a time of the shutter, as Embree has it.
+std::array<Vec3, 3> triangle_positions_in_shutter(const MeshData& mesh, uint32_t triangle, float time);
 // Local shading normals of the corners, not normalised; false: the mesh is flat there.
 bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 3>* normals);
+// At a time of the shutter: in a mesh that deforms they turn as the smooth normals of their vertices do.
+bool triangle_normals_in_shutter(const MeshData& mesh, uint32_t triangle, float time, std::array<Vec3, 3>* normals);
 
 // nullptr: there is none of that name (or, for the default UV map, none at all).
 const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& name);

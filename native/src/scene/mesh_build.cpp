@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "scene/matrix_keys.h"
 #include "scene/mesh.h"
 #include "scene/smooth_normals.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 // Indices are 32 bits, and Embree takes at most 2^32 - 2^5 primitives; more is surely a mistake of the caller.
 constexpr size_t kMaxElements = size_t(1) << 31;
-constexpr uint32_t kMaxKeys = 129;
+constexpr uint32_t kMaxKeys = kMaxShutterKeys;
 // Embree leaves out triangles beyond about 1.8e18; lengths are squared in float elsewhere.
 constexpr float kMaxCoordinate = 1e18f;
 
@@ -39,6 +40,9 @@ void check_counts(const GradusMesh& m, const Check& check) {
       "too many elements");
   check.that(m.vertex_count * m.key_count < kMaxElements * 4, "too many time keys");
   check.that(m.vertex_count == 0 || m.positions, "positions missing");
+  check.that(m.shutter_key_count != 1 && m.shutter_key_count <= kMaxKeys, "number of shutter keys out of range");
+  check.that(m.vertex_count * m.shutter_key_count < kMaxElements * 4, "too many shutter keys");
+  check.that(m.vertex_count == 0 || m.shutter_key_count == 0 || m.shutter_positions, "shutter_positions missing");
   check.that(m.corner_count == 0 || m.corner_vertices, "corner_vertices missing");
   check.that(m.triangle_count == 0 || m.triangle_corners, "triangle_corners missing");
   check.that(m.key_count == 1 || m.key_times, "key_times missing");
@@ -57,9 +61,28 @@ void copy_keys(const GradusMesh& m, const Check& check, MeshData* out) {
   if (m.vertex_count) std::memcpy(out->positions.data(), m.positions, m.vertex_count * m.key_count * sizeof(Vec3));
 }
 
+void copy_shutter_keys(const GradusMesh& m, MeshData* out) {
+  if (m.shutter_key_count == 0 || m.vertex_count == 0) return;
+  out->shutter_keys = m.shutter_key_count;
+  out->shutter_positions.resize(m.vertex_count * m.shutter_key_count + 1);
+  std::memcpy(out->shutter_positions.data(), m.shutter_positions, m.vertex_count * m.shutter_key_count * sizeof(Vec3));
+}
+
+// After the triangles: the normals are theirs.
+void add_shutter_normals(MeshData* mesh) {
+  if (mesh->shutter_keys == 0 || mesh->normals.empty()) return;
+  mesh->shutter_normals = smooth_normals(*mesh, mesh->rest_positions());
+  for (size_t k = 0; k < mesh->shutter_keys; ++k) {
+    const std::vector<Vec3> normals = smooth_normals(*mesh, mesh->shutter_positions.data() + k * mesh->vertex_count);
+    mesh->shutter_normals.insert(mesh->shutter_normals.end(), normals.begin(), normals.end());
+  }
+}
+
 bool usable_in_all_keys(const MeshData& mesh, uint32_t vertex) {
   for (size_t k = 0; k < mesh.key_times.size(); ++k)
     if (!usable(mesh.positions[k * mesh.vertex_count + vertex])) return false;
+  for (size_t k = 0; k < mesh.shutter_keys; ++k)
+    if (!usable(mesh.shutter_positions[k * mesh.vertex_count + vertex])) return false;
   return true;
 }
 
@@ -118,7 +141,7 @@ std::vector<float> copy_finite(const float* data, size_t count) {
 
 void copy_normals(const GradusMesh& m, MeshData* out) {
   out->normal_domain = GradusDomain(m.normal_domain);
-  if (!m.normals && m.normal_domain == GRADUS_DOMAIN_POINT) out->normals = smooth_normals(*out);
+  if (!m.normals && m.normal_domain == GRADUS_DOMAIN_POINT) out->normals = smooth_normals(*out, out->rest_positions());
   if (!m.normals || m.normal_domain == GRADUS_DOMAIN_FACE) return;
   const size_t count = domain_size(m, m.normal_domain);
   const std::vector<float> values = copy_finite(m.normals, count * 3);
@@ -157,6 +180,7 @@ uint64_t hash_mesh(const MeshData& mesh) {
   hash.value(mesh.name);
   hash.array(mesh.key_times);
   hash.array(mesh.positions);
+  hash.array(mesh.shutter_positions);
   hash.array(mesh.triangle_vertices);
   hash.array(mesh.triangle_corners);
   hash.array(mesh.triangle_faces);
@@ -184,10 +208,12 @@ std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
   mesh->vertex_count = uint32_t(desc.vertex_count);
   mesh->triangle_count = uint32_t(desc.triangle_count);
   copy_keys(desc, check, mesh.get());
+  copy_shutter_keys(desc, mesh.get());
   copy_triangles(desc, check, mesh.get());
   drop_unusable(mesh.get());
   copy_face_materials(desc, mesh.get());
   copy_normals(desc, mesh.get());
+  add_shutter_normals(mesh.get());
   copy_attributes(desc, check, mesh.get());
   copy_generated(desc, mesh.get());
   mesh->content_hash = hash_mesh(*mesh);

@@ -85,14 +85,25 @@ Mat4 moved(const Mat4& m, const Vec3& origin) { return Mat4(internal_matrix(m, o
 
 void set_matrices(const InstanceArrays& a, size_t i, const Vec3& origin, InstanceData* out) {
   const glm::dmat4 m = internal_matrix(a.matrices[i], origin);
-  out->to_world = Mat4(m);
-  out->to_local = Mat4(glm::inverse(m));
-  out->normal_to_world = Mat3(glm::transpose(glm::inverse(glm::dmat3(m))));
+  static_cast<Placement&>(*out) = make_placement(m);
   out->mirrored = glm::determinant(glm::dmat3(m)) < 0.0;
   const bool previous = !a.matrices_previous.empty() && is_usable(a.matrices_previous[i]);
   const bool next = !a.matrices_next.empty() && is_usable(a.matrices_next[i]);
   out->to_world_previous = previous ? moved(a.matrices_previous[i], origin) : out->to_world;
   out->to_world_next = next ? moved(a.matrices_next[i], origin) : out->to_world;
+}
+
+// While the shutter is open. One that degenerates on the way stands still.
+void set_keys(const InstanceArrays& a, size_t i, const Vec3& origin, InstanceData* out) {
+  out->deforms = out->mesh->shutter_keys > 0;
+  if (a.shutter_first.empty() || a.shutter_count[i] == 0) return;
+  std::vector<glm::dmat4> keys;
+  for (uint32_t k = 0; k < a.shutter_count[i]; ++k) {
+    const Mat4& m = a.shutter_matrices[a.shutter_first[i] + k];
+    if (!is_usable(m)) return;
+    keys.push_back(internal_matrix(m, origin));
+  }
+  out->keys = std::make_shared<const MatrixKeys>(keys);
 }
 
 void set_values(const InstanceArrays& a, size_t i, InstanceData* out) {
@@ -127,6 +138,7 @@ std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapsho
     InstanceData& out = snapshot->instances[k];
     out.mesh = state.meshes.at(a.meshes[usable[k]]);
     set_matrices(a, usable[k], snapshot->origin, &out);
+    set_keys(a, usable[k], snapshot->origin, &out);
     set_values(a, usable[k], &out);
   }
   return usable;

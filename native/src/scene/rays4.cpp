@@ -24,14 +24,14 @@ Lanes step_away(const Lanes& v, const Lanes& up) {
   return up == 0.0f ? v : (Lanes)away;
 }
 
-Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& direction) {
+Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& direction, float time) {
   const Lanes3 line = end - start;
   const Lanes length = _mm_sqrt_ps(dot(line, line));
   const Bits ahead = (length > 0.0f) & (dot(line, direction) > 0.0f);
-  return {start, line * (1.0f / length), ahead ? length * (1.0f - 1e-6f) : same(-1.0f)};
+  return {start, line * (1.0f / length), ahead ? length * (1.0f - 1e-6f) : same(-1.0f), time};
 }
 
-Points4 gather(const SurfacePoint& p) { return {same(p.position), same(p.geometric_normal), same(p.error)}; }
+Points4 gather(const SurfacePoint& p) { return {same(p.position), same(p.geometric_normal), same(p.error), p.hit.time}; }
 
 }  // namespace
 
@@ -42,22 +42,22 @@ Lanes3 offset_origins(const Points4& points, const Lanes3& direction) {
   return {step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z)};
 }
 
-Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d) {
+Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d, float time) {
   return {lanes(a.position, b.position, c.position, d.position),
-          lanes(a.geometric_normal, b.geometric_normal, c.geometric_normal, d.geometric_normal), Lanes{a.error, b.error, c.error, d.error}};
+          lanes(a.geometric_normal, b.geometric_normal, c.geometric_normal, d.geometric_normal), Lanes{a.error, b.error, c.error, d.error}, time};
 }
 
 Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfacePoint& to) {
-  return rays_between(offset_origins(from, direction), offset_origins(gather(to), -direction), direction);
+  return rays_between(offset_origins(from, direction), offset_origins(gather(to), -direction), direction, from.time);
 }
 
 Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to) {
-  if (to.at_infinity()) return {start, direction, same(kInfinity)};
+  if (to.at_infinity()) return {start, direction, same(kInfinity), from.time};
   if (to.kind == EmitterKind::Triangle) {
-    const Points4 end{same(to.position), same(to.normal), same(to.error)};
-    return rays_between(start, offset_origins(end, -direction), direction);
+    const Points4 end{same(to.position), same(to.normal), same(to.error), from.time};
+    return rays_between(start, offset_origins(end, -direction), direction, from.time);
   }
-  return rays_between(start, from.position + direction * distance, direction);
+  return rays_between(start, from.position + direction * distance, direction, from.time);
 }
 
 }  // namespace gradus

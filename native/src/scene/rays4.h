@@ -29,14 +29,16 @@ inline void set_lane(int k, const Vec3& v, Lanes3* out) {
 struct Rays4 {
   Lanes3 origin, direction;
   Lanes t_max;
+  float time = 0.0f;  // of all
 };
 
 // Of four surface points, what rays that leave them need.
 struct Points4 {
   Lanes3 position, normal;
   Lanes error;
+  float time = 0.0f;  // of all: offsets copy their base's
 };
-Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d);
+Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d, float time);
 
 // The rays between surface points, both ends off their surfaces; direction: from `from` to `to`.
 Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfacePoint& to);

@@ -63,8 +63,11 @@ void Scene::set_lights(const GradusLight* lights, size_t count) {
 
 void Scene::set_camera(const GradusCamera& camera) {
   if (camera.type > GRADUS_CAMERA_PANORAMA || camera.panorama > GRADUS_PANORAMA_CYLINDER) throw invalid_argument("camera: unknown type");
+  CameraKeys keys = copy_camera_keys(camera);
   const Lock lock(state_->mutex);
   state_->camera = camera;
+  state_->camera_keys = std::move(keys);
+  refer_to(state_->camera_keys, &state_->camera);
   state_->has_camera = true;
 }
 

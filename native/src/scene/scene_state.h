@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "scene/accelerator.h"
+#include "scene/camera_keys.h"
 #include "scene/image_store.h"
 #include "scene/instance_arrays.h"
 #include "scene/material_source.h"
@@ -50,7 +51,8 @@ struct Scene::State {
   std::map<uint64_t, std::shared_ptr<const MaterialSource>> materials;
   InstanceArrays instances;
   std::vector<LightSource> lights;
-  GradusCamera camera{};
+  GradusCamera camera{};  // its arrays are camera_keys'
+  CameraKeys camera_keys;
   bool has_camera = false;
   GradusWorld world{};
   bool has_world = false;

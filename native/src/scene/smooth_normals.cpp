@@ -4,9 +4,8 @@
 
 namespace gradus {
 
-std::vector<Vec3> smooth_normals(const MeshData& mesh) {
+std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* p) {
   std::vector<Vec3> normals(mesh.vertex_count, Vec3(0.0f));
-  const Vec3* p = mesh.rest_positions();
   for (uint32_t t = 0; t < mesh.triangle_count; ++t) {
     if (mesh.is_dropped(t)) continue;
     const uint32_t* v = mesh.triangle_vertices.data() + size_t(t) * 3;

@@ -8,6 +8,11 @@
 
 #include "base/types.h"
 #include "gradus/gradus.h"
+#include "scene/camera.h"
+#include "scene/camera_keys.h"
+#include "scene/matrix_keys.h"
+#include "scene/placement.h"
+#include "scene/shutter.h"
 #include "scene/surface.h"
 
 namespace gradus {
@@ -21,14 +26,12 @@ struct TangentField;  // scene/tangent_field.h
 struct Rays4;         // scene/rays4.h
 struct FlatTriangle;  // scene/flat_triangle.h
 
-// Matrices lead to and from the snapshot's internal space (Snapshot::origin). A mirrored instance keeps outside outside: normals are
-// transformed by the inverse transpose, and geometric normals point to where the corners run counter-clockwise in the mesh.
-struct InstanceData {
+// Placed as in the frame rendered. Geometric normals point to where the corners run counter-clockwise in the mesh, mirrored or not.
+struct InstanceData : Placement {
   std::shared_ptr<const MeshData> mesh;
   const FlatTriangle* flat_triangles = nullptr;  // where the mesh lies in the top level; owned by the accelerator
-  Mat4 to_world{1.0f};
-  Mat4 to_local{1.0f};
-  Mat3 normal_to_world{1.0f};
+  std::shared_ptr<const MatrixKeys> keys;  // while the shutter is open; nullptr: it stands still
+  bool deforms = false;                    // its mesh has positions of its own for that time
   Mat4 to_world_previous{1.0f};
   Mat4 to_world_next{1.0f};
   bool mirrored = false;
@@ -41,6 +44,10 @@ struct InstanceData {
   Vec2 uv{0.0f};
   std::vector<uint32_t> materials;                            // by slot: index in Snapshot::materials
   std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps for which a material asks
+
+  bool moves() const { return keys != nullptr || deforms; }
+  // At a time of the shutter; worked out in `room` if it moves.
+  const Placement& placement(float time, Placement* room) const;
 };
 
 // What a scene contains, so that what it does not need can be left out.
@@ -51,6 +58,7 @@ struct SceneFeatures {
   bool has_emitters = false;
   bool only_lights_shine = false;  // no surface has anything to show to a ray that ends a path: it sees lamps and the world alone
   bool world_shines = true;
+  bool has_motion = false;    // something moves while the shutter is open
   bool has_holdouts = false;  // holes in the film, which have alpha 0 in an opaque one, too
 };
 
@@ -75,11 +83,11 @@ class Snapshot {
   SurfacePoint surface_point(const Hit& hit) const;
   // Asks memory for what place() will need, some hundred nanoseconds before.
   void prefetch(const Hit& hit) const;
-  // World position of the hit one frame earlier or later: surface motion.
-  Vec3 position_at(const Hit& hit, bool next) const;
+  // World position of the hit in the frame, whenever the ray was, or one frame earlier or later: surface motion.
+  Vec3 position_at(const Hit& hit, Moment when) const;
 
-  // Corners of a triangle of an instance, in internal space.
-  std::array<Vec3, 3> corners(uint32_t instance, uint32_t triangle) const;
+  // Corners of a triangle of an instance, in internal space, at a time of the shutter.
+  std::array<Vec3, 3> corners(uint32_t instance, uint32_t triangle, float time) const;
   // Largest change of the smooth normal along an edge of the triangle, per length: one over a sphere's radius; 0 where faces are flat.
   float curvature(const Hit& hit) const;
   // Material (index in `materials`) of a triangle of an instance.
@@ -90,7 +98,9 @@ class Snapshot {
   std::shared_ptr<const EmitterTable> emitters;
   std::shared_ptr<const ImageStore> images;
   std::shared_ptr<const Accelerator> accelerator;
-  GradusCamera camera{};  // in internal space
+  GradusCamera camera{};  // in internal space; its arrays are camera_keys'
+  std::shared_ptr<const CameraKeys> camera_keys;
+  Shutter shutter;
   bool has_camera = false;
   GradusWorld world{};
   uint32_t world_material = UINT32_MAX;

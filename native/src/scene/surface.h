@@ -11,6 +11,7 @@ struct Hit {
   uint32_t instance = UINT32_MAX;  // index in the snapshot
   uint32_t triangle = UINT32_MAX;
   Vec2 barycentric = Vec2(0.0f);  // weights of the 2nd and 3rd corner
+  float time = 0.0f;              // of the ray
   bool valid() const { return instance != UINT32_MAX; }
 };
 
@@ -38,6 +39,6 @@ Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction);
 float pass_surface(const SurfacePoint& point, Ray* ray);
 // The ray to a known place: both ends lie off their surfaces. Where they are closer than the errors of both, so that they do not lie one
 // after the other in `direction`, the ray is empty (t_max < 0).
-Ray ray_between(const Vec3& start, const Vec3& end, const Vec3& direction);
+Ray ray_between(const Vec3& start, const Vec3& end, const Vec3& direction, float time);
 
 }  // namespace gradus

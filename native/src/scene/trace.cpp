@@ -26,7 +26,7 @@ void set_ray(const Ray& ray, uint32_t mask, RTCRay* r) {
   r->dir_x = ray.direction.x;
   r->dir_y = ray.direction.y;
   r->dir_z = ray.direction.z;
-  r->time = 0.0f;
+  r->time = ray.time;
   r->tfar = ray.t_max;
   r->mask = mask;
   r->id = 0;
@@ -49,7 +49,7 @@ void set_lane(const Ray& ray, uint32_t mask, int i, Packet* r) {
   r->dir_x[i] = ray.direction.x;
   r->dir_y[i] = ray.direction.y;
   r->dir_z[i] = ray.direction.z;
-  r->time[i] = 0.0f;
+  r->time[i] = ray.time;
   r->tfar[i] = ray.t_max;
   r->mask[i] = mask;
   r->id[i] = 0;
@@ -88,6 +88,7 @@ bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask
   hit->instance = instance_of(query.hit.instID[0], query.hit.geomID);
   hit->triangle = query.hit.primID;
   hit->barycentric = Vec2(query.hit.u, query.hit.v);
+  hit->time = ray.time;
   return true;
 }
 
@@ -122,6 +123,7 @@ void Snapshot::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) c
     hits[i].instance = instance_of(query.hit.instID[0][i], query.hit.geomID[i]);
     hits[i].triangle = query.hit.primID[i];
     hits[i].barycentric = Vec2(query.hit.u[i], query.hit.v[i]);
+    hits[i].time = rays[i].time;
   }
 }
 
@@ -140,7 +142,7 @@ void Snapshot::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4
   set(query.dir_x, d.x);
   set(query.dir_y, d.y);
   set(query.dir_z, d.z);
-  set(query.time, zero);
+  set(query.time, same(rays.time));
   set(query.tfar, rays.t_max);
   set(query.mask, LaneBits{} + int32_t(GRADUS_VISIBLE_SHADOW));
   set(query.id, zero);

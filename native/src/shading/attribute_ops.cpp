@@ -32,7 +32,8 @@ void object_info(const ShadeContext& c, Vec4* out) {
     return;
   }
   const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
-  out[0] = value(Vec3(c.instance->to_world[3]) + origin);
+  Placement room;
+  out[0] = value(Vec3(placement_of(c, &room).to_world[3]) + origin);
   out[1] = Vec4(Vec3(c.instance->color), 1.0f);
   out[2] = splat(static_cast<float>(c.instance->pass_index));
   out[3] = splat(static_cast<float>(c.instance->random_id) * (1.0f / 4294967296.0f));

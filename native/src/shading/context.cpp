@@ -46,12 +46,12 @@ ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, cons
   return c;
 }
 
+const Placement& placement_of(const ShadeContext& c, Placement* room) { return c.instance->placement(c.hit.time, room); }
+
 Vec3 world_position(const ShadeContext& c) { return c.is_background || !c.snapshot ? c.position : c.position + c.snapshot->origin; }
 
 std::array<Vec3, 3> world_corners(const ShadeContext& c) {
-  std::array<Vec3, 3> p = triangle_positions(*c.instance->mesh, c.hit.triangle);
-  for (Vec3& v : p) v = Vec3(c.instance->to_world * Vec4(v, 1.0f));
-  return p;
+  return c.snapshot->corners(c.hit.instance, c.hit.triangle, c.hit.time);
 }
 
 ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& p, const Vec3& step) {
@@ -68,11 +68,13 @@ ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
   if (c.lamp_axes) return glm::transpose(*c.lamp_axes) * normal;
   // The inverse of the inverse transpose.
-  return c.instance ? safe_normalize(glm::transpose(Mat3(c.instance->to_world)) * normal) : normal;
+  Placement room;
+  return c.instance ? safe_normalize(glm::transpose(Mat3(placement_of(c, &room).to_world)) * normal) : normal;
 }
 
 Vec3 normal_to_world(const ShadeContext& c, const Vec3& normal) {
-  return c.instance ? safe_normalize(c.instance->normal_to_world * normal) : normal;
+  Placement room;
+  return c.instance ? safe_normalize(placement_of(c, &room).normal_to_world * normal) : normal;
 }
 
 }  // namespace gradus

@@ -33,6 +33,8 @@ ShadeContext surface_context(const Snapshot& snapshot, const SurfacePoint& point
 ShadeContext background_context(const Snapshot& snapshot, const Vec3& direction, const RayState& ray);
 ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, const RayState& ray);
 
+// Of the instance at the time of the hit.
+const Placement& placement_of(const ShadeContext& context, Placement* room);
 // Position in world space; the direction for backgrounds.
 Vec3 world_position(const ShadeContext& context);
 // Corners of the triangle in internal space, and the context moved along the surface by `step`: interpolated values follow it.

@@ -25,7 +25,8 @@ Vec3 direction_from_camera(const Mat4& camera, const Vec3& v) {
 Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
   const Vec3 p = world_position(c);
   if (args.float_count >= 16) return Vec3(matrix(args.floats) * Vec4(p, 1.0f));
-  return c.instance ? Vec3(c.instance->to_local * Vec4(c.position, 1.0f)) : p;
+  Placement room;
+  return c.instance ? Vec3(placement_of(c, &room).to_local * Vec4(c.position, 1.0f)) : p;
 }
 
 // 0…1 over the picture.
@@ -52,8 +53,10 @@ Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& 
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
-    if (kind == GRADUS_TRANSFORM_NORMAL) return c.instance->normal_to_world * v;
-    return Vec3(c.instance->to_world * Vec4(v, w)) + origin * w;
+    Placement room;
+    const Placement& placement = placement_of(c, &room);
+    if (kind == GRADUS_TRANSFORM_NORMAL) return placement.normal_to_world * v;
+    return Vec3(placement.to_world * Vec4(v, w)) + origin * w;
   }
   if (space == kCamera && c.snapshot && c.snapshot->has_camera) {
     const Mat4 camera = matrix(c.snapshot->camera.matrix);
@@ -66,8 +69,10 @@ Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
-    if (kind == GRADUS_TRANSFORM_NORMAL) return glm::transpose(Mat3(c.instance->to_world)) * v;
-    return Vec3(c.instance->to_local * Vec4(v - origin * w, w));
+    Placement room;
+    const Placement& placement = placement_of(c, &room);
+    if (kind == GRADUS_TRANSFORM_NORMAL) return glm::transpose(Mat3(placement.to_world)) * v;
+    return Vec3(placement.to_local * Vec4(v - origin * w, w));
   }
   if (space == kCamera && c.snapshot && c.snapshot->has_camera) {
     const Mat4 camera = matrix(c.snapshot->camera.matrix);

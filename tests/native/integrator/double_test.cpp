@@ -31,7 +31,7 @@ TEST_P(B8_Double, ImagesDifferByLessThanOnePercentOfTheirNoise) {
 // Vertices of neighbouring pixels that camera rays meet.
 bool camera_vertex(const PathContext& path, const Sampler& sampler, const Vec2& film, Vertex* vertex) {
   PathRay ray;
-  ray.ray = path.camera.ray(film, Vec2(0.0f));
+  ray.ray = path.camera.ray({film});
   Segment segment;
   trace_segment(path, sampler, 0, nullptr, &ray, vertex, &segment);
   return segment.end == SegmentEnd::Surface;

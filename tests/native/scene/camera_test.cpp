@@ -70,10 +70,10 @@ TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
       const Projection p = blender_projection(blender, w, h);
       for (int i = 0; i < 20; ++i) {
         const Vec2 film(u(random) * float(w), u(random) * float(h));
-        const Ray ray = camera.ray(film, Vec2(0.5f));
+        const Ray ray = camera.ray({film, Vec2(0.5f)});
         const Vec3 world = ray.origin + ray.direction * (ray.t_min * 20.0f + 1.0f);
         Vec2 back;
-        ASSERT_TRUE(camera.project(world, Shutter::Now, &back));
+        ASSERT_TRUE(camera.project(world, Moment::Now, &back));
         // A 5 m lens magnifies the rounding of the world position itself.
         const double tolerance = blender.lens > 1000.0f ? 0.03 : 0.01;
         EXPECT_NEAR(back.x, film.x, tolerance);
@@ -87,7 +87,7 @@ TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
         EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_max), 1000.0f, 0.1f);
       }
       Vec2 film;
-      EXPECT_FALSE(camera.project(Vec3(kPose * Vec4(0, 0, 1, 1)), Shutter::Now, &film));
+      EXPECT_FALSE(camera.project(Vec3(kPose * Vec4(0, 0, 1, 1)), Moment::Now, &film));
     }
 }
 
@@ -105,7 +105,7 @@ TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
     const Vec3 focus = sharp.origin + sharp.direction * (4.0f * sharp.t_min / 0.1f);
     gradus::testing::Random random(5);
     for (int i = 0; i < 100; ++i) {
-      const Ray ray = camera.ray(film, random.get2());
+      const Ray ray = camera.ray({film, random.get2()});
       const Vec3 to_focus = focus - ray.origin;
       EXPECT_NEAR(glm::length(glm::cross(ray.direction, to_focus)), 0.0f, 1e-5f);
       EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_min), 0.1f, 1e-5f);
@@ -128,7 +128,7 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
   gradus::testing::Random random(7);
   size_t outside = 0;
   for (size_t i = 0; i < kSamples; ++i) {
-    const Vec3 p = camera.ray(Vec2(50.0f), random.get2()).origin;
+    const Vec3 p = camera.ray({Vec2(50.0f), random.get2()}).origin;
     const int x = cell(p.x, 1.001f / ratio), y = cell(p.y, 1.001f);
     if (x < 0 || x >= kGrid || y < 0 || y >= kGrid)
       ++outside;

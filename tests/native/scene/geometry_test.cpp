@@ -219,7 +219,7 @@ TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
     if (i % 5 == 0) desc.fisheye_polynomial[random() % 5] = bad[random() % 4];
     if (i % 7 == 0) desc.fisheye_fov = bad[random() % 4];
     desc.blades = i % 7;
-    const Ray ray = Camera(desc, 64, 48).ray(Vec2(20.5f, 30.5f), Vec2(0.3f, 0.6f));
+    const Ray ray = Camera(desc, 64, 48).ray({Vec2(20.5f, 30.5f), Vec2(0.3f, 0.6f)});
     Hit hit;
     if (!snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit)) continue;
     const SurfacePoint point = snapshot->surface_point(hit);

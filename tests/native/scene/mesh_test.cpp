@@ -118,7 +118,7 @@ TEST(C1_SurfaceMotion, DeformationAndMatrices) {
       commit_quad(&scene, quad.make(), Mat4(1.0f), translation(Vec3(-0.1f, 0, 0)), translation(Vec3(0.2f, 0, 0)) * scaling(Vec3(2, 1, 1)));
   const Hit hit = hit_at(Vec2(0.25f, 0.5f));  // at (0.75, 0.5)
   const Vec3 now = snapshot->surface_point(hit).position;
-  const Vec3 before = snapshot->position_at(hit, false), after = snapshot->position_at(hit, true);
+  const Vec3 before = snapshot->position_at(hit, Moment::Previous), after = snapshot->position_at(hit, Moment::Next);
   EXPECT_LT(glm::length(now - Vec3(0.75f, 0.5f, 0)), 1e-6f);
   EXPECT_LT(glm::length(before - Vec3(0.65f, 0.5f, -0.375f)), 1e-6f);
   EXPECT_LT(glm::length(after - Vec3(1.7f, 0.5f, 0.375f)), 1e-6f);
@@ -131,8 +131,8 @@ TEST(C1_SurfaceMotion, AtRestItIsExactlyTheSamePosition) {
   const auto snapshot = commit_quad(&scene, quad.make(), matrix, matrix, matrix);
   for (int i = 0; i < 100; ++i) {
     const Hit hit = hit_at(Vec2(0.37f, 0.005f * float(i)));
-    EXPECT_EQ(snapshot->position_at(hit, false), snapshot->position_at(hit, true));
-    EXPECT_EQ(snapshot->position_at(hit, true), snapshot->surface_point(hit).position);
+    EXPECT_EQ(snapshot->position_at(hit, Moment::Previous), snapshot->position_at(hit, Moment::Next));
+    EXPECT_EQ(snapshot->position_at(hit, Moment::Next), snapshot->surface_point(hit).position);
   }
 }
 

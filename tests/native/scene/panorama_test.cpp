@@ -116,15 +116,15 @@ TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
   int seen = 0;
   for (int i = 0; i < 5000; ++i) {
     const Vec2 film(u(random) * float(kWidth), u(random) * float(kHeight));
-    const Ray ray = camera.ray(film, Vec2(0.0f));
+    const Ray ray = camera.ray({film, Vec2(0.0f)});
     if (is_none(ray)) continue;
     if (desc.fisheye_polynomial[0] > 0.0f && glm::length(film - Vec2(320.0f, 240.0f)) < 5.0f) continue;  // the lens folds there
     const Vec3 relative = glm::transpose(Mat3(kPose)) * ray.direction;
     const bool at_pole = std::fabs(relative.y) > 0.99f || relative.z > 0.99f;  // where a pixel is no larger than rounding
     Vec2 back;
-    ASSERT_TRUE(camera.project(ray.origin + 7.0f * ray.direction, Shutter::Now, &back));
+    ASSERT_TRUE(camera.project(ray.origin + 7.0f * ray.direction, Moment::Now, &back));
     EXPECT_LT(glm::length(camera.way(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
-    ASSERT_TRUE(camera.project_direction(ray.direction, Shutter::Now, &back));
+    ASSERT_TRUE(camera.project_direction(ray.direction, Moment::Now, &back));
     EXPECT_LT(glm::length(camera.way(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
     EXPECT_NEAR(camera.depth(ray.origin + ray.direction * 7.0f), 7.0f, 1e-5f);
     EXPECT_EQ(ray.t_min, 0.1f);
@@ -143,11 +143,11 @@ TEST_P(Panorama, RaysOfAFilmPointMeetAtTheDistanceOfFocus) {
   std::mt19937 random(19);
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   for (const Vec2 film : {Vec2(320.0f, 240.0f), Vec2(400.0f, 130.0f), Vec2(250.0f, 300.0f)}) {
-    const Ray sharp = pinhole.ray(film, Vec2(0.0f));
+    const Ray sharp = pinhole.ray({film, Vec2(0.0f)});
     ASSERT_FALSE(is_none(sharp));
     const Vec3 focus = sharp.origin + 4.0f * sharp.direction;
     for (int i = 0; i < 50; ++i) {
-      const Ray ray = camera.ray(film, Vec2(u(random), u(random)));
+      const Ray ray = camera.ray({film, Vec2(u(random), u(random))});
       EXPECT_LT(glm::length(glm::cross(ray.direction, focus - ray.origin)), 1e-5f);
       EXPECT_LT(std::fabs(glm::dot(ray.origin - sharp.origin, sharp.direction)), 1e-5f) << "the lens lies across the direction";
       EXPECT_LE(glm::length(ray.origin - sharp.origin), 0.30001f);
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(All, Panorama, ::testing::ValuesIn(kProjections), [](co
 });
 
 Ray ray_at(const Projection& p, float x, float y) {
-  return Camera(make_camera(p), kWidth, kHeight).ray(Vec2(x * float(kWidth), y * float(kHeight)), Vec2(0.0f));
+  return Camera(make_camera(p), kWidth, kHeight).ray({Vec2(x * float(kWidth), y * float(kHeight)), Vec2(0.0f)});
 }
 
 void expect_direction(const Ray& ray, const Vec3& expected) { EXPECT_LT(glm::length(ray.direction - expected), 1e-5f); }
@@ -189,15 +189,15 @@ TEST(PanoramaEdges, NothingLeavesOutsideOfTheImageCircle) {
 TEST(PanoramaEdges, BehindACubeFaceNothingAppears) {
   const Camera camera(make_camera(kProjections[2]), kWidth, kHeight);
   Vec2 film;
-  EXPECT_TRUE(camera.project(Vec3(0.2f, 0.1f, -1.0f), Shutter::Now, &film));
-  EXPECT_FALSE(camera.project(Vec3(0.2f, 0.1f, 1.0f), Shutter::Now, &film));
+  EXPECT_TRUE(camera.project(Vec3(0.2f, 0.1f, -1.0f), Moment::Now, &film));
+  EXPECT_FALSE(camera.project(Vec3(0.2f, 0.1f, 1.0f), Moment::Now, &film));
 }
 
 TEST(PanoramaEdges, MotionTakesTheShortestWayAround) {
   const Camera camera(make_camera(kProjections[0]), kWidth, kHeight);
   Vec2 from, to;
-  ASSERT_TRUE(camera.project(Vec3(0.01f, 0, 1), Shutter::Now, &from));
-  ASSERT_TRUE(camera.project(Vec3(-0.01f, 0, 1), Shutter::Now, &to));
+  ASSERT_TRUE(camera.project(Vec3(0.01f, 0, 1), Moment::Now, &from));
+  ASSERT_TRUE(camera.project(Vec3(-0.01f, 0, 1), Moment::Now, &to));
   EXPECT_GT(from.x - to.x, 600.0f);
   EXPECT_NEAR(camera.way(from, to).x, 0.02 * kWidth / kTau, 0.01);
   EXPECT_NEAR(camera.way(to, from).x, -0.02 * kWidth / kTau, 0.01);
@@ -206,7 +206,7 @@ TEST(PanoramaEdges, MotionTakesTheShortestWayAround) {
 TEST(PanoramaEdges, LongitudesAreThoseOfTheWindow) {
   const Camera camera(make_camera(kProjections[1]), kWidth, kHeight);  // 2 to 4.5: over the seam of atan2
   Vec2 film;
-  ASSERT_TRUE(camera.project(Vec3(std::sin(4.0f), 0.0f, -std::cos(4.0f)), Shutter::Now, &film));
+  ASSERT_TRUE(camera.project(Vec3(std::sin(4.0f), 0.0f, -std::cos(4.0f)), Moment::Now, &film));
   EXPECT_NEAR(film.x, (4.0 - 2.0) / 2.5 * kWidth, 0.01);
 }
 
@@ -215,17 +215,17 @@ TEST(SphericalStereo, RaysLeaveTheEyesCircle) {
   GradusCamera desc = make_camera(kProjections[0]);
   desc.eye_offset = 0.5f;
   const Camera parallel(desc, kWidth, kHeight);
-  const Ray right = parallel.ray(Vec2(0.75f * kWidth, 0.5f * kHeight), Vec2(0.0f));
+  const Ray right = parallel.ray({Vec2(0.75f * kWidth, 0.5f * kHeight), Vec2(0.0f)});
   EXPECT_LT(glm::length(right.origin - Vec3(0, 0, 0.5f)), 1e-6f) << "looking right, the right eye lies behind";
   expect_direction(right, Vec3(1, 0, 0));
   desc.convergence_distance = 2.0f;
-  const Ray ahead = Camera(desc, kWidth, kHeight).ray(Vec2(0.5f * kWidth, 0.5f * kHeight), Vec2(0.0f));
+  const Ray ahead = Camera(desc, kWidth, kHeight).ray({Vec2(0.5f * kWidth, 0.5f * kHeight), Vec2(0.0f)});
   EXPECT_LT(glm::length(ahead.origin - Vec3(0.5f, 0, 0)), 1e-6f);
   expect_direction(ahead, glm::normalize(Vec3(-0.5f, 0, -2)));
   desc.pole_merge_from = 1.0f;
   desc.pole_merge_to = 1.4f;
   const auto offset_at = [&](float latitude) {
-    return glm::length(Camera(desc, kWidth, kHeight).ray(Vec2(320.0f, (latitude / 3.14159265f + 0.5f) * kHeight), Vec2(0.0f)).origin);
+    return glm::length(Camera(desc, kWidth, kHeight).ray({Vec2(320.0f, (latitude / 3.14159265f + 0.5f) * kHeight), Vec2(0.0f)}).origin);
   };
   EXPECT_NEAR(offset_at(0.9f), 0.5f, 1e-5f);
   EXPECT_NEAR(offset_at(1.2f), 0.5f * std::sqrt(0.5f), 1e-4f);
@@ -251,13 +251,13 @@ TEST(SphericalStereo, PointsOfRaysAppearWhereTheRaysLeft) {
         const Camera camera(desc, kWidth, kHeight);
         for (int i = 0; i < 1000; ++i) {
           const Vec2 film((0.1f + 0.8f * u(random)) * float(kWidth), (0.1f + 0.8f * u(random)) * float(kHeight));
-          const Ray ray = camera.ray(film, Vec2(0.0f));
+          const Ray ray = camera.ray({film, Vec2(0.0f)});
           if (is_none(ray)) continue;
           Vec2 back;
-          ASSERT_TRUE(camera.project(ray.origin + 5.0f * ray.direction, Shutter::Now, &back));
+          ASSERT_TRUE(camera.project(ray.origin + 5.0f * ray.direction, Moment::Now, &back));
           EXPECT_LT(glm::length(camera.way(film, back)), 0.05f)
               << projection << " " << convergence << " " << merge << " " << film.x << " " << film.y;
-          ASSERT_TRUE(camera.project_direction(ray.direction, Shutter::Now, &back));
+          ASSERT_TRUE(camera.project_direction(ray.direction, Moment::Now, &back));
           EXPECT_LT(glm::length(camera.way(film, back)), 0.05f)
               << projection << " " << convergence << " " << merge << " " << film.x << " " << film.y;
         }

@@ -37,7 +37,7 @@ TEST_F(Rays4Test, LeaveSurfacesAndArriveAsOneDoes) {
     const SurfacePoint to = point(vector() + Vec3(2.0f, 0.0f, 0.0f));
     Vec3 d[4];
     for (int i = 0; i < 4; ++i) d[i] = glm::normalize(to.position - from[i].position);
-    const Rays4 rays = spawn_rays_to(gather(from[0], from[1], from[2], from[3]), lanes(d[0], d[1], d[2], d[3]), to);
+    const Rays4 rays = spawn_rays_to(gather(from[0], from[1], from[2], from[3], 0.0f), lanes(d[0], d[1], d[2], d[3]), to);
     for (int i = 0; i < 4; ++i) expect_same(spawn_ray_to(from[i], to), rays, i);
   }
 }
@@ -47,7 +47,7 @@ TEST_F(Rays4Test, AreEmptyBetweenPointsThatRoundingCannotTellApart) {
   a.error = b.error = 1e-5f;
   b.geometric_normal = Vec3(0, 0, -1);
   b.position = Vec3(0, 0, 1e-6f);
-  const Rays4 rays = spawn_rays_to(gather(a, a, a, a), same(Vec3(0, 0, 1)), b);
+  const Rays4 rays = spawn_rays_to(gather(a, a, a, a, 0.0f), same(Vec3(0, 0, 1)), b);
   EXPECT_LT(spawn_ray_to(a, b).t_max, 0.0f);
   for (int i = 0; i < 4; ++i) EXPECT_LT(rays.t_max[i], 0.0f);
 }
@@ -70,7 +70,7 @@ TEST_F(Rays4Test, ReachEmittersOfAllKindsAsOneShadowRayDoes) {
       view[i].distance = glm::length(emitter.position - from[i].position);
       view[i].direction = emitter.at_infinity() ? emitter.direction : (emitter.position - from[i].position) / view[i].distance;
     }
-    const Points4 points = gather(from[0], from[1], from[2], from[3]);
+    const Points4 points = gather(from[0], from[1], from[2], from[3], 0.0f);
     const Lanes3 direction = lanes(view[0].direction, view[1].direction, view[2].direction, view[3].direction);
     const Lanes distance{view[0].distance, view[1].distance, view[2].distance, view[3].distance};
     const Rays4 rays = rays_to_emitter(offset_origins(points, direction), points, direction, distance, emitter);

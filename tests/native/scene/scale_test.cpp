@@ -53,7 +53,7 @@ std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
     const Vec2 jitter = random.get2(), u = random.get2();
     const float choice = random.get();
     Hit hit;
-    if (!snapshot->intersect(camera.ray(Vec2(x, y) + jitter, Vec2(0.5f)), GRADUS_VISIBLE_CAMERA, &hit)) continue;
+    if (!snapshot->intersect(camera.ray({Vec2(x, y) + jitter, Vec2(0.5f)}), GRADUS_VISIBLE_CAMERA, &hit)) continue;
     const SurfacePoint point = snapshot->surface_point(hit);
     const Receiver receiver{point.position, point.geometric_normal, false};
     EmitterView view;

@@ -157,6 +157,9 @@ class TestScene {
     count_.push_back(1);
     materials_.push_back(material);
     terminators_.push_back(shadow_terminator_offset);
+    shutter_first_.push_back(uint32_t(shutter_matrices_.size()));
+    shutter_count_.push_back(uint32_t(way.size()));
+    for (const Mat4& m : way) shutter_matrices_.push_back(m * matrix);
   }
   std::shared_ptr<const Snapshot> commit() {
     GradusInstances instances{};
@@ -170,6 +173,10 @@ class TestScene {
     instances.materials = materials_.data();
     instances.materials_size = materials_.size();
     instances.shadow_terminator_offsets = terminators_.data();
+    instances.shutter_first = shutter_first_.data();
+    instances.shutter_count = shutter_count_.data();
+    instances.shutter_size = shutter_matrices_.size();
+    instances.shutter_matrices = shutter_matrices_.empty() ? nullptr : &shutter_matrices_[0][0][0];
     scene.set_instances(instances);
     scene.commit(nullptr, nullptr);
     return scene.snapshot();
@@ -177,9 +184,12 @@ class TestScene {
 
   Scene scene;
   float shadow_terminator_offset = 0.0f;  // of the instances that follow
+  std::vector<Mat4> way;                  // theirs while the shutter is open, times their matrix; empty: at rest
 
  private:
   std::vector<float> terminators_;
+  std::vector<uint32_t> shutter_first_, shutter_count_;
+  std::vector<Mat4> shutter_matrices_;
   std::vector<uint64_t> meshes_, materials_;
   std::vector<Mat4> matrices_;
   std::vector<uint32_t> visibility_, first_, count_;

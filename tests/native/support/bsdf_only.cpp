@@ -38,7 +38,8 @@ bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, 
 Rgb bsdf_only_sample(const IntegratorContext& context, int x, int y, testing::Random* random) {
   const Snapshot& scene = *context.snapshot;
   const Vec2 film = Vec2(float(x), float(y)) + random->get2();
-  Ray ray = context.camera.ray(film, random->get2());
+  const Vec2 lens = random->get2();
+  Ray ray = context.camera.ray({film, lens, scene.shutter.sample(random->get())});
   Rgb radiance(0.0f), throughput(1.0f);
   for (uint32_t scatterings = 0;; ++scatterings) {
     Hit hit;

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <sstream>
 
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
 #include "gradus/gradus_nodes.h"
 
 namespace gradus::test {
@@ -146,6 +149,14 @@ void PathScene::ball(const Vec3& centre, float radius, uint64_t material, int ri
     mesh.desc.normal_domain = GRADUS_DOMAIN_POINT;
     mesh.desc.normals = &normals[0].x;
   }
+  std::vector<Vec3> keys;
+  if (swelling != 1.0f) {
+    for (const float factor : {1.0f, swelling}) {
+      for (const Vec3& p : soup.positions) keys.push_back(centre + factor * (p - centre));
+    }
+    mesh.desc.shutter_key_count = 2;
+    mesh.desc.shutter_positions = &keys[0].x;
+  }
   const uint64_t key = next_key_++;
   scene.scene.set_mesh(key, mesh.desc);
   scene.instance(key, place, GRADUS_VISIBLE_ALL, material);
@@ -172,12 +183,25 @@ void PathScene::camera(const Vec3& from, const Vec3& at, float field, GradusCame
   field_ = field;
 }
 
+void PathScene::open_shutter(std::vector<float> curve, std::vector<Mat4> camera_way) {
+  camera_desc.shutter_open = -0.5f;
+  camera_desc.shutter_close = 0.5f;
+  curve_ = std::move(curve);
+  camera_way_ = std::move(camera_way);
+}
+
 IntegratorContext PathScene::context(const GradusSettings& settings) {
   const float aspect = static_cast<float>(settings.height) / static_cast<float>(settings.width);
   const float window[4] = {-0.5f * field_, 0.5f * field_, -0.5f * field_ * aspect, 0.5f * field_ * aspect};
   for (int i = 0; i < 4; ++i) {
     camera_desc.window[i] = camera_desc.window_previous[i] = camera_desc.window_next[i] = window[i];
   }
+  camera_desc.shutter_curve = curve_.empty() ? nullptr : curve_.data();
+  camera_desc.shutter_curve_count = static_cast<uint32_t>(curve_.size());
+  camera_keys_.clear();
+  for (const Mat4& m : camera_way_) camera_keys_.push_back(m * glm::make_mat4(camera_desc.matrix));
+  camera_desc.shutter_key_count = static_cast<uint32_t>(camera_keys_.size());
+  camera_desc.shutter_matrices = camera_keys_.empty() ? nullptr : &camera_keys_[0][0][0];
   scene.scene.set_camera(camera_desc);
   scene.lights(lights_);
   IntegratorContext context;
@@ -288,8 +312,8 @@ void add_lamps_with_extent(PathScene* scene, uint32_t flags, float roughness) {
 }  // namespace
 
 const char* name_of(Scenario scenario) {
-  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",     "GlossyFloor", "RoughMetal", "Mirror", "Glass",
-                                      "RoughGlass",  "Transparent", "LampsSeen", "LampsUnseen", "Facets",     "Fisheye"};
+  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",     "GlossyFloor", "RoughMetal", "Mirror",  "Glass",
+                                      "RoughGlass",  "Transparent", "LampsSeen", "LampsUnseen", "Facets",     "Fisheye", "Moving"};
   return names[static_cast<int>(scenario)];
 }
 
@@ -372,6 +396,21 @@ void build(Scenario scenario, PathScene* scene) {
       scene->camera_desc.panorama = GRADUS_PANORAMA_FISHEYE_EQUIDISTANT;
       scene->camera_desc.fisheye_fov = 3.0f;
       break;
+    case Scenario::Moving: {  // a light that turns and swings by, a ball that swells, a mirror and a glass ball that fly, under a moving eye
+      Surface light;
+      light.emission = Rgb(10.0f, 8.0f, 6.0f);
+      scene->scene.way = {translation(Vec3(-0.3f, 0, 0)), glm::rotate(translation(Vec3(0.3f, 0, 0)), 1.2f, Vec3(0, 0, 1))};
+      scene->quad(Vec3(-0.25f, 0.5f, -0.25f), Vec3(0.5f, 0, 0), Vec3(0, 0, 0.5f), scene->material(light));
+      scene->scene.way = {translation(Vec3(0, -0.15f, 0)), Mat4(1.0f), translation(Vec3(0.1f, 0.2f, 0))};
+      scene->ball(Vec3(-0.5f, -0.6f, 0.3f), 0.3f, scene->material(glossy(0.0f)), 8, true);
+      scene->scene.way = {Mat4(1.0f), translation(Vec3(0, 0.2f, 0.1f))};
+      scene->ball(Vec3(0.1f, -0.6f, 0.5f), 0.25f, scene->material(glass(0.0f)), 8, true);
+      scene->scene.way.clear();
+      scene->swelling = 1.4f;
+      scene->ball(Vec3(0.55f, -0.6f, 0.0f), 0.3f, scene->material(matte(Rgb(0.5f))), 6, true);
+      scene->open_shutter({0.0f, 1.0f, 1.0f}, {Mat4(1.0f), translation(Vec3(0.05f, 0.02f, 0))});
+      break;
+    }
     case Scenario::Count:
       break;
   }

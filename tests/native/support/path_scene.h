@@ -36,6 +36,8 @@ class PathScene {
   void world(const Rgb& radiance);
   // map_size: width of the map that its light is sampled by.
   void world(uint64_t material, uint32_t map_size) { scene.world(material, map_size); }
+  // The shutter is open from half a frame before the frame to half a frame after it; curve: empty, all the time.
+  void open_shutter(std::vector<float> curve = {}, std::vector<Mat4> camera_way = {});
   // At `from`, looking at `at`, y up; field: width of the frame at distance 1 (orthographic: in metres; panorama: as
   // GradusPanorama says).
   void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
@@ -43,6 +45,8 @@ class PathScene {
   GradusCamera camera_desc{};
   // Where quads, balls and the camera are put that follow: a translation and a scale.
   Mat4 place = Mat4(1.0f);
+  // Balls that follow swell by this factor while the shutter is open.
+  float swelling = 1.0f;
   // Commits. settings.width and height give the camera's aspect.
   IntegratorContext context(const GradusSettings& settings);
 
@@ -51,6 +55,9 @@ class PathScene {
  private:
   std::vector<GradusLight> lights_;
   uint64_t next_key_ = 1;
+  std::vector<float> curve_;
+  std::vector<Mat4> camera_way_;  // times its matrix
+  std::vector<Mat4> camera_keys_;
   Vec3 camera_from_ = Vec3(0.0f);
   float field_ = 1.0f;
 };
@@ -86,6 +93,7 @@ enum class Scenario {
   LampsUnseen,
   Facets,
   Fisheye,
+  Moving,
   Count
 };
 const char* name_of(Scenario scenario);

@@ -127,7 +127,8 @@ void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
 }
 
 Points4 OffsetPaths::own_points() const {
-  return gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point, offsets_[3].here->point);
+  return gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point, offsets_[3].here->point,
+                camera_sample_.time);
 }
 
 bool OffsetPaths::any(OffsetStage stage) const {
@@ -144,10 +145,9 @@ void OffsetPaths::pair(int k, const Contribution& c, const Rgb& offset_value, fl
       pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(clamp_contribution(context_, offset_value, c.indirect), 0.0f), ratio);
 }
 
-void OffsetPaths::begin(const Sampler& sampler, const Vec2& film, const Vec2& lens) {
+void OffsetPaths::begin(const Sampler& sampler, const CameraSample& sample) {
   sampler_ = &sampler;
-  film_ = film;
-  lens_ = lens;
+  camera_sample_ = sample;
   open_ = 0;
   kept_ = nullptr;
   suffix_ = Suffix{};

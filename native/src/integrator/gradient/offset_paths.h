@@ -22,7 +22,7 @@ class OffsetPaths {
   }
 
   // What PathTracer tells.
-  void begin(const Sampler& sampler, const Vec2& film, const Vec2& lens);
+  void begin(const Sampler& sampler, const CameraSample& sample);
   void arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex);
   void passed(const Segment& segment);
   void lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp);
@@ -115,8 +115,7 @@ class OffsetPaths {
   CameraVertices& vertices_;
   const PixelSample* sample_ = nullptr;
   const Sampler* sampler_ = nullptr;
-  Vec2 film_ = Vec2(0.0f);
-  Vec2 lens_ = Vec2(0.0f);
+  CameraSample camera_sample_;
   std::array<PairCount, kOffsets> pairs_{};
   std::array<Radiance, kOffsets> gradient_{};
   std::array<OffsetPath, kOffsets> offsets_;

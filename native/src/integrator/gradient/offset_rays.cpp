@@ -33,7 +33,7 @@ void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
   o->fresh = true;
 }
 
-// Same position in the pixel, same point of the lens: the camera's part of r is 1. With a lens the four rays are traced together; without
+// Same position in the pixel, same point of the lens, same moment: the camera's part of r is 1. With a lens the four rays are traced together; without
 // one most are known, and a packet of the one that leaves the cell would take as long as three rays.
 void OffsetPaths::trace_camera(const PathState& state) {
   Ray rays[kOffsets];
@@ -54,7 +54,7 @@ void OffsetPaths::trace_camera(const PathState& state) {
     }
     o.state.ray = PathRay{};
     o.state.ray.visibility = state.ray.visibility;
-    o.state.ray.ray = context_.camera.ray(film_ + Vec2(kOffsetX[k], kOffsetY[k]), lens_);
+    o.state.ray.ray = context_.camera.ray(camera_sample_.moved(Vec2(kOffsetX[k], kOffsetY[k])));
     if (sample_->first != nullptr) {
       trace(&o, known != nullptr ? &known->hit : nullptr);
     } else {

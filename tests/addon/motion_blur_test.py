@@ -1,0 +1,271 @@
+"""Motion blur: what the export reads while the shutter is open, and pictures that are those of Cycles in the same Blender."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from gradus.export.shutter import position_owner
+from support import images, recording
+from support.nodes import new_material, show
+
+EXACT = {"integrator": "PATH", "reconstruction": "NONE", "max_bounces": 0}
+
+
+def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
+    """Keys with linear interpolation, to infinity."""
+    for frame, value in frames.items():
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+    for curve in curves(owner.id_data):
+        curve.extrapolation = "LINEAR"
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+
+
+def curves(block: bpy.types.ID) -> list:
+    action = block.animation_data.action
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
+
+
+def moving_key_shape(obj: bpy.types.Object, by: tuple[float, float, float], frames: dict[int, float]) -> None:
+    obj.shape_key_add(name="Basis")
+    shape = obj.shape_key_add(name="Moved")
+    for point in shape.data:
+        point.co += type(point.co)(by)
+    key(shape, "value", frames)
+
+
+@pytest.fixture
+def blurred(scene: bpy.types.Scene) -> bpy.types.Scene:
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter = 0.5
+    return scene
+
+
+def export(scene: bpy.types.Scene, frame: int = 5) -> recording.Recording:
+    scene.frame_set(frame)
+    recorded, report = recording.export(scene)
+    assert scene.frame_current == frame, "the frame is the user's again"
+    recorded.warnings = report.warnings
+    return recorded
+
+
+# ------------------------------------------------------------------------------------------------ what the export reads
+
+
+@pytest.mark.parametrize(("position", "start"), [("START", 0.0), ("CENTER", -0.25), ("END", -0.5)])
+def test_the_exposure_begins_ends_or_is_centred_at_the_frame(blurred: bpy.types.Scene, position: str, start: float) -> None:
+    owner = position_owner(blurred)
+    if owner is None:
+        pytest.skip("Cycles, which has the setting, is not in this Blender")
+    owner.motion_blur_position = position
+    obj = recording.add(recording.grid(1), "Moving")
+    key(obj, "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+    recorded = export(blurred)
+    assert (recorded.shutter["open"], recorded.shutter["close"]) == (start, start + 0.5)
+    (matrices,) = recorded.instances["shutter"]
+    assert np.allclose(matrices[:, 3, 0], 5.0 + start + np.array([0.0, 0.25, 0.5]), atol=1e-5)
+    assert recorded.instances["matrices"][0][3][0] == pytest.approx(5.0, abs=1e-5)
+
+
+def test_only_what_moves_has_keys(blurred: bpy.types.Scene) -> None:
+    recording.add(recording.grid(1), "Still")
+    key(recording.add(recording.grid(1, name="Other"), "Moving"), "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+    recorded = export(blurred)
+    by_name = dict(zip(recorded.instances["names"], recorded.instances["shutter"], strict=True))
+    assert by_name["Still"] is None
+    assert len(by_name["Moving"]) == 3
+    assert recorded.shutter["matrices"] is None
+    assert all(mesh.shutter is None for mesh in recorded.meshes.values())
+
+
+def test_the_camera_moves_and_zooms(blurred: bpy.types.Scene) -> None:
+    recording.add(recording.grid(1))
+    key(blurred.camera, "location", {0: (0, 0, 5), 10: (0, 0, 15)})
+    key(blurred.camera.data, "ortho_scale", {0: 4.0, 10: 8.0})
+    recorded = export(blurred)
+    assert np.allclose(recorded.shutter["matrices"][:, 3, 2], [9.75, 10.0, 10.25], atol=1e-4)
+    assert np.allclose(recorded.shutter["windows"][:, 1], [0.5 * (4.0 + 0.4 * t) for t in (4.75, 5.0, 5.25)], atol=1e-4)
+
+
+def test_a_deforming_mesh_has_positions(blurred: bpy.types.Scene) -> None:
+    obj = recording.add(recording.grid(1), "Deforming")
+    moving_key_shape(obj, (0, 0, 1), {0: 0.0, 10: 1.0})
+    (mesh,) = export(blurred).meshes.values()
+    assert np.allclose(mesh.shutter[:, 0, 2], [0.475, 0.5, 0.525], atol=1e-5)
+    assert mesh.keys == 1, "without pass Vector the frames around are not read"
+
+
+def test_vectors_and_blur_are_read_together(blurred: bpy.types.Scene) -> None:
+    obj = recording.add(recording.grid(1), "Deforming")
+    moving_key_shape(obj, (0, 0, 1), {0: 0.0, 10: 1.0})
+    key(obj, "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+    blurred.view_layers[0].use_pass_vector = True
+    recorded = export(blurred)
+    (mesh,) = recorded.meshes.values()
+    assert np.allclose(mesh.positions[:, 0, 2], [0.4, 0.5, 0.6], atol=1e-5)
+    assert np.allclose(mesh.shutter[:, 0, 2], [0.475, 0.5, 0.525], atol=1e-5)
+    assert np.allclose([recorded.instances[name][0][3][0] for name in ("previous", "next")], [4.0, 6.0], atol=1e-5)
+
+
+def test_a_mesh_that_changes_its_topology_stands_still_with_one_warning(blurred: bpy.types.Scene) -> None:
+    for name in ("First", "Second"):
+        obj = recording.add(recording.grid(2, name=name), name)
+        modifier = obj.modifiers.new("Array", "ARRAY")
+        key(modifier, "count", {4: 1, 5: 4, 6: 9})
+    recorded = export(blurred)
+    assert all(mesh.shutter is None for mesh in recorded.meshes.values())
+    assert len([text for text in recorded.warnings if "another mesh" in text]) == 1
+
+
+def test_velocities_blur_meshes_whose_topology_changes(blurred: bpy.types.Scene) -> None:
+    mesh = recording.grid(1)
+    velocity = mesh.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
+    for item in velocity.data:
+        item.vector = (24.0, 0.0, 0.0)  # metres per second, at 24 frames per second
+    recording.add(mesh)
+    (found,) = export(blurred).meshes.values()
+    assert np.allclose(found.shutter[:, :, 0] - found.positions[0][:, 0], [[-0.25] * 4, [0.25] * 4], atol=1e-6)
+
+
+def test_the_curve_of_the_shutter_is_handed_over(blurred: bpy.types.Scene) -> None:
+    recording.add(recording.grid(1))
+    assert export(blurred).shutter["curve"] is None, "open all the time"
+    mapping = blurred.render.motion_blur_shutter_curve
+    points = mapping.curves[0].points
+    points[0].location, points[1].location = (0.0, 0.0), (1.0, 1.0)
+    points[0].handle_type = points[1].handle_type = "VECTOR"
+    mapping.update()
+    found = export(blurred).shutter["curve"]
+    assert np.allclose(found, np.linspace(0.0, 1.0, len(found)), atol=0.01)
+
+
+def test_the_view_layer_may_leave_it_out(blurred: bpy.types.Scene) -> None:
+    key(recording.add(recording.grid(1)), "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+    blurred.view_layers[0].use_motion_blur = False
+    recorded = export(blurred)
+    assert recorded.instances["shutter"] == [None]
+    assert recorded.shutter["close"] <= recorded.shutter["open"]
+
+
+def test_objects_have_steps_and_switches_of_their_own(blurred: bpy.types.Scene) -> None:
+    objects = [recording.add(recording.grid(1, name=name), name) for name in ("Sharp", "Smooth", "Rigid")]
+    if not hasattr(objects[0], "cycles"):
+        pytest.skip("Cycles, which has the settings, is not in this Blender")
+    for obj in objects:
+        key(obj, "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+        moving_key_shape(obj, (0, 0, 1), {0: 0.0, 10: 1.0})
+    objects[0].cycles.use_motion_blur = False
+    objects[1].cycles.motion_steps = 3
+    objects[2].cycles.use_deform_motion = False
+    recorded = export(blurred)
+    found = dict(zip(recorded.instances["names"], recorded.instances["shutter"], strict=True))
+    meshes = {mesh.name: mesh.shutter for mesh in recorded.meshes.values()}
+    assert found["Sharp"] is None and meshes["Sharp"] is None
+    assert len(found["Smooth"]) == 9 and len(meshes["Smooth"]) == 9
+    assert len(found["Rigid"]) == 3 and meshes["Rigid"] is None
+
+
+# ------------------------------------------------------------------------------------------------ pictures
+
+
+def glowing(obj: bpy.types.Object) -> None:
+    material = new_material()
+    rgb = material.node_tree.nodes.new("ShaderNodeRGB")
+    rgb.outputs[0].default_value = (1.0, 1.0, 1.0, 1.0)
+    show(material, rgb.outputs[0])
+    obj.data.materials.append(material)
+
+
+def test_a_square_that_flies_by_leaves_a_trapezium_of_light(blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:
+    """2 m wide, 2 m in the half frame that the shutter is open: a tent, by closed form."""
+    obj = recording.add(recording.grid(1))
+    glowing(obj)
+    key(obj, "location", {0: (-20, 0, 0), 10: (20, 0, 0)})
+    found = render(blurred, frame=5, samples=256, pixel_filter="BOX", **EXACT)["Combined"][18, :, 0]
+    centres = (np.arange(64) + 0.5) / 16.0 - 2.0
+    expected = np.clip(1.0 - np.abs(centres) / 2.0, 0.0, 1.0)
+    assert np.abs(found - expected).max() < 0.05
+    assert np.abs(found - expected).mean() < 0.01
+
+
+def test_vectors_are_0_under_blur_unless_they_are_asked_for(blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:
+    obj = recording.add(recording.grid(1, 6.0))
+    key(obj, "location", {0: (0, 0, 0), 10: (1, 0, 0)})
+    blurred.view_layers[0].use_pass_vector = True
+    assert not render(blurred, frame=5, samples=4, **EXACT)["Vector"].any()
+    found = render(blurred, frame=5, samples=4, vector_with_motion_blur=True, **EXACT)["Vector"]
+    assert np.allclose(found, (-1.6, 0.0, -1.6, 0.0), atol=0.01)
+
+
+def _turning(scene: bpy.types.Scene) -> None:
+    obj = recording.add(recording.grid(1, 2.5))
+    obj.scale = (1.0, 0.3, 1.0)
+    glowing(obj)
+    key(obj, "rotation_euler", {0: (0, 0, 0), 10: (0, 0, 25.0)})
+
+
+def _deforming(scene: bpy.types.Scene) -> None:
+    obj = recording.add(recording.grid(3, 2.0))
+    glowing(obj)
+    moving_key_shape(obj, (1.0, 0.5, 0.0), {0: -5.0, 10: 5.0})
+
+
+def _orbit(scene: bpy.types.Scene) -> None:
+    glowing(recording.add(recording.grid(1, 1.0), "Left", (-1, 0, 0)))
+    scene.camera.data.type = "PERSP"
+    key(scene.camera, "rotation_euler", {0: (0, 0, -5.0), 10: (0, 0, 5.0)})
+    key(scene.camera.data, "lens", {0: 20.0, 10: 120.0})
+
+
+def _instances(scene: bpy.types.Scene) -> None:
+    collection = bpy.data.collections.new("Parts")
+    part = bpy.data.objects.new("Part", recording.grid(1, 0.5))
+    collection.objects.link(part)
+    glowing(part)
+    for index in range(3):
+        empty = recording.add(None, f"Copy {index}", (0, index - 1.0, 0))
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        key(empty, "location", {0: (-10.0 * index, index - 1.0, 0), 10: (10.0 * index, index - 1.0, 0)})
+
+
+def _velocities(scene: bpy.types.Scene) -> None:
+    mesh = recording.grid(1, 1.0)
+    velocity = mesh.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
+    for index, item in enumerate(velocity.data):
+        item.vector = (48.0 if index % 2 else 12.0, 10.0, 0.0)
+    glowing(recording.add(mesh))
+
+
+SCENES = {"turning": _turning, "deforming": _deforming, "orbit": _orbit, "instances": _instances, "velocities": _velocities}
+
+
+@pytest.mark.parametrize("position", ["CENTER", "START"])
+@pytest.mark.parametrize("name", SCENES)
+def test_a9_blur_is_that_of_cycles(name: str, position: str, blurred: bpy.types.Scene, tmp_path: Path) -> None:
+    if position_owner(blurred) is None:
+        pytest.skip("there is no Cycles in this Blender")
+    if (name, position) == ("velocities", "START"):
+        pytest.skip("Cycles centres velocities at the frame whatever the position says")
+    position_owner(blurred).motion_blur_position = position
+    SCENES[name](blurred)
+    for obj in blurred.objects:
+        obj.cycles.motion_steps = 3
+    blurred.cycles.samples, blurred.cycles.use_adaptive_sampling, blurred.cycles.use_denoising = 512, False, False
+    blurred.cycles.pixel_filter_type = "BOX"
+    pictures = {}
+    for engine in ("CYCLES", "GRADUS"):
+        blurred.render.engine = engine
+        pictures[engine] = images.render(blurred, tmp_path, frame=5, samples=512, pixel_filter="BOX", **EXACT)["Combined"][:, :, :3]
+    difference = np.abs(pictures["CYCLES"] - pictures["GRADUS"])
+    assert pictures["CYCLES"].mean() > 0.01
+    assert difference.mean() < 0.01 * pictures["CYCLES"].mean() + 1e-3
+    assert np.quantile(difference, 0.99) < 0.05
