@@ -101,7 +101,7 @@ TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
     desc.aperture_radius = 0.0f;
     const Camera pinhole(desc, 640, 360);
     const Vec2 film(500, 70);
-    const Ray sharp = pinhole.ray(film, Vec2(0.0f));
+    const Ray sharp = pinhole.ray({film});
     const Vec3 focus = sharp.origin + sharp.direction * (4.0f * sharp.t_min / 0.1f);
     gradus::testing::Random random(5);
     for (int i = 0; i < 100; ++i) {
