@@ -2,9 +2,9 @@
 #include <cmath>
 #include <map>
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "sampling/lattice.h"
 #include "shading/program_builder.h"
@@ -60,7 +60,8 @@ void add_many_lights(PathScene* scene) {
 
 // A large light that swings, a ball that swells while it flies, and an eye that moves aside.
 void add_motion(PathScene* scene) {
-  scene->scene.way = {test::translation(Vec3(-0.2f, 0, 0)), test::translation(Vec3(0.3f, -0.4f, 0)) * glm::rotate(Mat4(1.0f), 0.5f, Vec3(0, 0, 1))};
+  scene->scene.way = {test::translation(Vec3(-0.2f, 0, 0)),
+                      test::translation(Vec3(0.3f, -0.4f, 0)) * glm::rotate(Mat4(1.0f), 0.5f, Vec3(0, 0, 1))};
   test::add_ceiling_light(scene, 1.5f, 1.4f);
   scene->scene.way = {Mat4(1.0f), test::translation(Vec3(-0.3f, 0.3f, 0))};
   scene->swelling = 1.5f;

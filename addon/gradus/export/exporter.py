@@ -101,6 +101,7 @@ class _Sync:
         resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
         self._deforming: dict[InstanceKey, _Deforming] = {}
+        self._sharp: list[str] = []  # objects that cannot be blurred
 
     def _resolution(self) -> tuple[int, int]:
         if self._view is not None:
@@ -128,6 +129,10 @@ class _Sync:
         for key, found in self._deforming.items():
             self._add_motion(key, found, moments)
             mesh_of[found.place] = self._set_mesh(found.arrays)
+        if self._sharp:
+            self.warnings.add(
+                f"Another topology at another moment: the deformation of {len(self._sharp)} objects is not blurred, the first is '{self._sharp[0]}'"
+            )
         self._set_instances(collected, mesh_of, moments)
         self._set_camera(now, moments)
 
@@ -164,7 +169,7 @@ class _Sync:
             return
         arrays.blur = motion.mesh_blur(key, arrays, found.entry.blur, shutter, moments)
         if arrays.blur is None and found.entry.blur.deform and motion.changes_topology(key, moments):
-            self.warnings.add(f"Object '{found.entry.name}' has another mesh at every moment: its deformation is not blurred")
+            self._sharp.append(found.entry.name)
 
     # Meshes
 

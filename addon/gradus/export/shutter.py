@@ -30,7 +30,8 @@ def shutter_of(scene: Any, view_layer: Any) -> Shutter | None:
         return None
     length = render.motion_blur_shutter
     start = {"START": 0.0, "END": -length}.get(_position(scene), -0.5 * length)
-    return Shutter(start, start + length, _curve(render.motion_blur_shutter_curve))
+    # The original's curve: evaluated copies do not learn of changes to it.
+    return Shutter(start, start + length, _curve(scene.original.render.motion_blur_shutter_curve))
 
 
 def position_owner(scene: Any) -> Any:
@@ -63,7 +64,7 @@ SHARP = Blur()
 
 
 def blur_of(obj: Any, parent: Any = None) -> Blur:
-    """As Cycles has it: the instancer's switches count, too, and the larger number of steps. Without Cycles in this Blender its defaults."""
+    """As Cycles has it: the instancer's switches count, too, and the larger number of steps. Its defaults where Cycles is switched off."""
     owners = [getattr(owner, "cycles", None) for owner in ((obj,) if parent is None else (obj, parent))]
     if not all(getattr(settings, "use_motion_blur", True) for settings in owners):
         return SHARP

@@ -189,8 +189,8 @@ void PassRecorder::mist(const Rgb& weight, const Vec3& position, float time) {
   }
   const GradusWorld& world = context_.scene.world;
   const bool orthographic = context_.scene.camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
-  const float distance = orthographic ? std::fabs(context_.camera.depth(position, time))
-                                      : glm::length(position - context_.camera.position(time));
+  const float distance =
+      orthographic ? std::fabs(context_.camera.depth(position, time)) : glm::length(position - context_.camera.position(time));
   const float range = std::max(world.mist_depth, 1e-6f);
   float value = std::clamp((distance - world.mist_start) / range, 0.0f, 1.0f);
   if (world.mist_falloff == GRADUS_MIST_QUADRATIC) {

@@ -74,8 +74,8 @@ std::shared_ptr<const MeshScene> build_mesh_scene(const std::shared_ptr<Device>&
   built->mesh = mesh;
   built->scene = rtcNewScene(device->embree());
   const bool deforms = mesh->shutter_keys > 0;
-  attach_triangles(device->embree(), built->scene, 0, 0xffffffffu, *mesh,
-                   deforms ? mesh->shutter_positions.data() : mesh->rest_positions(), deforms ? mesh->shutter_keys : 1);
+  attach_triangles(device->embree(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->rest_positions(),
+                   deforms ? mesh->shutter_keys : 1);
   commit_scene(device->embree(), built->scene, progress, at, at);
   return built;
 }

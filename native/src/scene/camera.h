@@ -14,7 +14,7 @@ enum class Moment { Now, Previous, Next };
 
 // What a camera ray is a function of.
 struct CameraSample {
-  Vec2 film;  // pixels of the full frame, origin at the lower left corner, pixel centres at +0.5
+  Vec2 film;               // pixels of the full frame, origin at the lower left corner, pixel centres at +0.5
   Vec2 lens = Vec2(0.0f);  // [0,1)², ignored by pinholes
   float time = 0.0f;       // of the shutter
 
@@ -69,7 +69,7 @@ class Camera {
 
   GradusCamera desc_{};
   std::array<Pose, 3> poses_;
-  MatrixKeys keys_;                             // while the shutter is open; empty: at rest
+  MatrixKeys keys_;                            // while the shutter is open; empty: at rest
   std::vector<std::array<float, 4>> windows_;  // with its own keys; empty: as in the frame
   uint32_t width_ = 0;
   uint32_t height_ = 0;

@@ -9,7 +9,9 @@ namespace {
 
 constexpr uint32_t kMaxCurve = 1u << 16;
 
-std::vector<float> copy(const float* data, size_t count) { return data != nullptr ? std::vector<float>(data, data + count) : std::vector<float>(); }
+std::vector<float> copy(const float* data, size_t count) {
+  return data != nullptr ? std::vector<float>(data, data + count) : std::vector<float>();
+}
 
 const float* pointer(const std::vector<float>& values) { return values.empty() ? nullptr : values.data(); }
 

@@ -99,8 +99,8 @@ void place_camera(const Scene::State& state, Snapshot* snapshot) {
 
 // Whether the moment within the shutter makes a difference.
 void find_motion(Snapshot* snapshot) {
-  const bool moves = snapshot->camera.shutter_key_count > 0 || std::any_of(snapshot->instances.begin(), snapshot->instances.end(),
-                                                                           [](const InstanceData& i) { return i.moves(); });
+  const bool moves = snapshot->camera.shutter_key_count > 0 ||
+                     std::any_of(snapshot->instances.begin(), snapshot->instances.end(), [](const InstanceData& i) { return i.moves(); });
   snapshot->features.has_motion = moves && snapshot->shutter.opens();
 }
 

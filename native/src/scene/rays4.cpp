@@ -44,7 +44,8 @@ Lanes3 offset_origins(const Points4& points, const Lanes3& direction) {
 
 Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d, float time) {
   return {lanes(a.position, b.position, c.position, d.position),
-          lanes(a.geometric_normal, b.geometric_normal, c.geometric_normal, d.geometric_normal), Lanes{a.error, b.error, c.error, d.error}, time};
+          lanes(a.geometric_normal, b.geometric_normal, c.geometric_normal, d.geometric_normal), Lanes{a.error, b.error, c.error, d.error},
+          time};
 }
 
 Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfacePoint& to) {

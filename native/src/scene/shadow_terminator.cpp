@@ -29,7 +29,8 @@ Vec3 shadow_origin(const Snapshot& scene, const SurfacePoint& point, const Vec3&
   if (share == 0.0f) return offset_origin(point, direction);
   const InstanceData& instance = scene.instances[point.hit.instance];
   std::array<Vec3, 3> normals{};
-  triangle_normals_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time, &normals);  // it has them: without, the point's offset is 0
+  triangle_normals_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time,
+                              &normals);  // it has them: without, the point's offset is 0
   Placement room;
   const Placement& placement = instance.placement(point.hit.time, &room);
   // The side of the smooth surface on which the light lies; from within, the bulge points inwards.
@@ -38,7 +39,8 @@ Vec3 shadow_origin(const Snapshot& scene, const SurfacePoint& point, const Vec3&
   const float side = std::copysign(1.0f, glm::dot(smooth, outside));
   for (Vec3& n : normals) n = side * safe_unit(n, Vec3(0.0f));
   const Vec2 b = point.hit.barycentric;
-  const float height = share * bulge(triangle_positions_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time), normals, Vec3(1.0f - b.x - b.y, b.x, b.y));
+  const float height = share * bulge(triangle_positions_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time), normals,
+                                     Vec3(1.0f - b.x - b.y, b.x, b.y));
   SurfacePoint lifted = point;
   if (height < kInfinity) lifted.position += Mat3(placement.to_world) * (height * interpolate(normals, b));
   return offset_origin(lifted, outside);

@@ -30,8 +30,8 @@ struct FlatTriangle;  // scene/flat_triangle.h
 struct InstanceData : Placement {
   std::shared_ptr<const MeshData> mesh;
   const FlatTriangle* flat_triangles = nullptr;  // where the mesh lies in the top level; owned by the accelerator
-  std::shared_ptr<const MatrixKeys> keys;  // while the shutter is open; nullptr: it stands still
-  bool deforms = false;                    // its mesh has positions of its own for that time
+  std::shared_ptr<const MatrixKeys> keys;        // while the shutter is open; nullptr: it stands still
+  bool deforms = false;                          // its mesh has positions of its own for that time
   Mat4 to_world_previous{1.0f};
   Mat4 to_world_next{1.0f};
   bool mirrored = false;

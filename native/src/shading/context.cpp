@@ -50,9 +50,7 @@ const Placement& placement_of(const ShadeContext& c, Placement* room) { return c
 
 Vec3 world_position(const ShadeContext& c) { return c.is_background || !c.snapshot ? c.position : c.position + c.snapshot->origin; }
 
-std::array<Vec3, 3> world_corners(const ShadeContext& c) {
-  return c.snapshot->corners(c.hit.instance, c.hit.triangle, c.hit.time);
-}
+std::array<Vec3, 3> world_corners(const ShadeContext& c) { return c.snapshot->corners(c.hit.instance, c.hit.triangle, c.hit.time); }
 
 ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& p, const Vec3& step) {
   ShadeContext c = context;

@@ -83,8 +83,8 @@ TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
         const double depth = blender.orthographic ? 1.0 : -local.z;
         EXPECT_NEAR((p.m00 * local.x / depth + p.axis_x + 1) * 0.5 * w, film.x, tolerance);
         EXPECT_NEAR((p.m11 * local.y / depth + p.axis_y + 1) * 0.5 * h, film.y, tolerance);
-        EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_min), 0.1f, 1e-5f);
-        EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_max), 1000.0f, 0.1f);
+        EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_min, ray.time), 0.1f, 1e-5f);
+        EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_max, ray.time), 1000.0f, 0.1f);
       }
       Vec2 film;
       EXPECT_FALSE(camera.project(Vec3(kPose * Vec4(0, 0, 1, 1)), Moment::Now, &film));
@@ -108,7 +108,7 @@ TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
       const Ray ray = camera.ray({film, random.get2()});
       const Vec3 to_focus = focus - ray.origin;
       EXPECT_NEAR(glm::length(glm::cross(ray.direction, to_focus)), 0.0f, 1e-5f);
-      EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_min), 0.1f, 1e-5f);
+      EXPECT_NEAR(camera.depth(ray.origin + ray.direction * ray.t_min, ray.time), 0.1f, 1e-5f);
     }
   }
 }

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace gradus {
 namespace {
@@ -36,7 +36,8 @@ TEST(MatrixKeys, PassesThroughItsKeysExactly) {
 }
 
 TEST(MatrixKeys, StraightMotionNeedsNoMoreKeys) {
-  const glm::dmat4 a = glm::scale(turn(0.7), glm::dvec3(1, 2, 3)), b = glm::scale(glm::translate(turn(0.7), glm::dvec3(1, 2, 3)), glm::dvec3(2));
+  const glm::dmat4 a = glm::scale(turn(0.7), glm::dvec3(1, 2, 3)),
+                   b = glm::scale(glm::translate(turn(0.7), glm::dvec3(1, 2, 3)), glm::dvec3(2));
   const MatrixKeys keys({a, b});
   EXPECT_EQ(keys.keys().size(), 2u);
   const Mat4 middle = keys.at(0.5f);

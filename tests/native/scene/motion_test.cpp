@@ -1,6 +1,6 @@
 // What moves while the shutter is open: rays meet it where it is at their time, and leave it without meeting it again.
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "path/segment.h"
 #include "scene/mesh.h"
@@ -25,7 +25,8 @@ std::shared_ptr<const Snapshot> moving_spheres() {
   deforming.desc.shutter_positions = &keys[0].x;
   deforming.desc.normal_domain = GRADUS_DOMAIN_POINT;
   scene.scene.set_mesh(2, deforming.desc);
-  scene.way = {translation(Vec3(-0.5f, 0, 0)), translation(Vec3(1, 0.5f, 0)) * turn(2.0f, glm::normalize(Vec3(1, 1, 0))) * scaling(Vec3(1.3f))};
+  scene.way = {translation(Vec3(-0.5f, 0, 0)),
+               translation(Vec3(1, 0.5f, 0)) * turn(2.0f, glm::normalize(Vec3(1, 1, 0))) * scaling(Vec3(1.3f))};
   scene.instance(1, translation(Vec3(-3, 0, 0)));
   scene.way = {Mat4(1.0f), translation(Vec3(0, 0, 1)), translation(Vec3(0, 0, 1.5f))};
   scene.instance(2, scaling(Vec3(-1, 1, 1)));
@@ -96,7 +97,9 @@ TEST(Motion, PacketsHaveTheTimesOfTheirRays) {
       Hit one;
       snapshot->intersect(rays[k], GRADUS_VISIBLE_CAMERA, &one);
       ASSERT_EQ(one.instance, four[k].instance);
-      if (one.valid()) ASSERT_EQ(one.time, four[k].time);
+      if (one.valid()) {
+        ASSERT_EQ(one.time, four[k].time);
+      }
     }
   }
 }
@@ -157,9 +160,7 @@ TEST(Motion, BrokenKeysCostTheMotionOrTheTriangle) {
 }
 
 // The time of a shutter that never opens makes no difference, and costs nothing.
-TEST(Motion, WithoutAShutterNothingMoves) {
-  EXPECT_FALSE(moving_spheres()->features.has_motion);
-}
+TEST(Motion, WithoutAShutterNothingMoves) { EXPECT_FALSE(moving_spheres()->features.has_motion); }
 
 }  // namespace
 }  // namespace gradus::test

@@ -126,7 +126,7 @@ TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
     EXPECT_LT(glm::length(camera.way(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
     ASSERT_TRUE(camera.project_direction(ray.direction, Moment::Now, &back));
     EXPECT_LT(glm::length(camera.way(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
-    EXPECT_NEAR(camera.depth(ray.origin + ray.direction * 7.0f), 7.0f, 1e-5f);
+    EXPECT_NEAR(camera.depth(ray.origin + ray.direction * 7.0f, ray.time), 7.0f, 1e-5f);
     EXPECT_EQ(ray.t_min, 0.1f);
     EXPECT_EQ(ray.t_max, 1000.0f);
     ++seen;

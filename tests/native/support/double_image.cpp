@@ -23,7 +23,7 @@ class DoubleObserver : public NoObserver {
   explicit DoubleObserver(const PathContext& context) : context_(context) {}
   DVec3 radiance = DVec3(0.0);
 
-  void begin(const Sampler&, const Vec2&, const Vec2&) {
+  void begin(const Sampler&, const CameraSample&) {
     radiance = DVec3(0.0);
     throughput_ = DVec3(1.0);
   }

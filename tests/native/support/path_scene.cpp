@@ -398,9 +398,9 @@ void build(Scenario scenario, PathScene* scene) {
       break;
     case Scenario::Moving: {  // a light that turns and swings by, a ball that swells, a mirror and a glass ball that fly, under a moving eye
       Surface light;
-      light.emission = Rgb(10.0f, 8.0f, 6.0f);
+      light.emission = Rgb(4.0f, 3.2f, 2.4f);
       scene->scene.way = {translation(Vec3(-0.3f, 0, 0)), glm::rotate(translation(Vec3(0.3f, 0, 0)), 1.2f, Vec3(0, 0, 1))};
-      scene->quad(Vec3(-0.25f, 0.5f, -0.25f), Vec3(0.5f, 0, 0), Vec3(0, 0, 0.5f), scene->material(light));
+      scene->quad(Vec3(-0.4f, 0.5f, -0.4f), Vec3(0.8f, 0, 0), Vec3(0, 0, 0.8f), scene->material(light));
       scene->scene.way = {translation(Vec3(0, -0.15f, 0)), Mat4(1.0f), translation(Vec3(0.1f, 0.2f, 0))};
       scene->ball(Vec3(-0.5f, -0.6f, 0.3f), 0.3f, scene->material(glossy(0.0f)), 8, true);
       scene->scene.way = {Mat4(1.0f), translation(Vec3(0, 0.2f, 0.1f))};

@@ -127,8 +127,7 @@ void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
 }
 
 Points4 OffsetPaths::own_points() const {
-  return gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point, offsets_[3].here->point,
-                camera_sample_.time);
+  return gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point, offsets_[3].here->point, camera_sample_.time);
 }
 
 bool OffsetPaths::any(OffsetStage stage) const {

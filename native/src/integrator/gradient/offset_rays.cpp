@@ -33,8 +33,8 @@ void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
   o->fresh = true;
 }
 
-// Same position in the pixel, same point of the lens, same moment: the camera's part of r is 1. With a lens the four rays are traced together; without
-// one most are known, and a packet of the one that leaves the cell would take as long as three rays.
+// Same position in the pixel, same point of the lens, same moment: the camera's part of r is 1. With a lens the four rays are traced
+// together; without one most are known, and a packet of the one that leaves the cell would take as long as three rays.
 void OffsetPaths::trace_camera(const PathState& state) {
   Ray rays[kOffsets];
   Hit hits[kOffsets];
