@@ -32,8 +32,9 @@ def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
 
 
 def curves(block: bpy.types.ID) -> list:
+    """Of all that shares its action, as an object and its data do from 4.4 on."""
     action = block.animation_data.action
-    if hasattr(action, "fcurves"):
+    if not hasattr(action, "layers"):
         return list(action.fcurves)
     return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
 
@@ -127,7 +128,7 @@ def test_a_mesh_that_changes_its_topology_stands_still_with_one_warning(blurred:
         key(modifier, "count", {4: 1, 5: 4, 6: 9})
     recorded = export(blurred)
     assert all(mesh.shutter is None for mesh in recorded.meshes.values())
-    assert len([text for text in recorded.warnings if "another moment" in text]) == 1
+    assert len([text for text in recorded.warnings if "Topology changes" in text]) == 1
 
 
 def test_velocities_blur_meshes_whose_topology_changes(blurred: bpy.types.Scene) -> None:
@@ -257,8 +258,8 @@ SCENES = {"turning": _turning, "deforming": _deforming, "orbit": _orbit, "instan
 def test_a9_blur_is_that_of_cycles(name: str, position: str, blurred: bpy.types.Scene, tmp_path: Path) -> None:
     if position_owner(blurred) is None:
         pytest.skip("there is no Cycles in this Blender")
-    if (name, position) == ("velocities", "START"):
-        pytest.skip("Cycles centres velocities at the frame whatever the position says")
+    if name == "velocities" and (position == "START" or bpy.app.version < (4, 0, 0)):
+        pytest.skip("Cycles centres velocities at the frame whatever the position says, and in 3.4 it has another unit")
     position_owner(blurred).motion_blur_position = position
     SCENES[name](blurred)
     for obj in blurred.objects:

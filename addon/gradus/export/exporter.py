@@ -130,9 +130,8 @@ class _Sync:
             self._add_motion(key, found, moments)
             mesh_of[found.place] = self._set_mesh(found.arrays)
         if self._sharp:
-            self.warnings.add(
-                f"Another topology at another moment: the deformation of {len(self._sharp)} objects is not blurred, the first is '{self._sharp[0]}'"
-            )
+            count, first = len(self._sharp), self._sharp[0]
+            self.warnings.add(f"Topology changes: the deformation of {count} objects is not blurred, the first is '{first}'")
         self._set_instances(collected, mesh_of, moments)
         self._set_camera(now, moments)
 

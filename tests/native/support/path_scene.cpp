@@ -396,7 +396,7 @@ void build(Scenario scenario, PathScene* scene) {
       scene->camera_desc.panorama = GRADUS_PANORAMA_FISHEYE_EQUIDISTANT;
       scene->camera_desc.fisheye_fov = 3.0f;
       break;
-    case Scenario::Moving: {  // a light that turns and swings by, a ball that swells, a mirror and a glass ball that fly, under a moving eye
+    case Scenario::Moving: {  // a light that turns, a ball that swells, a mirror and a glass ball that fly, seen by a moving eye
       Surface light;
       light.emission = Rgb(4.0f, 3.2f, 2.4f);
       scene->scene.way = {translation(Vec3(-0.3f, 0, 0)), glm::rotate(translation(Vec3(0.3f, 0, 0)), 1.2f, Vec3(0, 0, 1))};
