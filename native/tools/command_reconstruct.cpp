@@ -12,6 +12,8 @@ struct ReconstructArguments {
 };
 
 int run(const ReconstructArguments& args) {
+  check_apart("--output", args.output, args.frame);
+  for (const std::string& path : args.merged) check_apart("--output", args.output, path);
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   client::Frame frame = client::Frame::load(device, args.frame);
   for (const std::string& path : args.merged) frame.merge(client::Frame::load(device, path));

@@ -71,6 +71,8 @@ int run(const RenderArguments& args) {
   const client::Scene scene = client::Scene::load(device, args.scene, &settings);
   args.options.apply(&settings);
   const fs::path target = frame_path(args, settings.frame);
+  check_apart("--output", target.string(), args.scene);
+  if (!args.image.empty()) check_apart("--image", args.image, target.string());
   if (target.has_parent_path()) fs::create_directories(target.parent_path());
   std::signal(SIGINT, [](int) { interrupted = true; });
   const client::Frame frame = render_frame(device, scene, settings, target, args);

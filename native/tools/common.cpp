@@ -7,6 +7,8 @@
 namespace gradus::tool {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
@@ -34,6 +36,13 @@ std::string describe(const GradusOptionInfo& info) {
     text << " (default " << info.default_value << ")";
   }
   return text.str();
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code none;
+  if (fs::equivalent(a, b, none)) return true;
+  const fs::path name = fs::weakly_canonical(fs::absolute(a), none);  // neither may be there yet
+  return !name.empty() && name == fs::weakly_canonical(fs::absolute(b), none);
 }
 
 void parse_region(const std::string& text, GradusSettings* settings) {
@@ -88,6 +97,10 @@ uint64_t parse_passes(const std::string& text) {
 std::string exr_only(const std::string& path) {
   const std::string ending = canonical(std::filesystem::path(path).extension().string());
   return ending == ".exr" ? "" : path + ": only EXR images are read and written, FILE.exr";
+}
+
+void check_apart(const std::string& option, const std::string& written, const std::string& kept) {
+  if (is_same_file(written, kept)) throw CLI::ValidationError(option, written + " is " + kept + ", which it would replace");
 }
 
 uint32_t parse_choice(const std::string& option, const std::string& value) {

@@ -43,6 +43,9 @@ std::string exr_only(const std::string& path);
 // Value of `reconstruction` or `denoiser`; throws as the library does.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
+// Throws CLI::ValidationError, which is wrong usage, where `written` is the file `kept`, by whatever name or link.
+void check_apart(const std::string& option, const std::string& written, const std::string& kept);
+
 // Adds --denoiser-path, for what client::Device takes.
 void add_denoiser_path(CLI::App* command, std::string* path);
 

@@ -181,6 +181,28 @@ TEST_F(Tool, EndsWithACodeAndACause) {
   }
 }
 
+// The samples of the stored frame were lost: the picture took their place.
+TEST_F(Tool, WritesNoPictureOverTheFrameThatItIsMadeOf) {
+  ASSERT_EQ(run("render good.gradus -o f.exr").code, 0);
+  ASSERT_EQ(run("render good.gradus -o other.exr --first-sample 100").code, 0);
+  fs::create_symlink("f.exr", folder / "symbolic.exr");
+  fs::create_hard_link(folder / "f.exr", folder / "hard.exr");
+  fs::create_directory(folder / "sub");
+  const std::string frame = text("f.exr"), other = text("other.exr");
+  for (const char* arguments :
+       {"reconstruct f.exr -o f.exr", "reconstruct f.exr -o sub/../f.exr", "reconstruct f.exr -o symbolic.exr",
+        "reconstruct symbolic.exr -o f.exr", "reconstruct f.exr -o hard.exr", "reconstruct f.exr --merge other.exr -o other.exr",
+        "render good.gradus -o f.exr --image f.exr", "render good.gradus -o new.exr --image sub/../new.exr"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_NE(outcome.err.find("which it would replace"), std::string::npos) << arguments << ": " << outcome.err;
+  }
+  EXPECT_EQ(text("f.exr"), frame);
+  EXPECT_EQ(text("other.exr"), other);
+  EXPECT_FALSE(fs::exists(folder / "new.exr"));
+  EXPECT_EQ(run("reconstruct f.exr --merge other.exr -o picture.exr").code, 0);
+}
+
 // EXR was written under the name of a PNG, with exit code 0.
 TEST_F(Tool, RefusesImagesThatAreNotExr) {
   ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction weighted").code, 0);
