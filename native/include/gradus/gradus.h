@@ -526,7 +526,7 @@ GRADUS_API GradusError gradus_render_start(GradusScene scene, const GradusSettin
  * 64 at once. settings.samples counts from the beginning. The frame itself does not change. */
 GRADUS_API GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFrame frame, GradusRender* render);
 GRADUS_API GradusError gradus_render_poll(GradusRender render, GradusProgress* progress);
-/* Asks it to stop. What was sampled stays readable; Combined is the last reconstruction of it that was shown, or the noisy image. */
+/* Asks it to stop. What was sampled stays readable; Combined is the last picture that was shown, if only at a quarter of the size, or the noisy image. */
 GRADUS_API GradusError gradus_render_cancel(GradusRender render);
 /* Blocks until done, cancelled or failed, or for at most `seconds` (negative: no limit). OK when it has ended well, CANCELLED or the
  * failure's code otherwise; INVALID_OPERATION while still running. */

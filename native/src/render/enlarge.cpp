@@ -34,19 +34,19 @@ Region covering(const Region& region, FrameSize full, FrameSize small) {
           end(region.y1, full.height, small.height)};
 }
 
-std::vector<float> enlarge(const std::vector<float>& rgba, const Region& region, FrameSize full, FrameSize small) {
+std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, FrameSize full, FrameSize small) {
   const Region from = covering(region, full, small);
   std::vector<Between> columns;
   for (int32_t x = region.x0; x < region.x1; ++x) columns.push_back(between(position(x, full.width, small.width), from.x0, from.x1));
-  std::vector<float> result(4 * size_t(region.area()));
+  std::vector<float> result(channels * size_t(region.area()));
   tbb::parallel_for(region.y0, region.y1, [&](int32_t y) {
     const Between rows = between(position(y, full.height, small.height), from.y0, from.y1);
-    const float* const below = rgba.data() + 4 * size_t(rows.first) * size_t(from.width());
-    const float* const above = rgba.data() + 4 * size_t(rows.second) * size_t(from.width());
-    float* to = result.data() + 4 * size_t(y - region.y0) * size_t(region.width());
+    const float* const below = image.data() + channels * size_t(rows.first) * size_t(from.width());
+    const float* const above = image.data() + channels * size_t(rows.second) * size_t(from.width());
+    float* to = result.data() + channels * size_t(y - region.y0) * size_t(region.width());
     for (const Between& column : columns) {
-      const size_t left = 4 * size_t(column.first), right = 4 * size_t(column.second);
-      for (size_t c = 0; c < 4; ++c) {
+      const size_t left = channels * size_t(column.first), right = channels * size_t(column.second);
+      for (size_t c = 0; c < channels; ++c) {
         const float lower = below[left + c] + column.share * (below[right + c] - below[left + c]);
         const float upper = above[left + c] + column.share * (above[right + c] - above[left + c]);
         *to++ = lower + rows.share * (upper - lower);

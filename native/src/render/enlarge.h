@@ -14,7 +14,7 @@ struct FrameSize {
 // Pixels of the frame `small` between whose centres those of `region`, a part of the frame `full`, lie.
 Region covering(const Region& region, FrameSize full, FrameSize small);
 
-// Bilinear. rgba: the pixels covering(region, full, small). Runs in the caller's arena.
-std::vector<float> enlarge(const std::vector<float>& rgba, const Region& region, FrameSize full, FrameSize small);
+// Bilinear. image: the pixels covering(region, full, small), their channels side by side. Runs in the caller's arena.
+std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, FrameSize full, FrameSize small);
 
 }  // namespace gradus

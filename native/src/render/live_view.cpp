@@ -28,10 +28,10 @@ void LiveView::show_quarter() {
   const Bill bill(&seconds_, &cpu_seconds_);
   const auto integrator = input_.make_integrator(quarter_settings(input_.settings), GRADUS_INTEGRATOR_PATH);
   QuarterPicture quarter;
-  arena_->execute([&] { quarter = render_quarter(*integrator, input_.settings, plan_.delivered, plan_.channels, stop_); });
+  arena_->execute([&] { quarter = render_quarter(*integrator, input_.settings, plan_, stop_); });
   if (is_stopped()) return;
   rule_.expect(quarter.seconds_per_pixel * double(plan_.sampled.area()));
-  picture_->show_preview(std::move(quarter.rgba));
+  picture_->show(std::move(quarter.rgba), std::move(quarter.error));
   tracker_->new_image();
 }
 

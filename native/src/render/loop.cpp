@@ -283,7 +283,6 @@ void RenderLoop::end(GradusError code, const std::string& text) noexcept {
     code_ = code;
     phase_ = code == GRADUS_OK ? GRADUS_PHASE_DONE : code == GRADUS_ERROR_CANCELLED ? GRADUS_PHASE_CANCELLED : GRADUS_PHASE_FAILED;
     picture_.end_tiles();
-    if (code != GRADUS_OK) picture_.forget_preview();
     if (code == GRADUS_OK) tracker_.raise_to(1.0f);
     tracker_.new_image();
     text_ = text;

@@ -30,24 +30,12 @@ void Picture::show(std::vector<float> rgba, std::vector<float> error) {
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
   error_ = std::move(error);
-  is_preview_ = false;
 }
 
 void Picture::show_denoised(std::vector<float> rgba, float error) {
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
   for (float& value : error_) value *= error;
-}
-
-void Picture::show_preview(std::vector<float> rgba) {
-  const std::lock_guard lock(mutex_);
-  combined_ = std::move(rgba);
-  is_preview_ = true;
-}
-
-void Picture::forget_preview() {
-  const std::lock_guard lock(mutex_);
-  if (is_preview_) combined_ = {};
 }
 
 void Picture::end_tiles() {

@@ -23,9 +23,6 @@ class Picture {
   void show(std::vector<float> rgba, std::vector<float> error);
   // In place of what was shown. error: its squared error, over that of what was shown.
   void show_denoised(std::vector<float> rgba, float error);
-  // Combined for the time being: of other samples than the frame's.
-  void show_preview(std::vector<float> rgba);
-  void forget_preview();
   // From now on the frame tells what the noisy image is.
   void end_tiles();
 
@@ -41,7 +38,6 @@ class Picture {
   mutable std::mutex mutex_;
   std::vector<float> noisy_, combined_;  // RGBA; empty where there is none
   std::vector<float> error_;
-  bool is_preview_ = false;  // combined_
 };
 
 }  // namespace gradus

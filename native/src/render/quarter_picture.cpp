@@ -41,20 +41,24 @@ GradusSettings quarter_settings(GradusSettings settings) {
   return settings;
 }
 
-QuarterPicture render_quarter(const Integrator& integrator, const GradusSettings& settings, const Region& region, int channels,
+QuarterPicture render_quarter(const Integrator& integrator, const GradusSettings& settings, const Plan& plan,
                               const std::atomic<bool>& stop) {
   const GradusSettings small = quarter_settings(settings);
-  Frame frame(small.width, small.height, covering(region, size_of(settings), size_of(small)), channels, 1, false);
+  const FrameSize full_size = size_of(settings), size = size_of(small);
+  Frame frame(small.width, small.height, covering(plan.delivered, full_size, size), plan.channels, 1, false);
   frame.passes = make_pass_planes(feature_passes(), size_t(frame.region.area()));
   frame.settings = small;
   sample(integrator, stop, &frame);
   const WallClock clock;
   const CancelTest cancel = [&stop] { return stop.load(std::memory_order_relaxed); };
   SolveReport report;
-  const std::vector<float> rgba = combine(frame, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, frame.region, cancel, &report);
+  std::vector<float> error;
+  std::vector<float>* const wanted = wants(plan.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
+  const std::vector<float> rgba = combine(frame, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, frame.region, cancel, &report, wanted);
   const double seconds = clock.seconds();
   if (cancel()) return {};
-  return {enlarge(rgba, region, size_of(settings), size_of(small)), seconds / double(frame.region.area())};
+  if (wanted) error = enlarge(error, 1, plan.delivered, full_size, size);
+  return {enlarge(rgba, 4, plan.delivered, full_size, size), std::move(error), seconds / double(frame.region.area())};
 }
 
 }  // namespace gradus

@@ -28,7 +28,7 @@ Region all_of(FrameSize size) { return {0, 0, int32_t(size.width), int32_t(size.
 TEST(Enlarge, APlaneStaysWhereItIs) {
   const FrameSize full{37, 22}, small{10, 6};  // sides that are no multiples
   const Region whole = all_of(full);
-  const std::vector<float> large = enlarge(picture(covering(whole, full, small), full, small, plane), whole, full, small);
+  const std::vector<float> large = enlarge(picture(covering(whole, full, small), full, small, plane), 4, whole, full, small);
   ASSERT_EQ(large.size(), size_t{4 * 37 * 22});
   for (int32_t y = 2; y < 20; ++y) {  // beyond the outermost centres there is nothing to go by
     for (int32_t x = 2; x < 35; ++x) {
@@ -42,11 +42,11 @@ TEST(Enlarge, APlaneStaysWhereItIs) {
 TEST(Enlarge, ARegionIsTheCropOfTheWhole) {
   const FrameSize full{64, 48}, small{16, 12};
   const auto wave = [](double x, double y, int c) { return std::sin(0.3 * x + c) * std::cos(0.2 * y); };
-  const std::vector<float> whole = enlarge(picture(all_of(small), full, small, wave), all_of(full), full, small);
+  const std::vector<float> whole = enlarge(picture(all_of(small), full, small, wave), 4, all_of(full), full, small);
   for (const Region& region : {Region{0, 0, 5, 7}, Region{21, 13, 22, 14}, Region{30, 20, 64, 48}}) {
     const Region from = covering(region, full, small);
     EXPECT_LT(from.area(), all_of(small).area());
-    const std::vector<float> part = enlarge(picture(from, full, small, wave), region, full, small);
+    const std::vector<float> part = enlarge(picture(from, full, small, wave), 4, region, full, small);
     for (int32_t y = region.y0; y < region.y1; ++y) {
       for (int32_t x = region.x0; x < region.x1; ++x) {
         const size_t i = 4 * (size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0)), k = 4 * (size_t(y) * 64 + size_t(x));
@@ -61,7 +61,7 @@ TEST(Enlarge, ConstantsStayInImagesOfAnySize) {
     const FrameSize small{(full.width + 3) / 4, (full.height + 3) / 4};
     const Region from = covering(all_of(full), full, small);
     EXPECT_EQ(from.area(), all_of(small).area());
-    for (const float v : enlarge(std::vector<float>(4 * size_t(from.area()), 0.7f), all_of(full), full, small)) ASSERT_EQ(v, 0.7f);
+    for (const float v : enlarge(std::vector<float>(4 * size_t(from.area()), 0.7f), 4, all_of(full), full, small)) ASSERT_EQ(v, 0.7f);
   }
 }
 

@@ -264,7 +264,43 @@ TEST(LiveView, ACancelEndsTheQuarter) {
   EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, region_of(settings)), read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
 }
 
-// What the frame's own samples have made stays; the quarter is of others.
+// It left raw noise, and holes where no sample had been taken, in place of the picture that was on the screen.
+TEST(LiveView, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
+  const GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
+  const Region all = region_of(settings);
+  std::atomic<bool> is_watched{false}, go_on{false};
+  std::atomic<int> tiles{0};
+  const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
+                              while (!is_watched) std::this_thread::yield();  // before sampling begins
+                              if (is_quarter(*fake, settings)) return;
+                              fake->before = [&](const WorkUnit&) {
+                                if (tiles++ < 4) return;
+                                while (!go_on) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                              };
+                            }));
+  read(*render, GRADUS_PASS_COMBINED, all);
+  is_watched = true;
+  wait_for([&] { return tiles > 4; });
+  const std::vector<float> seen = read(*render, GRADUS_PASS_COMBINED, all);
+  render->cancel();
+  go_on = true;
+  ASSERT_TRUE(render->wait(10.0));
+  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, all), seen);
+  const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, all), error = read(*render, GRADUS_PASS_ERROR, all);
+  int holes = 0;
+  double estimated = 0.0;
+  for (size_t i = 0; i < error.size(); ++i) {
+    holes += noisy[4 * i + 3] == 0.0f ? 1 : 0;
+    ASSERT_GT(seen[4 * i], 0.0f);
+    ASSERT_EQ(seen[4 * i + 3], 1.0f);
+    ASSERT_GE(error[i], 0.0f);
+    estimated += error[i];
+  }
+  EXPECT_GT(estimated, 0.0) << "that of the quarter";
+  EXPECT_GT(holes, 0) << "nothing to fill";
+}
+
+// What the frame's own samples have made is newer than the quarter, and stays.
 TEST(LiveView, ACancelLeavesTheReconstructionThatWasSeen) {
   GradusSettings settings = settings_of(96, 64, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   const auto render = start(settings, slow_factory());
@@ -422,7 +458,7 @@ std::vector<float> coarse(const std::vector<float>& image, const GradusSettings&
     const auto row = means.begin() + 4 * (ptrdiff_t(y) * small.width + part.x0);
     rows.insert(rows.end(), row, row + 4 * part.width());
   }
-  return enlarge(rows, region, full, small);
+  return enlarge(rows, 4, region, full, small);
 }
 
 TEST_F(WatchedScene, TheFirstPictureIsWhatAQuarterOfTheSizeCanShow) {
