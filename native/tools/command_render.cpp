@@ -70,6 +70,7 @@ int run(const RenderArguments& args) {
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   const client::Scene scene = client::Scene::load(device, args.scene, &settings);
   args.options.apply(&settings);
+  check_denoiser_path(args.denoiser_path, settings.denoiser);
   const fs::path target = frame_path(args, settings.frame);
   check_apart("--output", target.string(), args.scene);
   if (!args.image.empty()) check_apart("--image", args.image, target.string());

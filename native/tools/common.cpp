@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <sstream>
 
+#include "settings/options.h"
+
 namespace gradus::tool {
 namespace {
 
@@ -12,7 +14,10 @@ namespace fs = std::filesystem;
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  for (std::string part; std::getline(stream, part, ',');) {
+    const size_t begin = part.find_first_not_of(' '), end = part.find_last_not_of(' ');
+    parts.push_back(begin == std::string::npos ? "" : part.substr(begin, end + 1 - begin));
+  }
   return parts;
 }
 
@@ -36,6 +41,17 @@ std::string describe(const GradusOptionInfo& info) {
     text << " (default " << info.default_value << ")";
   }
   return text.str();
+}
+
+// What a parser throws.
+template <class Parse>
+std::string refusal(const Parse& parse) {
+  try {
+    parse();
+    return "";
+  } catch (const std::exception& e) {
+    return e.what();
+  }
 }
 
 bool is_same_file(const fs::path& a, const fs::path& b) {
@@ -65,10 +81,20 @@ void OptionFlags::add_to(CLI::App* command) {
     flags_.push_back(std::make_unique<Flag>(Flag{info.name, ""}));
     std::string name = info.name;
     for (char& c : name) c = c == '_' ? '-' : c;
-    command->add_option("--" + name, flags_.back()->value, describe(info))->type_name("VALUE")->group("Render options");
+    command->add_option("--" + name, flags_.back()->value, describe(info))
+        ->type_name("VALUE")
+        ->group("Render options")
+        ->check([option = flags_.back()->name](const std::string& value) { return bad_value(option, value); });
   }
-  command->add_option("--region", region_, "Part to render: x0,y0,x1,y1 in pixels, y up, upper bounds exclusive")->group("Render options");
-  command->add_option("--passes", passes_, "Passes besides Combined, separated by commas, or all")->group("Render options");
+  command->add_option("--region", region_, "Part to render: x0,y0,x1,y1 in pixels, y up, upper bounds exclusive")
+      ->group("Render options")
+      ->check([](const std::string& text) {
+        GradusSettings settings{};
+        return refusal([&] { parse_region(text, &settings); });
+      });
+  command->add_option("--passes", passes_, "Passes besides Combined, separated by commas, or all")
+      ->group("Render options")
+      ->check(bad_passes);
 }
 
 void OptionFlags::apply(GradusSettings* settings) const {
@@ -80,27 +106,44 @@ void OptionFlags::apply(GradusSettings* settings) const {
 }
 
 uint64_t parse_passes(const std::string& text) {
-  if (canonical(text) == "all") return (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
+  if (canonical(text) == "all") return kAllPasses;
   uint64_t mask = 1;
   for (const std::string& part : split(text)) {
     std::string all;
     uint32_t pass = 0;
-    for (; pass < GRADUS_PASS_COUNT && canonical(client::pass_name(pass)) != canonical(part); ++pass) {
-      all += (pass ? ", " : "") + canonical(client::pass_name(pass));
-    }
+    for (; pass < GRADUS_PASS_COUNT && typed_name(pass) != canonical(part); ++pass) all += (pass ? ", " : "") + typed_name(pass);
     if (pass == GRADUS_PASS_COUNT) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "there is no pass " + part + "; there are " + all);
     mask |= uint64_t{1} << pass;
   }
   return mask;
 }
 
+std::string typed_name(uint32_t pass) { return canonical(client::pass_name(pass)); }
+
 std::string exr_only(const std::string& path) {
   const std::string ending = canonical(std::filesystem::path(path).extension().string());
   return ending == ".exr" ? "" : path + ": only EXR images are read and written, FILE.exr";
 }
 
+std::string bad_value(const std::string& option, const std::string& value) {
+  return refusal([&] {
+    GradusSettings settings = client::default_settings();
+    client::check(gradus_settings_parse(&settings, option.c_str(), value.c_str()));
+    check_alpha(settings.reconstruction_alpha);
+  });
+}
+
+std::string bad_passes(const std::string& text) {
+  return refusal([&] { parse_passes(text); });
+}
+
 void check_apart(const std::string& option, const std::string& written, const std::string& kept) {
   if (is_same_file(written, kept)) throw CLI::ValidationError(option, written + " is " + kept + ", which it would replace");
+}
+
+void check_denoiser_path(const std::string& path, uint32_t denoiser) {
+  if (path.empty() || denoiser != GRADUS_DENOISER_NONE) return;
+  throw CLI::ValidationError("--denoiser-path", "is for --denoiser oidn or auto");
 }
 
 uint32_t parse_choice(const std::string& option, const std::string& value) {
@@ -119,7 +162,7 @@ void print_warnings(const client::Device& device, const client::Scene& scene) {
 }
 
 void add_denoiser_path(CLI::App* command, std::string* path) {
-  command->add_option("--denoiser-path", *path, "File or folder of libOpenImageDenoise.so.2, where the system does not find it");
+  command->add_option("--denoiser-path", *path, "libOpenImageDenoise.so.2 or the folder that holds it, where the system does not find it");
 }
 
 }  // namespace gradus::tool

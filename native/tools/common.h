@@ -35,16 +35,23 @@ class OptionFlags {
   std::string region_, passes_;
 };
 
-// Bit mask from names separated by commas ("depth,diffuse_direct", any case, '_', '-' and ' ' alike; "all"); throws with the names there
+inline constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
+// Bit mask from names separated by commas ("depth, diffuse_direct", any case, '_', '-' and ' ' alike; "all"); throws with the names there
 // are.
 uint64_t parse_passes(const std::string& text);
+// As it is typed: in lower case and with '_'.
+std::string typed_name(uint32_t pass);
 // For CLI::Option::check: what is wrong with a file name that does not end in .exr, the only format that the tool reads and writes.
 std::string exr_only(const std::string& path);
+// The same of values for the library's options, and of names of passes.
+std::string bad_value(const std::string& option, const std::string& value);
+std::string bad_passes(const std::string& text);
 // Value of `reconstruction` or `denoiser`; throws as the library does.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
-// Throws CLI::ValidationError, which is wrong usage, where `written` is the file `kept`, by whatever name or link.
+// Both throw CLI::ValidationError, which is wrong usage. The first where `written` is the file `kept`, by whatever name or link.
 void check_apart(const std::string& option, const std::string& written, const std::string& kept);
+void check_denoiser_path(const std::string& path, uint32_t denoiser);
 
 // Adds --denoiser-path, for what client::Device takes.
 void add_denoiser_path(CLI::App* command, std::string* path);

@@ -55,12 +55,18 @@ std::string check_version(const OidnApi& api) {
   return version;
 }
 
-// nullptr: not there; *error: what the loader says of it.
+// nullptr: not there; *error: what the loader says of it, without the name.
 void* load(const std::string& name, int flags, std::string* error) {
   void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL | flags);
   const char* const text = library ? nullptr : dlerror();
   if (text) *error = text;
+  if (error->rfind(name + ": ", 0) == 0) error->erase(0, name.size() + 2);  // whoever reports it names it
   return library;
+}
+
+bool is_there(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::exists(path, none);
 }
 
 std::string file_of(const OidnPlaces& places) {
@@ -77,13 +83,14 @@ std::shared_ptr<const OidnLibrary> find_oidn(const OidnPlaces& places, std::stri
     int flags;
     bool is_reported;  // that nothing is there
   } list[] = {{places.soname, RTLD_NOLOAD, false}, {file_of(places), 0, true}, {places.soname, 0, false}};
+  const std::string what = places.soname + " or the folder that holds it";
   std::string reasons;
   for (const Place& place : list) {
     if (place.name.empty()) continue;
     std::string error;
     try {
       void* const library = load(place.name, place.flags, &error);
-      if (!library && place.is_reported) throw Unusable(error);
+      if (!library && place.is_reported) throw Unusable(is_there(place.name) ? error : "there is no such file; it should be " + what);
       if (!library) continue;
       const OidnApi api = bind(library);
       return std::make_shared<OidnLibrary>(OidnLibrary{api, check_version(api)});

@@ -7,6 +7,7 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
+#include "frame/exr_problem.h"
 #include "frame/exr_stream.h"
 
 namespace gradus {
@@ -77,7 +78,7 @@ auto reading(const std::string& path, Function&& function) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
-    throw invalid_argument("cannot read " + path + ": " + e.what());
+    throw invalid_argument("cannot read " + path + ": " + exr_problem(e));
   }
 }
 

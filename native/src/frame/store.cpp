@@ -19,6 +19,7 @@
 #include "frame/block_file.h"
 #include "frame/block_rows.h"
 #include "frame/cells.h"
+#include "frame/exr_problem.h"
 #include "frame/exr_stream.h"
 #include "frame/store_planes.h"
 #include "settings/options.h"
@@ -243,7 +244,7 @@ std::shared_ptr<const Frame> load_frame(const std::string& path) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
-    throw invalid_argument("cannot load frame " + path + ": " + e.what());
+    throw invalid_argument("cannot load frame " + path + ": " + exr_problem(e));
   }
 }
 

@@ -78,6 +78,18 @@ TEST_F(FakeOidn, IsRefusedWithAReason) {
   EXPECT_TRUE(has(refusal({kFake, "libno_such_oidn.so"}), "it makes no device: the fake makes no device"));
 }
 
+// It named the path twice, and not what should lie there.
+TEST_F(FakeOidn, APathThatHoldsNothingIsNamedOnce) {
+  for (const std::string& path : {std::string("/no/such/lib.so"), kFolder, std::string(GRADUS_SOURCE_DIR "/README.md")}) {
+    const std::string text = refusal({path, "libno_such_oidn.so"});
+    const size_t first = text.find(path);
+    ASSERT_NE(first, std::string::npos) << text;
+    EXPECT_EQ(text.find(path, first + 1), std::string::npos) << text;
+    if (path.back() == 'd') continue;  // a file of something else
+    EXPECT_TRUE(has(text, "it should be libno_such_oidn.so or the folder that holds it")) << text;
+  }
+}
+
 // 2 x 2 pixels.
 const std::vector<float> kColor = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 const std::vector<float> kAlbedo(12, 0.5f), kNormal(12, 0.25f);

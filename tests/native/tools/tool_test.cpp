@@ -4,11 +4,13 @@
 #include <ImfInputFile.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "api/test_scene.h"
+#include "frame/image_exr.h"
 
 namespace gradus {
 namespace {
@@ -165,7 +167,6 @@ TEST_F(Tool, EndsWithACodeAndACause) {
   EXPECT_EQ(run("render missing.gradus -o store").code, 2);
   EXPECT_EQ(run("render good.gradus -o store --no-such-option 1").code, 2);
   const std::pair<const char*, const char*> failures[] = {
-      {"render good.gradus -o store --samples 0", "samples"},
       {"render good.gradus -o store --integrator path --reconstruction l2", "needs gradients"},
       {"render good.gradus -o store --stats no/such/folder/stats.jsonl", "no/such/folder/stats.jsonl"},
       {"render good.gradus -o good.gradus/store", "good.gradus/store"},
@@ -201,6 +202,81 @@ TEST_F(Tool, WritesNoPictureOverTheFrameThatItIsMadeOf) {
   EXPECT_EQ(text("other.exr"), other);
   EXPECT_FALSE(fs::exists(folder / "new.exr"));
   EXPECT_EQ(run("reconstruct f.exr --merge other.exr -o picture.exr").code, 0);
+}
+
+// They ended with the code of a failed render, some after the scene had been read.
+TEST_F(Tool, BadValuesAreWrongUsage) {
+  ASSERT_EQ(run("render good.gradus -o f.exr --reconstruction none").code, 0);
+  for (const char* arguments :
+       {"render good.gradus -o store --samples 0", "render good.gradus -o store --samples many",
+        "render good.gradus -o store --integrator x", "render good.gradus -o store --region 1,2,3",
+        "render good.gradus -o store --passes depth,nonsense", "reconstruct f.exr -o x.exr --reconstruction best",
+        "reconstruct f.exr -o x.exr --denoiser yes", "reconstruct f.exr -o x.exr --passes nonsense",
+        "reconstruct f.exr -o x.exr --reconstruction l2 --alpha -1", "reconstruct f.exr -o x.exr --reconstruction l2 --alpha 1e-9"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    const std::string given = arguments, last = given.substr(given.rfind("--"));
+    EXPECT_NE(outcome.err.find(last.substr(0, last.find(' '))), std::string::npos) << arguments << ": " << outcome.err;
+  }
+  EXPECT_FALSE(fs::exists(folder / "store"));
+  EXPECT_FALSE(fs::exists(folder / "x.exr"));
+}
+
+// Without a word.
+TEST_F(Tool, NoOptionIsIgnored) {
+  ASSERT_EQ(run("render good.gradus -o f.exr --integrator gradient").code, 0);
+  for (const char* how : {"auto", "none", "regularized"}) {
+    const Outcome outcome = run(std::string("reconstruct f.exr -o x.exr --alpha 0.3 --reconstruction ") + how);
+    EXPECT_EQ(outcome.code, 2) << how;
+    EXPECT_NE(outcome.err.find("is for --reconstruction l2, weighted or l1"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(run("reconstruct f.exr -o x.exr --alpha 0.3 --reconstruction l2").code, 0);
+  for (const char* command : {"render good.gradus -o store", "reconstruct f.exr -o y.exr"}) {
+    const Outcome outcome = run(std::string(command) + " --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so");
+    EXPECT_EQ(outcome.code, 2) << command;
+    EXPECT_NE(outcome.err.find("is for --denoiser oidn or auto"), std::string::npos) << outcome.err;
+  }
+}
+
+// "all" failed at the first pass that the frame was rendered without.
+TEST_F(Tool, AllPassesAreThoseThatTheFrameHolds) {
+  ASSERT_EQ(run("render good.gradus -o f.exr --integrator path --reconstruction regularized --passes 'depth, uv'").code, 0);
+  ASSERT_EQ(run("reconstruct f.exr -o all.exr --passes all").code, 0);
+  std::vector<std::string> names = image_channels((folder / "all.exr").string());
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  for (const char* name : {"R", "Noisy Image.R", "Depth.V", "UV.R", "Denoising Normal.R", "Error.V"}) EXPECT_TRUE(has(name)) << name;
+  for (const char* name : {"Mist.V", "Gradient X.R"}) EXPECT_FALSE(has(name)) << name;
+  const Outcome outcome = run("reconstruct f.exr -o x.exr --passes depth,mist,gradient_x");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("the frame was rendered without mist, gradient_x; it holds combined, noisy_image, depth"), std::string::npos)
+      << outcome.err;
+}
+
+int occurrences(const std::string& text, const std::string& part) {
+  int n = 0;
+  for (size_t i = text.find(part); i != std::string::npos; i = text.find(part, i + 1)) ++n;
+  return n;
+}
+
+// "cannot load frame f.exr: Cannot read image file "f.exr". Unexpected end of file."
+TEST_F(Tool, FilesThatAreCutShortAreNamedOnce) {
+  ASSERT_EQ(run("render good.gradus -o f.exr").code, 0);
+  const auto whole = fs::file_size(folder / "f.exr");
+  for (const auto& [size, cause] : {std::pair{uintmax_t{0}, ""},
+                                    {uintmax_t{3}, ""},
+                                    {uintmax_t{200}, "it is cut short"},
+                                    {whole / 2, "it is cut short"},
+                                    {whole - 1, ""}}) {
+    fs::copy_file(folder / "f.exr", folder / "short.exr", fs::copy_options::overwrite_existing);
+    fs::resize_file(folder / "short.exr", size);
+    const Outcome outcome = run("reconstruct short.exr -o x.exr");
+    EXPECT_EQ(outcome.code, 1) << size;
+    EXPECT_NE(outcome.err.find("cannot load frame short.exr: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(cause), std::string::npos) << size << ": " << outcome.err;
+    EXPECT_EQ(occurrences(outcome.err, "short.exr"), 1) << outcome.err;
+  }
+  const Outcome scene = run("reconstruct good.gradus -o x.exr");
+  EXPECT_NE(scene.err.find("cannot load frame good.gradus: it is no OpenEXR file"), std::string::npos) << scene.err;
 }
 
 // EXR was written under the name of a PNG, with exit code 0.
