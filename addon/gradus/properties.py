@@ -27,7 +27,7 @@ def _property(setting: Setting) -> Any:
     limits = {"min": setting.minimum, "max": setting.maximum, "soft_max": setting.soft_maximum or setting.maximum}
     if setting.kind == settings.INT:
         return IntProperty(**common, **{name: int(value) for name, value in limits.items()})
-    return FloatProperty(**common, **limits, precision=setting.precision)
+    return FloatProperty(**common, **limits, precision=setting.precision, unit=setting.unit)
 
 
 class GradusSceneSettings(bpy.types.PropertyGroup):

@@ -30,6 +30,7 @@ class Setting:
     precision: int = 3
     choices: tuple[tuple[str, str, str, int], ...] = ()  # identifier, label, meaning, native value
     native: bool = True
+    unit: str = "NONE"  # of Blender
 
     def value_of(self, identifier: str) -> int:
         """Native value of an enum identifier. Blender reads a stored number that it does not know as ""."""
@@ -55,7 +56,12 @@ RECONSTRUCTIONS = (
 )
 DENOISERS = (
     ("NONE", "None", "Deliver the reconstruction as it is", 0),
-    ("AUTO", "Automatic", "Open Image Denoise where this Blender has it, nothing where it has not", 1),
+    (
+        "AUTO",
+        "Automatic",
+        "Open Image Denoise where this Blender has it, from 8 samples on; nothing otherwise",
+        1,
+    ),
     ("OIDN", "Open Image Denoise", "That of this Blender, on the CPU; an error where it has none", 2),
 )
 FILTERS = (
@@ -63,6 +69,9 @@ FILTERS = (
     ("GAUSSIAN", "Gaussian", "Gauss curve of the given width", 1),
     ("BLACKMAN_HARRIS", "Blackman-Harris", "Cycles' default: smooth and compact", 2),
 )
+
+DENOISER_PAYS = 8
+"""Samples from which denoiser AUTO runs; the library decides, and a test compares."""
 
 SETTINGS: tuple[Setting, ...] = (
     Setting(
@@ -74,7 +83,8 @@ SETTINGS: tuple[Setting, ...] = (
         FLOAT,
         0.01,
         "Noise Threshold",
-        "Stop where the estimated relative error is below it, share samples by noise elsewhere; 0 = off, unbiased. Stricter than in Cycles",
+        "Tiles stop when their estimated relative error is below it, others share samples by their noise; 0 = off, all take the same "
+        "number. The same threshold leaves less noise than in Cycles",
         0,
         MAX_FLOAT,
         1,
@@ -90,9 +100,18 @@ SETTINGS: tuple[Setting, ...] = (
         MAX_FLOAT,
         3600,
         1,
+        unit="TIME_ABSOLUTE",
     ),
     Setting("seed", INT, 0, "Seed", "Another seed gives another noise pattern", 0, MAX_INT),
-    Setting("use_animated_seed", BOOL, True, "Animated Seed", "Every frame has its own noise pattern, with this off, too", 0, 1),
+    Setting(
+        "use_animated_seed",
+        BOOL,
+        True,
+        "Animated Seed",
+        "Has no effect, kept for scripts: all frames have their own noise patterns",
+        0,
+        1,
+    ),
     Setting("integrator", ENUM, "AUTO", "Integrator", "How light is sampled", choices=INTEGRATORS),
     Setting("reconstruction", ENUM, "AUTO", "Reconstruction", "How the image is made from samples and gradients", choices=RECONSTRUCTIONS),
     Setting(
@@ -100,7 +119,8 @@ SETTINGS: tuple[Setting, ...] = (
         FLOAT,
         0.0,
         "Primal Weight",
-        "Weight of the sampled image against its gradients. 0 = automatic: 0.4 for L2, 0.2 for L1 and the means of Weighted",
+        "Weight of the sampled image against its gradients in L2 and L1; in Weighted how far the image's means are smoothed. "
+        "0 = automatic: 0.4 for L2, 0.2 for the others",
         0.0,
         1e3,
         1,

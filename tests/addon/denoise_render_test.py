@@ -75,6 +75,17 @@ def test_stats_name_it(corner: bpy.types.Scene, render: Render, tmp_path: Path, 
 
 
 @pytest.mark.module
+@pytest.mark.parametrize("samples", [settings.DENOISER_PAYS - 1, settings.DENOISER_PAYS])
+def test_auto_denoises_from_the_samples_that_the_panel_goes_by(
+    corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, samples: int
+) -> None:
+    path = tmp_path / "stats.jsonl"
+    monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path)])
+    render(corner, samples=samples, denoiser="AUTO")
+    assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= settings.DENOISER_PAYS)
+
+
+@pytest.mark.module
 def test_denoised_frames_are_the_same_again(corner: bpy.types.Scene, render: Render) -> None:
     one, other = (render(corner, samples=2, denoiser="OIDN")["Combined"] for _ in range(2))
     assert np.array_equal(one, other)

@@ -136,6 +136,36 @@ def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:
     assert max(map(len, labels.texts)) < 32
 
 
+def test_phases_of_the_last_render_come_in_their_order() -> None:
+    """They came by the alphabet, those of the add-on last."""
+    seconds = {"denoise": 1.0, "filter": 0.0, "preview": 2.0, "reconstruct": 3.0, "sample": 4.0, "total": 20.0}
+    lines = render_panels.plan_lines({"frame": 1, "seconds": {**seconds, "export": 5.0, "build": 6.0, "upload": 7.0}})
+    assert [line.split(":")[0] for line in lines[1:]] == ["Export", "Build", "Sample", "Preview", "Reconstruct", "Denoise", "Upload"]
+
+
+def method(**values: Any) -> SimpleNamespace:
+    defaults = {"integrator": "AUTO", "reconstruction": "AUTO", "denoiser": "NONE", "noise_threshold": 0.0}
+    return SimpleNamespace(**{**defaults, "clamp_direct": 0.0, "clamp_indirect": 0.0, **values})
+
+
+@pytest.mark.parametrize(
+    ("values", "samples", "text"),
+    [
+        ({"denoiser": "OIDN"}, 4, "Biased: it is denoised"),
+        ({"denoiser": "AUTO"}, 8, "Biased where a denoiser is found"),
+        ({"denoiser": "AUTO"}, 7, "Consistent"),
+        ({"denoiser": "AUTO", "integrator": "PATH", "reconstruction": "NONE"}, 7, "Unbiased"),
+        ({"reconstruction": "NONE", "clamp_indirect": 3.0}, 64, "Biased: light is clamped"),
+        ({"reconstruction": "L2", "noise_threshold": 0.01}, 64, "Unbiased at threshold 0"),
+        ({"reconstruction": "L2"}, 64, "Unbiased"),
+        ({"reconstruction": "L2", "integrator": "PATH"}, 64, "Plain paths have no gradients to reconstruct from"),
+    ],
+)
+def test_the_panel_promises_no_denoiser_that_may_not_run(values: dict[str, Any], samples: int, text: str) -> None:
+    """With AUTO it said that the picture is denoised where there is no denoiser, and where samples are too few for it."""
+    assert render_panels.bias(method(**values), samples)[0] == text
+
+
 def test_presets_set_what_they_name_and_reset_the_rest(scene: bpy.types.Scene) -> None:
     scene.gradus.samples, scene.gradus.min_samples = 7, 9
     bpy.ops.gradus.preset(preset="REFERENCE")

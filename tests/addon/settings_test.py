@@ -82,6 +82,11 @@ def test_properties_have_the_limits_of_the_table() -> None:
             assert entry.hard_max == pytest.approx(setting.maximum)
 
 
+def test_seconds_are_shown_as_such() -> None:
+    """Time Limit was a bare number."""
+    assert bpy.context.scene.gradus.bl_rna.properties["time_limit"].unit == "TIME_ABSOLUTE"
+
+
 def test_values_reach_the_library_and_options_win(scene: bpy.types.Scene) -> None:
     scene.gradus.samples, scene.gradus.reconstruction, scene.gradus.filter_width = 5, "L1", 2.0
     scene.view_layers[0].pass_alpha_threshold = 0.25
@@ -149,8 +154,7 @@ def test_the_manual_lists_every_pass_by_the_name_that_options_take() -> None:
     for info in passes.TABLE:
         first, _, rest = info.plane.name.lower().partition("_")
         names = (f"`{first}_`", f"`{rest}`") if first in kinds else (f"`{info.plane.name.lower()}`",)
-        hidden = info.plane in (passes.Pass.COMBINED, passes.Pass.FALLBACK)  # always there; for tests
-        assert hidden or all(name in manual for name in names), info.plane
+        assert info.plane == passes.Pass.COMBINED or all(name in manual for name in names), info.plane
 
 
 def test_the_manual_lists_every_setting_with_its_default() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from .. import cycles_settings, store
+from ..settings import DENOISER_PAYS
 from .base import RenderPanel
 from .presets import GRADUS_PT_presets
 
@@ -27,6 +28,27 @@ class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "preview_samples")
 
 
+FROM_GRADIENTS = ("L2", "WEIGHTED", "L1")
+"""Reconstructions that need gradients, and weigh the image against them."""
+
+
+def bias(settings: Any, samples: int) -> tuple[str, str]:
+    """What is known of the result's bias before it is rendered, and the icon. Whether there is a denoiser is found out by the render."""
+    if settings.integrator == "PATH" and settings.reconstruction in FROM_GRADIENTS:
+        return "Plain paths have no gradients to reconstruct from", "ERROR"
+    if settings.denoiser == "OIDN":
+        return "Biased: it is denoised", "INFO"
+    if settings.denoiser == "AUTO" and samples >= DENOISER_PAYS:
+        return "Biased where a denoiser is found", "INFO"
+    if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
+        return "Biased: light is clamped", "INFO"
+    if settings.reconstruction in ("L1", "WEIGHTED", "REGULARIZED") or (
+        settings.reconstruction == "AUTO" and settings.integrator != "PATH"
+    ):
+        return "Consistent", "INFO"
+    return ("Unbiased at threshold 0", "INFO") if settings.noise_threshold > 0.0 else ("Unbiased", "CHECKMARK")
+
+
 class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
     bl_label = "Method"
     bl_parent_id = "GRADUS_RENDER_PT_sampling"
@@ -36,20 +58,10 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "integrator")
         column = layout.column()
         column.prop(settings, "reconstruction")
-        if settings.reconstruction != "NONE":
+        if settings.reconstruction in FROM_GRADIENTS:
             column.prop(settings, "reconstruction_alpha")
-        if settings.integrator == "PATH" and settings.reconstruction in ("L2", "WEIGHTED", "L1"):
-            layout.label(text="Plain paths have no gradients to reconstruct from", icon="ERROR")
-        elif settings.denoiser != "NONE":
-            layout.label(text="Biased: it is denoised", icon="INFO")
-        elif settings.reconstruction in ("L1", "WEIGHTED", "REGULARIZED") or (
-            settings.reconstruction == "AUTO" and settings.integrator != "PATH"
-        ):
-            layout.label(text="Consistent", icon="INFO")
-        elif settings.noise_threshold > 0.0:
-            layout.label(text="Unbiased at threshold 0", icon="INFO")
-        else:
-            layout.label(text="Unbiased", icon="CHECKMARK")
+        text, icon = bias(settings, context.view_layer.samples or settings.samples)
+        layout.label(text=text, icon=icon)
 
 
 class GRADUS_RENDER_PT_denoise(RenderPanel, bpy.types.Panel):
@@ -152,11 +164,15 @@ def characters(context: Any) -> int:
     return max(20, int(context.region.width / per_character) - 6)
 
 
+PHASES = ("export", "build", "sample", "preview", "reconstruct", "denoise", "filter", "upload")
+"""Of a stats object, in the order in which they come."""
+
+
 def plan_lines(summary: dict[str, Any]) -> list[str]:
     """What was rendered, how, and why: the plan of a stats object in words."""
     seconds = summary.get("seconds", {})
     lines = [f"Frame {summary.get('frame')}: {summary.get('samples', 0):g} samples per pixel in {seconds.get('total', 0.0):.1f} s"]
-    lines += [f"{phase.capitalize()}: {value:.2f} s" for phase, value in seconds.items() if phase != "total" and value >= 0.005]
+    lines += [f"{phase.capitalize()}: {seconds[phase]:.2f} s" for phase in PHASES if seconds.get(phase, 0.0) >= 0.005]
     for name, value in summary.get("plan", {}).items():
         if isinstance(value, dict):
             lines += [f"{name.replace('_', ' ').capitalize()}: {key.replace('_', ' ')}: {reason}" for key, reason in value.items()]
