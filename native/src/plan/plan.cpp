@@ -224,7 +224,7 @@ bool l2_iterates(const Plan& plan) { return plan.pilot; }
 // REGULARIZED, as measured (reconstruct/feature_regression.h): features with their variances and as a basis, the image and half the
 // difference of its halves, weights, what both steps make of them; with differences the images and the solve, while the regression is
 // there.
-uint64_t regularized_floats(const Plan& plan) { return plan.gradients ? 44 + 15 * uint64_t(plan.channels) : 63; }
+uint64_t regularized_floats(const Plan& plan) { return plan.gradients ? 45 + 15 * uint64_t(plan.channels) : 63; }
 
 // What the reconstruction takes beside the frame, floats per pixel: its result, and until it is there
 uint64_t reconstruction_floats(const Plan& plan) {

@@ -9,6 +9,7 @@
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/minimise_by_noise.h"
+#include "reconstruct/reweigh.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/weighted_least_squares.h"
 
@@ -20,6 +21,8 @@ constexpr float kSharedError = 8.0f;
 // Of its differences nothing is, within windows.
 constexpr float kSharedDifference = 1.0f;
 constexpr float kLeastError = 1e-12f;
+// How often dark pixels are held more firmly.
+constexpr int kHolds = 2;
 // Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
 constexpr float kMost = 1e12f;
 
@@ -138,9 +141,16 @@ Field fuse(const GradientImages& images, float scale, float unknown, Field regre
   limit_differences(system.data_weights(), &system.matrix());
   blend_differences(regressed, error, 1, 0, &planes.dx, &system.matrix().right);
   blend_differences(regressed, error, 0, 1, &planes.dy, &system.matrix().up);
-  system.update();
-  solve_by_noise(planes, cancel, &system, &regressed, report);
-  return regressed;
+  Field solution = std::move(regressed);
+  const auto solve = [&] {
+    system.update();
+    solve_by_noise(planes, cancel, &system, &solution, report);
+  };
+  solve();
+  for (int i = 0; i < kHolds && hold_dark_pixels(planes.primal, solution, &system); ++i) solve();
+  doubt_differences(planes.primal, solution, error, kSharedError, &system);
+  solve();
+  return solution;
 }
 
 }  // namespace

@@ -251,6 +251,37 @@ TEST(B2_Regularized, DifferencesCountByTheirVariance) {
   EXPECT_NEAR(amplitude_of(solve(frame)), 0.25, 0.06);
 }
 
+// Beside highlights, of which windows had lost some light and differences had not, pixels became black, or coloured where one channel did.
+// More so where half of a difference is one sample's: by chance both halves agree to a tenth of what they are off by.
+TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
+  const auto is_highlight = [](int x, int y) { return x >= 30 && x < 38 && y >= 20 && y < 26; };
+  FeatureFrame description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
+  description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_highlight(x, y) ? 100.0f : 0.2f; });
+  description.sigma = [&](size_t i) { return is_highlight(int(i % kWidth), int(i / kWidth)) ? 40.0f : 0.05f; };
+  description.gradients = true;
+  for (description.seed = 1; description.seed <= 8; ++description.seed) {
+    Frame frame = make_feature_frame(description);
+    std::mt19937 random(description.seed);
+    std::normal_distribution<float> normal(0.0f, 1.0f);
+    for (int y = 1; y + 1 < kHeight; ++y) {
+      for (int x = 1; x + 1 < kWidth; ++x) {
+        for (int o = 0; o < kOffsets; ++o) {
+          if (is_highlight(x, y) == is_highlight(x + kOffsetX[o], y + kOffsetY[o])) continue;
+          const float off = 10.0f * normal(random), seen = 1.0f * normal(random);
+          for (int half = 0; half < kHalves; ++half) {
+            frame.components[0].gradient[half][o][size_t(y) * kWidth + size_t(x)] += Radiance(off + (half == 0 ? seen : -seen));
+          }
+        }
+      }
+    }
+    const std::vector<float> image = solve(frame);
+    float least = 1.0f;
+    for (const float v : image) least = std::min(least, v);
+    std::printf("  seed %u: least %.3f\n", description.seed, least);
+    EXPECT_GT(least, 0.02f) << "of 0.2";
+  }
+}
+
 TEST(BadInput_Regularized, ConstantFeatures) {
   FeatureFrame description = room(kWidth, kHeight);
   for (const float value : {0.0f, 1.0f, -5e3f}) {
