@@ -116,11 +116,18 @@ RowSums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
 
 }  // namespace
 
-Multigrid::Multigrid(int width, int height, int channels) {
+MultigridWork::MultigridWork(int width, int height, int channels) {
+  levels_.emplace_back();
+  while (std::max(width, height) > kCoarsestSide) {
+    width = (width + 1) / 2, height = (height + 1) / 2;
+    levels_.push_back({Field(width, height, channels), Field(width, height, channels)});
+  }
+}
+
+Multigrid::Multigrid(int width, int height, std::shared_ptr<MultigridWork> work) : work_(std::move(work)) {
   for (;; width = (width + 1) / 2, height = (height + 1) / 2) {
     Level& level = levels_.emplace_back();
     level.matrix = Stencil(width, height, levels_.size() > 1);
-    if (levels_.size() > 1) level.b = level.z = Field(width, height, channels);
     if (std::max(width, height) <= kCoarsestSide) break;
     level.interpolation = Interpolation(width, height);
   }
@@ -136,7 +143,7 @@ void Multigrid::update() {
 RowSums Multigrid::cycle(size_t level, const Field& b, Field* z) {
   Level& here = levels_[level];
   if (level + 1 == levels_.size()) return solve_coarsest(here.matrix, b, z);
-  Level& next = levels_[level + 1];
+  MultigridWork::Level& next = work_->levels_[level + 1];
   restrict_residual(here.matrix, here.interpolation, b, &next.b);
   cycle(level + 1, next.b, &next.z);
   return interpolate_and_smooth(here.matrix, here.interpolation, b, next.z, z);

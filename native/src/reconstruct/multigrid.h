@@ -1,6 +1,7 @@
 // One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Damped Jacobi once before and once after, black-box interpolation.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "reconstruct/interpolation.h"
@@ -8,9 +9,23 @@
 
 namespace gradus {
 
+// Values on coarse grids while a cycle runs. Multigrids of one size may share it, one cycle at a time.
+class MultigridWork {
+ public:
+  MultigridWork(int width, int height, int channels);
+
+ private:
+  friend class Multigrid;
+  struct Level {
+    Field b, z;
+  };
+  std::vector<Level> levels_;  // the first is empty: its fields are the caller's
+};
+
 class Multigrid {
  public:
-  Multigrid(int width, int height, int channels);
+  Multigrid(int width, int height, int channels) : Multigrid(width, height, std::make_shared<MultigridWork>(width, height, channels)) {}
+  Multigrid(int width, int height, std::shared_ptr<MultigridWork> work);
   // The finest matrix, to be filled; then update().
   Stencil& matrix() { return levels_.front().matrix; }
   const Stencil& matrix() const { return levels_.front().matrix; }
@@ -24,10 +39,10 @@ class Multigrid {
   struct Level {
     Stencil matrix;
     Interpolation interpolation;  // from the next one
-    Field b, z;                   // of coarse levels
   };
   RowSums cycle(size_t level, const Field& b, Field* z);
   std::vector<Level> levels_;
+  std::shared_ptr<MultigridWork> work_;
 };
 
 }  // namespace gradus

@@ -1,0 +1,175 @@
+// The window's system and its solver against matrices that are written down row by row.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "reconstruct/space_time/l2_weights.h"
+#include "reconstruct/space_time/solve_window.h"
+#include "reconstruct/space_time/window.h"
+#include "reconstruct/test_images.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr Motion kMotions[] = {Motion::kNone, Motion::kStatic, Motion::kPan, Motion::kTurn, Motion::kRandom};
+
+// Weights of four decades without any order.
+void weigh_at_random(SpaceTimeSystem* system) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> exponent(-2.0f, 2.0f);
+  std::vector<float> row(static_cast<size_t>(system->width()));
+  for (const RowKind kind : kRowKinds) {
+    for (int t = 0; t + int(is_temporal(kind)) < system->frames(); ++t) {
+      for (int y = 0; y < system->height(); ++y) {
+        for (float& weight : row) weight = std::pow(10.0f, exponent(random));
+        system->set_weights(kind, t, y, row.data());
+      }
+    }
+  }
+}
+
+double weight(SpaceTimeSystem* system, RowKind kind, int t, int x, int y) {
+  std::vector<float> row(static_cast<size_t>(system->width()));
+  system->weights(kind, t).read_row(y, row.data());
+  const double factor = kind == RowKind::kPrimal ? system->frame(t).factor : 1.0;
+  return factor * row[size_t(x)];
+}
+
+// AᵀWA and AᵀWb of channel 0, from the definition of the rows.
+struct Dense {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd right_side;
+};
+Dense write_down(const Window& window, SpaceTimeSystem* system) {
+  const auto [w, h, channels, frames] = window.size_;
+  const int n = w * h * frames;
+  Dense dense{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+  window.for_rows([&](RowKind kind, int t, int x, int y, const Window::Terms& terms) {
+    const double weight_of_row = weight(system, kind, t, x, y);
+    const double value = window.plane(kind, t)[size_t((y * w + x) * channels)];
+    for (const auto& [i, a] : terms) {
+      dense.right_side(i) += weight_of_row * a * value;
+      for (const auto& [j, b] : terms) dense.matrix(i, j) += weight_of_row * a * b;
+    }
+  });
+  return dense;
+}
+
+Eigen::VectorXd to_vector(const Frames& frames, int channel = 0) {
+  const int w = frames.front().width(), h = frames.front().height();
+  Eigen::VectorXd v(w * h * int(frames.size()));
+  for (size_t t = 0; t < frames.size(); ++t) {
+    for (int y = 0; y < h; ++y) {
+      for (int x = 0; x < w; ++x) v((int(t) * h + y) * w + x) = frames[t].row(y, channel)[x];
+    }
+  }
+  return v;
+}
+
+Frames random_frames(const SpaceTimeSystem& system, int channels, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  Frames frames = system.make_fields(channels);
+  for (Field& field : frames) {
+    for (int y = 0; y < field.height(); ++y) {
+      for (int c = 0; c < channels; ++c) {
+        for (int x = 0; x < field.width(); ++x) field.row(y, c)[x] = normal(random);
+      }
+    }
+  }
+  return frames;
+}
+
+Window random_window(int w, int h, int channels, int frames, Motion motion) {
+  Window window(w, h, channels, frames);
+  link(&window, motion);
+  unsigned seed = 1;
+  for (auto& kind : window.planes) {
+    for (auto& plane : kind) add_noise(&plane, 1.0f, seed++);
+  }
+  return window;
+}
+
+TEST(B2_SpaceTime, SystemIsTheOneThatItsRowsDefine) {
+  for (const Motion motion : kMotions) {
+    const Window window = random_window(13, 9, 2, 4, motion);
+    SpaceTimeSystem system(window);
+    weigh_at_random(&system);
+    const Dense dense = write_down(window, &system);
+    const Frames x = random_frames(system, 1, 3);
+    Frames product = system.make_fields(1), right_side = product;
+    const double energy = system.multiply(x, &product)[0];
+    system.right_side(window, 0, &right_side);
+    const Eigen::VectorXd v = to_vector(x), expected = dense.matrix * v;
+    EXPECT_LT((to_vector(product) - expected).norm(), 1e-5 * expected.norm()) << int(motion);
+    EXPECT_NEAR(energy, v.dot(expected), 1e-5 * energy);
+    EXPECT_LT((to_vector(right_side) - dense.right_side).norm(), 1e-5 * dense.right_side.norm());
+  }
+}
+
+TEST(B2_SpaceTime, PreconditionerIsSymmetricAndPositive) {
+  for (const Motion motion : kMotions) {
+    const Window window = random_window(33, 17, 1, 5, motion);
+    SpaceTimeSystem system(window);
+    weigh_at_random(&system);
+    TimeLadder ladder(system, 1);
+    ladder.update();
+    const Frames a = random_frames(system, 1, 2), b = random_frames(system, 1, 3);
+    Frames za = system.make_fields(1), zb = za;
+    double aa = 0.0, bb = 0.0;
+    for (const RowSums& sums : ladder.apply(a, &za)) aa += sums.total()[0];
+    for (const RowSums& sums : ladder.apply(b, &zb)) bb += sums.total()[0];
+    EXPECT_GT(aa, 0.0);
+    EXPECT_NEAR(aa, to_vector(a).dot(to_vector(za)), 1e-5 * aa);
+    EXPECT_NEAR(to_vector(a).dot(to_vector(zb)), to_vector(b).dot(to_vector(za)), 1e-4 * (aa + bb)) << int(motion);
+  }
+}
+
+struct Solved {
+  Frames x;
+  CgReport report;
+};
+Solved solve(const Window& window, SpaceTimeSystem* system, float residual, int most_steps = 100) {
+  const int channels = window.size_.channels;
+  TimeLadder ladder(*system, channels);
+  ladder.update();
+  Solved solved{system->make_fields(channels), {}};
+  WindowFields fields(solved.x);
+  system->right_side(window, 0, &fields.r);
+  solved.report = solve_window(*system, &ladder, {.residual = residual}, most_steps, never, &fields, &solved.x);
+  return solved;
+}
+
+TEST(B2_SpaceTime, SolverMeetsTheDenseSolution) {
+  for (const Motion motion : kMotions) {
+    for (const bool alike : {true, false}) {
+      const Window window = random_window(11, 8, 3, 4, motion);
+      SpaceTimeSystem system(window);
+      alike ? weigh_alike(window, 0.2f, &system) : weigh_at_random(&system);
+      const Dense dense = write_down(window, &system);
+      const Eigen::VectorXd expected = dense.matrix.llt().solve(dense.right_side);
+      const Solved solved = solve(window, &system, 1e-6f);
+      EXPECT_TRUE(solved.report.reached);
+      EXPECT_LT((to_vector(solved.x) - expected).norm(), 1e-4 * expected.norm()) << int(motion) << " " << alike;
+    }
+  }
+}
+
+// Steps to 1e-4 and 1e-6 for equal weights.
+TEST(B2_SpaceTime, FewStepsWhateverTheMotion) {
+  for (const Motion motion : kMotions) {
+    const Window window = random_window(320, 180, 1, 10, motion);
+    SpaceTimeSystem system(window);
+    weigh_alike(window, 0.4f, &system);
+    const int coarse = solve(window, &system, 1e-4f).report.steps, fine = solve(window, &system, 1e-6f).report.steps;
+    RecordProperty("steps", coarse);
+    std::printf("motion %d: %d steps to 1e-4, %d to 1e-6\n", int(motion), coarse, fine);
+    EXPECT_LE(coarse, 8) << int(motion);
+    EXPECT_LE(fine, 14) << int(motion);
+  }
+}
+
+}  // namespace
+}  // namespace gradus

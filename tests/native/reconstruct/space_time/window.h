@@ -1,0 +1,142 @@
+// Windows with known links and values.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "reconstruct/space_time/window_source.h"
+
+namespace gradus::test {
+
+// All planes in memory: [kind][t], interleaved; links[t] by pixel.
+struct Window final : WindowSource {
+  Window(int width, int height, int channels, int frames) : size_{width, height, channels, frames} {
+    const size_t pixels = size_t(width) * size_t(height);
+    for (auto& kind : planes) kind.assign(size_t(frames), std::vector<float>(pixels * size_t(channels), 0.0f));
+    for (auto& kind : deviations) kind.assign(size_t(frames), std::vector<float>(pixels, std::numeric_limits<float>::quiet_NaN()));
+    links.assign(size_t(frames), std::vector<int32_t>(pixels, kNoLink));
+  }
+  WindowSize size() const override { return size_; }
+  void read_row(RowKind kind, int t, int y, float* out) const override {
+    const size_t row = size_t(size_.width) * size_t(size_.channels);
+    std::copy_n(plane(kind, t).begin() + ptrdiff_t(size_t(y) * row), row, out);
+  }
+  void read_deviations(RowKind kind, int t, int y, float* out) const override {
+    std::copy_n(deviations[size_t(kind)][size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
+  }
+  void read_links(int t, int y, int32_t* out) const override {
+    std::copy_n(links[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
+  }
+  std::vector<float>& plane(RowKind kind, int t) { return planes[size_t(kind)][size_t(t)]; }
+  const std::vector<float>& plane(RowKind kind, int t) const { return planes[size_t(kind)][size_t(t)]; }
+
+  // One row of the system: Σ sign · pixel. Pixels are t·width·height + y·width + x. Empty where the system has no such row.
+  using Terms = std::vector<std::pair<int, float>>;
+  Terms row(RowKind kind, int t, int x, int y) const;
+  // Fills all rows' values from a sequence of images.
+  void measure(const std::vector<std::vector<float>>& images);
+  template <class Function>
+  void for_rows(const Function& function) const {
+    for (const RowKind kind : kRowKinds) {
+      for (int t = 0; t < size_.frames; ++t) {
+        for (int y = 0; y < size_.height; ++y) {
+          for (int x = 0; x < size_.width; ++x) {
+            const Terms terms = row(kind, t, x, y);
+            if (!terms.empty()) function(kind, t, x, y, terms);
+          }
+        }
+      }
+    }
+  }
+
+  WindowSize size_;
+  std::vector<std::vector<float>> planes[6], deviations[6];
+  std::vector<std::vector<int32_t>> links;
+};
+
+inline Window::Terms Window::row(RowKind kind, int t, int x, int y) const {
+  const int w = size_.width, n = w * size_.height, i = y * w + x;
+  const int right = kind == RowKind::kDx || kind == RowKind::kDxDt, up = kind == RowKind::kDy || kind == RowKind::kDyDt;
+  if ((right && x + 1 == w) || (up && y + 1 == size_.height)) return {};
+  const int j = i + right + up * w, at = t * n;
+  if (!is_temporal(kind)) return i == j ? Terms{{at + i, 1.0f}} : Terms{{at + i, -1.0f}, {at + j, 1.0f}};
+  if (t + 1 == size_.frames) return {};
+  const int there = links[size_t(t)][size_t(i)], other = links[size_t(t)][size_t(j)];
+  if (there == kNoLink) return {};
+  if (i == j) return {{at + i, -1.0f}, {at + n + there, 1.0f}};
+  if (other == kNoLink || other % w != there % w + right || other / w != there / w + up) return {};
+  return {{at + i, 1.0f}, {at + j, -1.0f}, {at + n + there, -1.0f}, {at + n + other, 1.0f}};
+}
+
+inline void Window::measure(const std::vector<std::vector<float>>& images) {
+  const int n = size_.width * size_.height, channels = size_.channels;
+  for_rows([&](RowKind kind, int t, int x, int y, const Terms& terms) {
+    for (int c = 0; c < channels; ++c) {
+      float sum = 0.0f;
+      for (const auto& [pixel, sign] : terms) sum += sign * images[size_t(pixel / n)][size_t(pixel % n * channels + c)];
+      plane(kind, t)[size_t((y * size_.width + x) * channels + c)] = sum;
+    }
+  });
+}
+
+// Links pixels by target(x, y, t) → (x', y') in float, rounded; what lies outside or is taken has none, nor has what `hole` says.
+inline void link(Window* window, const std::function<std::pair<float, float>(int, int, int)>& target,
+                 const std::function<bool(int, int, int)>& hole) {
+  const auto [w, h, channels, frames] = window->size_;
+  for (int t = 0; t + 1 < frames; ++t) {
+    std::vector<bool> taken(size_t(w) * size_t(h), false);
+    for (int y = 0; y < h; ++y) {
+      for (int x = 0; x < w; ++x) {
+        const auto [fx, fy] = target(x, y, t);
+        const int tx = int(std::lround(fx)), ty = int(std::lround(fy));
+        if (tx < 0 || ty < 0 || tx >= w || ty >= h || hole(x, y, t) || taken[size_t(ty * w + tx)]) continue;
+        taken[size_t(ty * w + tx)] = true;
+        window->links[size_t(t)][size_t(y * w + x)] = ty * w + tx;
+      }
+    }
+  }
+}
+
+enum class Motion { kNone, kStatic, kPan, kTurn, kRandom };
+
+inline void link(Window* window, Motion motion) {
+  const float w = float(window->size_.width), h = float(window->size_.height);
+  const auto no_hole = [](int, int, int) { return false; };
+  // A fifth of the pixels, in blobs.
+  const auto blobs = [](int x, int y, int t) {
+    return std::sin(0.31f * float(x) + float(t)) + std::sin(0.37f * float(y) + 2.0f * float(t)) > 0.83f;
+  };
+  std::mt19937 random(7);
+  switch (motion) {
+    case Motion::kNone:
+      return;
+    case Motion::kStatic:
+      return link(
+          window, [](int x, int y, int) { return std::pair(float(x), float(y)); }, no_hole);
+    case Motion::kPan:
+      return link(
+          window, [](int x, int y, int) { return std::pair(float(x) + 5.0f, float(y) - 3.0f); }, no_hole);
+    case Motion::kTurn:
+      return link(
+          window,
+          [=](int x, int y, int) {
+            const float dx = 1.03f * (float(x) - 0.5f * w), dy = 1.03f * (float(y) - 0.5f * h), c = std::cos(0.035f), s = std::sin(0.035f);
+            return std::pair(0.5f * w + c * dx - s * dy, 0.5f * h + s * dx + c * dy);
+          },
+          blobs);
+    case Motion::kRandom:
+      return link(
+          window,
+          [&](int x, int y, int) {
+            std::uniform_int_distribution<int> step(-8, 8);
+            const int dx = step(random), dy = step(random);
+            return std::pair(float(x + dx), float(y + dy));
+          },
+          no_hole);
+  }
+}
+
+}  // namespace gradus::test
