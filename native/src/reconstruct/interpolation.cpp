@@ -140,7 +140,6 @@ void Interpolation::coarsen(const Stencil& fine, Stencil* coarse) const {
   for_rows(coarse->height(), [&](int y) {
     for (int x = 0; x < w; x += kBlock) coarsen_block(fine, x, y, std::min(kBlock, w - x), coarse);
   });
-  coarse->finish();
 }
 
 void Interpolation::interpolate_row(int y, const float* lower, const float* upper, float* out) const {

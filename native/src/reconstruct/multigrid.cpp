@@ -11,15 +11,16 @@ constexpr int kCoarsestSweeps = 8;
 // Rows at a time: the passes below make some rows around each piece once more.
 constexpr int kGrain = 64;
 
-// x = S b: what one sweep makes of 0. Rows beyond the grid are 0.
-void smooth_zero(const Stencil& a, const Field& b, int y, RollingRows* x) {
+// x = S b: what one sweep makes of 0. Rows beyond the grid are 0. s: scratch.
+void smooth_zero(const Stencil& a, const Field& b, int y, float* s, RollingRows* x) {
+  if (y >= 0 && y < a.height()) read_smoothing(a, y, s);
   for (int c = 0; c < b.channels(); ++c) {
     float* to = x->row(y, c);
     if (y < 0 || y >= a.height()) {
       std::fill_n(to, a.width(), 0.0f);
       continue;
     }
-    const float *s = a.smoothing.row(y), *from = b.row(y, c);
+    const float* from = b.row(y, c);
     for (int i = 0; i < a.width(); ++i) to[i] = s[i] * from[i];
   }
 }
@@ -37,8 +38,9 @@ void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b,
       coarse->height(),
       [&](int begin, int end) {
         RollingRows x(a.width(), b.channels()), residual(a.width(), b.channels());
+        std::vector<float> s(static_cast<size_t>(a.width()));
         const auto add_row = [&](int y) {
-          smooth_zero(a, b, y + 1, &x);
+          smooth_zero(a, b, y + 1, s.data(), &x);
           for (int c = 0; c < b.channels(); ++c) {
             float* to = residual.row(y, c);
             if (y < 0 || y >= a.height()) {
@@ -48,8 +50,8 @@ void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b,
             }
           }
         };
-        smooth_zero(a, b, 2 * begin - 2, &x);
-        smooth_zero(a, b, 2 * begin - 1, &x);
+        smooth_zero(a, b, 2 * begin - 2, s.data(), &x);
+        smooth_zero(a, b, 2 * begin - 1, s.data(), &x);
         add_row(2 * begin - 1);
         for (int y = begin; y < end; ++y) {
           add_row(2 * y);
@@ -70,9 +72,9 @@ RowSums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const F
       a.height(),
       [&](int begin, int end) {
         RollingRows x(w, b.channels());
-        std::vector<float> correction(size_t(w) + 1);
+        std::vector<float> correction(size_t(w) + 1), s(static_cast<size_t>(w));
         const auto add_row = [&](int y) {
-          smooth_zero(a, b, y, &x);
+          smooth_zero(a, b, y, s.data(), &x);
           if (y < 0 || y >= a.height()) return;
           for (int c = 0; c < b.channels(); ++c) {
             p.interpolate_row(y, coarse.row(y / 2, c), coarse.row(y / 2 + 1, c), correction.data());
@@ -84,7 +86,7 @@ RowSums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const F
         add_row(begin);
         for (int y = begin; y < end; ++y) {
           add_row(y + 1);
-          const float* s = a.smoothing.row(y);
+          read_smoothing(a, y, s.data());
           for (int c = 0; c < b.channels(); ++c) {
             float* to = z->row(y, c);
             subtract_product(a, b, y, c, &x, to);
@@ -101,12 +103,14 @@ RowSums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const F
 // Sweeps of Jacobi from 0.
 RowSums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
   Field x(a.width(), a.height(), b.channels());
+  std::vector<float> s(static_cast<size_t>(a.width()));
   for (int sweep = 0; sweep < kCoarsestSweeps; ++sweep) {
     for (int y = 0; y < a.height(); ++y) {
+      read_smoothing(a, y, s.data());
       for (int c = 0; c < b.channels(); ++c) {
         float* to = z->row(y, c);
         apply_row(a, x, y, c, to);
-        for (int i = 0; i < a.width(); ++i) to[i] = x.row(y, c)[i] + a.smoothing.row(y)[i] * (b.row(y, c)[i] - to[i]);
+        for (int i = 0; i < a.width(); ++i) to[i] = x.row(y, c)[i] + s[i] * (b.row(y, c)[i] - to[i]);
       }
     }
     x = *z;

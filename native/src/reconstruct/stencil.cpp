@@ -11,16 +11,13 @@ constexpr float kDamping = 0.8f;
 }  // namespace
 
 Stencil::Stencil(int width, int height, bool with_corners)
-    : diagonal(width, height, 1), right(diagonal), up(diagonal), smoothing(diagonal), corners(with_corners) {
+    : diagonal(width, height, 1), right(diagonal), up(diagonal), corners(with_corners) {
   if (corners) up_right = up_left = diagonal;
 }
 
-void Stencil::finish() {
-  for_rows(height(), [&](int y) {
-    const float* d = diagonal.row(y);
-    float* s = smoothing.row(y);
-    for (int x = 0; x < width(); ++x) s[x] = d[x] > 0.0f ? kDamping / d[x] : 0.0f;
-  });
+void read_smoothing(const Stencil& a, int y, float* out) {
+  const float* d = a.diagonal.row(y);
+  for (int x = 0; x < a.width(); ++x) out[x] = d[x] > 0.0f ? kDamping / d[x] : 0.0f;
 }
 
 void apply_row(const Stencil& a, int y, const float* below, const float* here, const float* above, float* out) {

@@ -10,16 +10,15 @@ struct Stencil {
   Stencil(int width, int height, bool corners);
   int width() const { return diagonal.width(); }
   int height() const { return diagonal.height(); }
-  // Fills smoothing from the diagonal.
-  void finish();
 
   Field diagonal;
   Field right, up;          // minus the entries for x + 1 and y + 1; 0 in the last column and row
   Field up_right, up_left;  // minus those for (x + 1, y + 1) and (x - 1, y + 1); empty without corners
-  Field smoothing;          // damping / diagonal
   bool corners = false;
 };
 
+// Damped Jacobi of row y: damping / diagonal.
+void read_smoothing(const Stencil& a, int y, float* out);
 // out = A x for row y of one channel, from that row of x and the rows below and above it.
 void apply_row(const Stencil& a, int y, const float* below, const float* here, const float* above, float* out);
 inline void apply_row(const Stencil& a, const Field& x, int y, int channel, float* out) {

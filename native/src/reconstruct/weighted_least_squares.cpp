@@ -50,7 +50,6 @@ void WeightedLeastSquares::update() {
     float* diagonal = matrix.diagonal.row(y);
     for (int x = 0; x < w; ++x) diagonal[x] = data[x] + right[x] + right[x - 1] + up[x] + down[x];
   });
-  matrix.finish();
   multigrid_.update();
 }
 

@@ -41,7 +41,6 @@ void fill(Stencil* a) {
       a->diagonal.row(y)[x] = 0.02f + a->right.row(y)[x] + a->right.row(y)[x - 1] + a->up.row(y)[x] + a->up.row(y - 1)[x];
     }
   }
-  a->finish();
 }
 
 double dot(const Field& a, const Field& b) {

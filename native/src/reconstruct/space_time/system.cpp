@@ -167,10 +167,13 @@ RowSums SpaceTimeSystem::multiply_coupling(int t, const Field& x, const Field& n
   return sums;
 }
 
-void SpaceTimeSystem::pull(int t, const Field& next, Field* out) const {
+void SpaceTimeSystem::pull(int t, const Field& next, Field* x) const {
   for_product_rows(
       coupling(t), next.channels(), [&](int y, RollingRows* rows) { gather_row(links(t), y, next, rows); },
-      [&](int y, int c, const float*, const float* product) { std::copy_n(product, width(), out->row(y, c)); });
+      [&](int y, int c, const float*, const float* product) {
+        float* to = x->row(y, c);
+        for (int i = 0; i < width(); ++i) to[i] += product[i];
+      });
 }
 
 void SpaceTimeSystem::push(int t, const Field& x, Field* next) const {

@@ -43,8 +43,8 @@ class SpaceTimeSystem {
   // out = Aᵀ W b, b the values of the rows: channels [first, first + channels of out).
   void right_side(const WindowSource& source, int first_channel, Frames* out) const;
 
-  // out_t = K_t F_t x_{t+1}: what frame t + 1 gives frame t.
-  void pull(int t, const Field& next, Field* out) const;
+  // x_t += K_t F_t x_{t+1}
+  void pull(int t, const Field& next, Field* x) const;
   // next += F_tᵀ K_t x_t
   void push(int t, const Field& x, Field* next) const;
 

@@ -51,7 +51,12 @@ void fill_matrix(const Ladder& ladder, const ScreenedLaplacian* coupling, Stenci
     const float *right = matrix->right.row(y), *up = matrix->up.row(y), *down = matrix->up.row(y - 1);
     for (int x = 0; x < w; ++x) diagonal[x] += right[x] + right[x - 1] + up[x] + down[x];
   });
-  matrix->finish();
+}
+
+void copy(const Field& from, Field* to) {
+  for_rows(from.height(), [&](int y) {
+    for (int c = 0; c < from.channels(); ++c) std::copy_n(from.row(y, c), from.width(), to->row(y, c));
+  });
 }
 
 // What frame t leaves to the next.
@@ -77,8 +82,7 @@ Ladder eliminate(const Ladder& ladder, const ScreenedLaplacian& coupling, const 
 
 }  // namespace
 
-TimeLadder::TimeLadder(const SpaceTimeSystem& system, int channels)
-    : system_(system), from_other_(system.width(), system.height(), channels), solved_(from_other_) {
+TimeLadder::TimeLadder(const SpaceTimeSystem& system, int channels) : system_(system), solved_(system.width(), system.height(), channels) {
   const auto work = std::make_shared<MultigridWork>(system.width(), system.height(), channels);
   for (int t = 0; t < system.frames(); ++t) schur_.emplace_back(system.width(), system.height(), work);
 }
@@ -95,29 +99,26 @@ void TimeLadder::update() {
 }
 
 std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
-  const int w = system_.width(), channels = from_other_.channels(), last = system_.frames() - 1;
-  for (int t = 0; t <= last; ++t) {
-    from_other_ = r[size_t(t)];
-    if (t > 0) system_.push(t - 1, (*z)[size_t(t) - 1], &from_other_);
-    schur_[size_t(t)].cycle(from_other_, &(*z)[size_t(t)]);
+  const int channels = solved_.channels();
+  const size_t last = schur_.size() - 1;
+  // z holds the right sides of the frames, which each frame adds to when it is solved: the one behind it on the way forth, the one before
+  // it on the way back.
+  for (size_t t = 0; t <= last; ++t) {
+    Field& right_side = (*z)[t];
+    copy(r[t], &right_side);
+    if (t > 0) system_.push(int(t) - 1, solved_, &right_side);
+    schur_[t].cycle(right_side, &solved_);
   }
   std::vector<RowSums> sums;
-  for (int t = last; t >= 0; --t) {
-    Field& here = (*z)[size_t(t)];
-    if (t < last) {
-      system_.pull(t, (*z)[size_t(t) + 1], &from_other_);
-      schur_[size_t(t)].cycle(from_other_, &solved_);
-    }
-    sums.push_back(sum_each_row(system_.height(), channels, [&](int y, int c) {
-      float* to = here.row(y, c);
-      if (t < last) {
-        const float* more = solved_.row(y, c);
-        for (int x = 0; x < w; ++x) to[x] += more[x];
-      }
-      return dot_row(r[size_t(t)].row(y, c), to, w);
-    }));
+  for (size_t t = last;; --t) {
+    std::swap((*z)[t], solved_);
+    const Field& solution = (*z)[t];
+    sums.push_back(sum_each_row(system_.height(), channels,
+                                [&](int y, int c) { return dot_row(r[t].row(y, c), solution.row(y, c), system_.width()); }));
+    if (t == 0) return sums;
+    system_.pull(int(t) - 1, solution, &(*z)[t - 1]);
+    schur_[t - 1].cycle((*z)[t - 1], &solved_);
   }
-  return sums;
 }
 
 }  // namespace gradus

@@ -25,7 +25,7 @@ class TimeLadder {
  private:
   const SpaceTimeSystem& system_;
   std::vector<Multigrid> schur_;  // of B_t + K_t, B_t with what earlier frames leave
-  Field from_other_, solved_;     // of one frame
+  Field solved_;                  // of one frame
 };
 
 }  // namespace gradus

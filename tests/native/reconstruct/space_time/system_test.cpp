@@ -164,8 +164,6 @@ TEST(B2_SpaceTime, FewStepsWhateverTheMotion) {
     SpaceTimeSystem system(window);
     weigh_alike(window, 0.4f, &system);
     const int coarse = solve(window, &system, 1e-4f).report.steps, fine = solve(window, &system, 1e-6f).report.steps;
-    RecordProperty("steps", coarse);
-    std::printf("motion %d: %d steps to 1e-4, %d to 1e-6\n", int(motion), coarse, fine);
     EXPECT_LE(coarse, 8) << int(motion);
     EXPECT_LE(fine, 14) << int(motion);
   }
