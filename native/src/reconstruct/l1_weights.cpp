@@ -1,31 +1,14 @@
 #include "reconstruct/l1_weights.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "base/types.h"
 #include "reconstruct/rows.h"
 
 namespace gradus {
-namespace {
-
-struct RowNorm {
-  float factor;  // 1 / (channels · scale²)
-  float floor_squared;
-  // 1/√(e² + floor²) from the sum of squares over channels.
-  float weight(float sum) const {
-    const float w = 1.0f / std::sqrt(sum * factor + floor_squared);
-    return is_finite(sum) ? w : 0.0f;
-  }
-};
-
-}  // namespace
-
 void reweight(const SolverPlanes& planes, const Field& x, float alpha, float scale, float floor, Field* data_weights, Stencil* matrix) {
   const int w = x.width(), h = x.height(), channels = x.channels();
 
-  const RowNorm norm{1.0f / (static_cast<float>(channels) * scale * scale), floor * floor};
-  const RowNorm data_norm{norm.factor * alpha * alpha, norm.floor_squared};
+  const RowNorm norm = row_norm(channels, scale, floor), data_norm = norm.of_pixels(alpha);
   for_rows(h, [&](int y) {
     float *data = data_weights->row(y), *right = matrix->right.row(y), *up = matrix->up.row(y);
     for (float* sums : {data, right, up}) std::fill_n(sums, w, 0.0f);

@@ -9,10 +9,9 @@ namespace gradus {
 // Estimates the weights from the deviations of `images` (read_deviations()) and freezes them.
 Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel, SolveReport* report);
 
-// Weights scale²/(s² + floor²) of pixels and of differences. s of a row: the mean over the 3×3 rows around it of the deviations that the
-// two halves show, the row's own with 1/3 of all weight; what neighbours lend is limited, so that outliers stay alone. A wider window
-// measures better, but leaves outliers in, which the own deviation finds out: of 0.5 to 4 pixels this gives the least error
-// (docs/method.md). A row that is missing has weight 0. unknown: deviation of pixels whose noise is not known, in units of the scale.
+// Weights of pixels and of differences by noise (noise_weights.h). A wider window measures better, but leaves outliers in, which the own
+// deviation finds out: of 0.5 to 4 pixels this gives the least error (docs/method.md). A row that is missing has weight 0. unknown:
+// deviation of pixels whose noise is not known, in units of the scale.
 void weigh_pixels_by_noise(const GradientImages& images, float scale, float unknown, Field* data);
 void weigh_differences_by_noise(const GradientImages& images, float scale, float unknown, Stencil* matrix);
 

@@ -31,8 +31,8 @@ class Multigrid {
   const Stencil& matrix() const { return levels_.front().matrix; }
   // Makes the coarse matrices from the finest.
   void update();
-  // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two threads at once: work
-  // space is its own.
+  // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two threads at once, nor
+  // for two multigrids that share their work space.
   RowSums cycle(const Field& b, Field* z) { return cycle(0, b, z); }
 
  private:

@@ -52,11 +52,16 @@ Twicing::Twicing(const GradientImages& images, const Field& estimate, float alph
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) weights_.row(y)[x] = squared_residual(images, estimate, x, y);
   });
+  limit_squares(&weights_);
+}
+
+void limit_squares(Field* field) {
+  const int w = field->width(), h = field->height();
   for_rows(
       square_count(h),
       [&](int row) {
         for (int i = 0; i < square_count(w); ++i) {
-          limit_square(square_begin(w, i), square_begin(w, i + 1), square_begin(h, row), square_begin(h, row + 1), &weights_);
+          limit_square(square_begin(w, i), square_begin(w, i + 1), square_begin(h, row), square_begin(h, row + 1), field);
         }
       },
       1);

@@ -43,11 +43,6 @@ class SpaceTimeSystem {
   // out = Aᵀ W b, b the values of the rows: channels [first, first + channels of out).
   void right_side(const WindowSource& source, int first_channel, Frames* out) const;
 
-  // x_t += K_t F_t x_{t+1}
-  void pull(int t, const Field& next, Field* x) const;
-  // next += F_tᵀ K_t x_t
-  void push(int t, const Field& x, Field* next) const;
-
  private:
   RowSums multiply_frame(int t, const Field& x, Field* out) const;
   RowSums multiply_coupling(int t, const Field& x, const Field& next, Field* out, Field* next_out) const;

@@ -10,46 +10,54 @@ namespace {
 
 float parallel_sum(float a, float b) { return a > 0.0f && b > 0.0f ? a * b / (a + b) : 0.0f; }
 
-// A screened Laplacian in full precision.
-struct Ladder {
-  Ladder(int width, int height) : screen(width, height, 1), right(screen), up(screen) {}
-  Field screen, right, up;
-};
+// Until it is finished, a frame's matrix has screens in the place of its diagonal.
+void clear(Stencil* matrix) {
+  for (Field* field : {&matrix->diagonal, &matrix->right, &matrix->up}) {
+    for_values(field, [](float& value, int, int, int) { value = 0.0f; });
+  }
+}
 
-// Adds a frame's own rows.
-void add_frame(const ScreenedLaplacian& frame, Ladder* ladder) {
-  for_pieces(frame.height(), [&](int begin, int end) {
-    LaplacianRow row(frame.width());
+void add(const ScreenedLaplacian& more, Stencil* matrix) {
+  for_pieces(more.height(), [&](int begin, int end) {
+    LaplacianRow row(more.width());
     for (int y = begin; y < end; ++y) {
-      row.load(frame, y);
-      for (int x = 0; x < frame.width(); ++x) {
-        ladder->screen.row(y)[x] += row.screen()[x];
-        ladder->right.row(y)[x] += row.right()[x];
-        ladder->up.row(y)[x] += row.up()[x];
+      row.load(more, y);
+      float *screen = matrix->diagonal.row(y), *right = matrix->right.row(y), *up = matrix->up.row(y);
+      for (int x = 0; x < more.width(); ++x) {
+        screen[x] += row.screen()[x];
+        right[x] += row.right()[x];
+        up[x] += row.up()[x];
       }
     }
   });
 }
 
-// B + K, the matrix of a frame before it is eliminated.
-void fill_matrix(const Ladder& ladder, const ScreenedLaplacian* coupling, Stencil* matrix) {
-  const int w = matrix->width(), h = matrix->height();
-  for_pieces(h, [&](int begin, int end) {
-    LaplacianRow row(w);
+// What a frame of matrix B leaves to the next: Fᵀ (B : K) F.
+void eliminate(const Stencil& matrix, const ScreenedLaplacian& coupling, const Links& links, Stencil* next) {
+  clear(next);
+  for_pieces(coupling.height(), [&](int begin, int end) {
+    LaplacianRow row(coupling.width());
     for (int y = begin; y < end; ++y) {
-      if (coupling) row.load(*coupling, y);
-      float *diagonal = matrix->diagonal.row(y), *right = matrix->right.row(y), *up = matrix->up.row(y);
-      for (int x = 0; x < w; ++x) {
-        diagonal[x] = ladder.screen.row(y)[x] + (coupling ? row.screen()[x] : 0.0f);
-        right[x] = ladder.right.row(y)[x] + (coupling ? row.right()[x] : 0.0f);
-        up[x] = ladder.up.row(y)[x] + (coupling ? row.up()[x] : 0.0f);
-      }
+      row.load(coupling, y);
+      const float *screen = matrix.diagonal.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y);
+      links.for_runs(y, [&](int first, int last, int dx, int dy) {
+        // A mixed row couples pixels that stay neighbours, so its edge is one of the next frame, too.
+        float *to_screen = next->diagonal.row(y + dy) + dx, *to_right = next->right.row(y + dy) + dx, *to_up = next->up.row(y + dy) + dx;
+        for (int x = first; x < last; ++x) {
+          to_screen[x] = parallel_sum(screen[x], row.screen()[x]);
+          to_right[x] = parallel_sum(right[x], row.right()[x]);
+          to_up[x] = parallel_sum(up[x], row.up()[x]);
+        }
+      });
     }
   });
-  for_rows(h, [&](int y) {
+}
+
+void add_edges_to_diagonal(Stencil* matrix) {
+  for_rows(matrix->height(), [&](int y) {
     float* diagonal = matrix->diagonal.row(y);
     const float *right = matrix->right.row(y), *up = matrix->up.row(y), *down = matrix->up.row(y - 1);
-    for (int x = 0; x < w; ++x) diagonal[x] += right[x] + right[x - 1] + up[x] + down[x];
+    for (int x = 0; x < matrix->width(); ++x) diagonal[x] += right[x] + right[x - 1] + up[x] + down[x];
   });
 }
 
@@ -59,55 +67,146 @@ void copy(const Field& from, Field* to) {
   });
 }
 
-// What frame t leaves to the next.
-Ladder eliminate(const Ladder& ladder, const ScreenedLaplacian& coupling, const Links& links) {
-  const int w = coupling.width(), h = coupling.height();
-  Ladder next(w, h);
-  for_pieces(h, [&](int begin, int end) {
-    LaplacianRow row(w);
-    for (int y = begin; y < end; ++y) {
-      row.load(coupling, y);
-      links.for_runs(y, [&](int first, int last, int dx, int dy) {
-        for (int x = first; x < last; ++x) {
-          // A mixed row couples pixels that stay neighbours, so its edge is one of the next frame, too.
-          next.screen.row(y + dy)[x + dx] = parallel_sum(ladder.screen.row(y)[x], row.screen()[x]);
-          next.right.row(y + dy)[x + dx] = parallel_sum(ladder.right.row(y)[x], row.right()[x]);
-          next.up.row(y + dy)[x + dx] = parallel_sum(ladder.up.row(y)[x], row.up()[x]);
-        }
-      });
-    }
-  });
-  return next;
+// Θ, near S⁻¹K: what of the next frame's values a frame takes over before its cycle.
+void read_guess(const Stencil& s, const LaplacianRow& k, int y, float* out) {
+  const float *all = s.diagonal.row(y), *right = k.right();
+  for (int x = 0; x < s.width(); ++x) {
+    const float of_links = k.screen()[x] + right[x] + right[x - 1] + k.up()[x] + k.down()[x];
+    out[x] = all[x] > 0.0f ? of_links / all[x] : 0.0f;
+  }
 }
 
 }  // namespace
 
-TimeLadder::TimeLadder(const SpaceTimeSystem& system, int channels) : system_(system), solved_(system.width(), system.height(), channels) {
+TimeLadder::TimeLadder(const SpaceTimeSystem& system, int channels, int cycles)
+    : system_(system), solved_(system.width(), system.height(), channels) {
+  if (cycles > 1) residual_ = correction_ = solved_;
   const auto work = std::make_shared<MultigridWork>(system.width(), system.height(), channels);
   for (int t = 0; t < system.frames(); ++t) schur_.emplace_back(system.width(), system.height(), work);
 }
 
 void TimeLadder::update() {
-  Ladder ladder(system_.width(), system_.height());
-  for (int t = 0; t < system_.frames(); ++t) {
-    const bool last = t + 1 == system_.frames();
-    add_frame(system_.frame(t), &ladder);
-    fill_matrix(ladder, last ? nullptr : &system_.coupling(t), &schur_[size_t(t)].matrix());
-    schur_[size_t(t)].update();
-    if (!last) ladder = eliminate(ladder, system_.coupling(t), system_.links(t));
+  clear(&schur_.front().matrix());
+  for (size_t t = 0; t < schur_.size(); ++t) {
+    Stencil& matrix = schur_[t].matrix();
+    add(system_.frame(int(t)), &matrix);
+    if (t + 1 < schur_.size()) {
+      eliminate(matrix, system_.coupling(int(t)), system_.links(int(t)), &schur_[t + 1].matrix());
+      add(system_.coupling(int(t)), &matrix);
+    }
+    add_edges_to_diagonal(&matrix);
+    schur_[t].update();
   }
+}
+
+void TimeLadder::solve_frame(size_t t, const Field& b) {
+  schur_[t].cycle(b, &solved_);
+  if (residual_.height() == 0) return;
+  const Stencil& s = schur_[t].matrix();
+  for_rows(b.height(), [&](int y) {
+    for (int c = 0; c < b.channels(); ++c) {
+      float* to = residual_.row(y, c);
+      apply_row(s, solved_, y, c, to);
+      const float* from = b.row(y, c);
+      for (int x = 0; x < b.width(); ++x) to[x] = from[x] - to[x];
+    }
+  });
+  schur_[t].cycle(residual_, &correction_);
+  for_values(&solved_, [&](float& value, int x, int y, int c) { value += correction_.row(y, c)[x]; });
+}
+
+// next += Fᵀ (K z + Θ (b − S z)), z the frame's solution for the right side b.
+void TimeLadder::carry_forth(int t, const Field& b, const Field& z, Field* next) const {
+  const ScreenedLaplacian& k = system_.coupling(t);
+  const Stencil& s = schur_[size_t(t)].matrix();
+  const int w = s.width(), channels = z.channels();
+  for_pieces(s.height(), [&](int begin, int end) {
+    LaplacianRow weights(w);
+    std::vector<float> carried(size_t(w) * size_t(channels)), guess(static_cast<size_t>(w)), product(guess);
+    for (int y = begin; y < end; ++y) {
+      weights.load(k, y);
+      read_guess(s, weights, y, guess.data());
+      for (int c = 0; c < channels; ++c) {
+        float* to = carried.data() + ptrdiff_t(c) * w;
+        const float* from = b.row(y, c);
+        weights.apply(z.row(y - 1, c), z.row(y, c), z.row(y + 1, c), to);
+        apply_row(s, z, y, c, product.data());
+        for (int x = 0; x < w; ++x) to[x] += guess[size_t(x)] * (from[x] - product[size_t(x)]);
+      }
+      scatter_row(system_.links(t), y, carried.data(), next);
+    }
+  });
+}
+
+// b += (K − SΘ) F next: the transpose, but for what is added after the cycle.
+void TimeLadder::carry_back(int t, const Field& next, Field* b) const {
+  const ScreenedLaplacian& k = system_.coupling(t);
+  const Stencil& s = schur_[size_t(t)].matrix();
+  const int w = s.width(), h = s.height(), channels = next.channels();
+  for_pieces(
+      h,
+      [&](int begin, int end) {
+        RollingRows values(w, channels), guesses(w, channels);
+        LaplacianRow weights(w);
+        std::vector<float> guess(static_cast<size_t>(w)), product(guess), of_guess(guess);
+        const auto make = [&](int y) {
+          for (int c = 0; c < channels; ++c) std::fill_n(values.row(y, c), w, 0.0f);
+          if (y >= 0 && y < h) {
+            gather_row(system_.links(t), y, next, &values);
+            weights.load(k, y);
+            read_guess(s, weights, y, guess.data());
+          }
+          for (int c = 0; c < channels; ++c) {
+            const float* from = values.row(y, c);
+            float* to = guesses.row(y, c);
+            for (int x = 0; x < w; ++x) to[x] = guess[size_t(x)] * from[x];
+          }
+        };
+        make(begin - 1);
+        make(begin);
+        for (int y = begin; y < end; ++y) {
+          make(y + 1);
+          weights.load(k, y);
+          for (int c = 0; c < channels; ++c) {
+            weights.apply(values.row(y - 1, c), values.row(y, c), values.row(y + 1, c), product.data());
+            apply_row(s, y, guesses.row(y - 1, c), guesses.row(y, c), guesses.row(y + 1, c), of_guess.data());
+            float* to = b->row(y, c);
+            for (int x = 0; x < w; ++x) to[x] += product[size_t(x)] - of_guess[size_t(x)];
+          }
+        }
+      },
+      64);
+}
+
+// z += Θ F next
+void TimeLadder::add_guess(int t, const Field& next, Field* z) const {
+  const Stencil& s = schur_[size_t(t)].matrix();
+  for_pieces(s.height(), [&](int begin, int end) {
+    LaplacianRow weights(s.width());
+    std::vector<float> guess(size_t(s.width()));
+    for (int y = begin; y < end; ++y) {
+      weights.load(system_.coupling(t), y);
+      read_guess(s, weights, y, guess.data());
+      system_.links(t).for_runs(y, [&](int first, int last, int dx, int dy) {
+        for (int c = 0; c < z->channels(); ++c) {
+          const float* from = next.row(y + dy, c) + dx;
+          float* to = z->row(y, c);
+          for (int x = first; x < last; ++x) to[x] += guess[size_t(x)] * from[x];
+        }
+      });
+    }
+  });
 }
 
 std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
   const int channels = solved_.channels();
   const size_t last = schur_.size() - 1;
-  // z holds the right sides of the frames, which each frame adds to when it is solved: the one behind it on the way forth, the one before
-  // it on the way back.
+  // z holds the right sides of the frames, to which the frame before adds its share on the way forth, and the frame behind on the way back.
   for (size_t t = 0; t <= last; ++t) {
     Field& right_side = (*z)[t];
     copy(r[t], &right_side);
-    if (t > 0) system_.push(int(t) - 1, solved_, &right_side);
-    schur_[t].cycle(right_side, &solved_);
+    if (t > 0) carry_forth(int(t) - 1, (*z)[t - 1], solved_, &right_side);
+    solve_frame(t, right_side);
   }
   std::vector<RowSums> sums;
   for (size_t t = last;; --t) {
@@ -116,8 +215,9 @@ std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
     sums.push_back(sum_each_row(system_.height(), channels,
                                 [&](int y, int c) { return dot_row(r[t].row(y, c), solution.row(y, c), system_.width()); }));
     if (t == 0) return sums;
-    system_.pull(int(t) - 1, solution, &(*z)[t - 1]);
-    schur_[t - 1].cycle((*z)[t - 1], &solved_);
+    carry_back(int(t) - 1, solution, &(*z)[t - 1]);
+    solve_frame(t - 1, (*z)[t - 1]);
+    add_guess(int(t) - 1, solution, &solved_);
   }
 }
 

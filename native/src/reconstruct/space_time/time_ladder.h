@@ -5,6 +5,10 @@
 // links: conductances in series (Anderson and Duffin 1969). Of two screened Laplacians that is nearly a screened Laplacian again, whose
 // screens and edges are the parallel sums ab/(a + b) of theirs: exact for what is smooth and for what is rough, and otherwise less than the
 // true one by up to 3 % where all weights are alike. So every pixel and every edge is a ladder of its own along its track.
+//
+// The cycle V is not quite S⁻¹. Where the coupling is far stronger than all else, what it misses would be, too. So a frame takes over a
+// share Θ of what the next one has, and its cycle finds the rest: S⁻¹K ≈ Θ + V(K − SΘ), which is exact for any Θ if V is. The way forth
+// has the transpose.
 #pragma once
 
 #include <memory>
@@ -16,16 +20,24 @@ namespace gradus {
 
 class TimeLadder {
  public:
-  TimeLadder(const SpaceTimeSystem& system, int channels);
+  // cycles: of multigrid for each S⁻¹, 1 or 2. Equal weights need no second one. Where weights span decades it halves the steps, at less
+  // than twice the time.
+  TimeLadder(const SpaceTimeSystem& system, int channels, int cycles);
   // After the system's weights have changed.
   void update();
   // z ≈ A⁻¹ r; returns r·z by frame. Symmetric and positive definite.
   std::vector<RowSums> apply(const Frames& r, Frames* z);
 
  private:
+  void solve_frame(size_t t, const Field& b);  // → solved_
+  void carry_forth(int t, const Field& b, const Field& z, Field* next) const;
+  void carry_back(int t, const Field& next, Field* b) const;
+  void add_guess(int t, const Field& next, Field* z) const;
+
   const SpaceTimeSystem& system_;
   std::vector<Multigrid> schur_;  // of B_t + K_t, B_t with what earlier frames leave
   Field solved_;                  // of one frame
+  Field residual_, correction_;   // of a second cycle
 };
 
 }  // namespace gradus

@@ -1,4 +1,4 @@
-#include "reconstruct/space_time/l2_weights.h"
+#include "reconstruct/space_time/weigh_alike.h"
 
 #include "reconstruct/solver_planes.h"
 

@@ -1,0 +1,24 @@
+// Twicing over a window (twicing.h): x = x₀ + S W (I − x₀) gives back what an estimate x₀ lost of the noisy images I. S smooths in every
+// frame as the L2 solver does, and then along the tracks, so that what it gives back does not flicker; of the window's L2 solver that is
+// nearly the factorisation, at the cost of a cosine transform. W limits outliers of the residual, by squares.
+#pragma once
+
+#include "reconstruct/poisson_dct.h"
+#include "reconstruct/space_time/system.h"
+
+namespace gradus {
+
+class WindowTwicing {
+ public:
+  // Estimates W from the first channels of `source`, as many as x₀ has, and freezes it.
+  WindowTwicing(const WindowSource& source, const Frames& estimate, float alpha);
+  // x₀ → x for channels of `planes` from first_channel on.
+  void apply(const WindowSource& planes, int first_channel, const SpaceTimeSystem& system, Frames* x) const;
+
+ private:
+  std::vector<WeightPlane> shares_;  // W; 0 where I is not finite
+  PoissonDct dct_;
+  float data_weight_;
+};
+
+}  // namespace gradus

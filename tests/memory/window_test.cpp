@@ -1,0 +1,100 @@
+// J1 of windows: what their solver holds, and what it takes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/clock.h"
+#include "memory/allocations.h"
+#include "reconstruct/space_time/reconstruct_sequence.h"
+#include "reconstruct/space_time/window.h"
+#include "support/statistics.h"
+
+namespace gradus::memory {
+namespace {
+
+constexpr auto kNever = [] { return false; };
+
+// Rows that are made when they are read: a flat picture with the noise of few samples. Few bright pixels, and differences with heavy tails.
+class NoisySource final : public WindowSource {
+ public:
+  NoisySource(const WindowSize& size, test::Motion motion) : size_(size) {
+    test::Window window(size.width, size.height, 0, size.frames);
+    test::link(&window, motion);
+    links_ = std::move(window.links);
+  }
+  WindowSize size() const override { return size_; }
+  void read_row(RowKind kind, int t, int y, float* out) const override {
+    uint32_t state = seed(kind, t, y);
+    for (int i = 0; i < size_.width * size_.channels; ++i) {
+      const float u = uniform(&state), v = uniform(&state);
+      out[i] = kind == RowKind::kPrimal ? 0.2f + 8.0f * std::pow(u, 8.0f) : 0.1f * (u - 0.5f) * (v < 0.02f ? 40.0f : 1.0f);
+    }
+  }
+  void read_deviations(RowKind kind, int t, int y, float* out) const override {
+    uint32_t state = seed(kind, t, y) + 1;
+    for (int x = 0; x < size_.width; ++x) out[x] = (kind == RowKind::kPrimal ? 1.5f : 0.03f) * uniform(&state);
+  }
+  void read_links(int t, int y, int32_t* out) const override {
+    std::copy_n(links_[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
+  }
+
+ private:
+  static uint32_t seed(RowKind kind, int t, int y) { return (uint32_t(kind) * 131u + uint32_t(t)) * 16411u + uint32_t(y); }
+  static float uniform(uint32_t* state) {
+    *state = *state * 747796405u + 2891336453u;
+    const uint32_t word = ((*state >> ((*state >> 28) + 4)) ^ *state) * 277803737u;
+    return float((word >> 22) ^ word) * 0x1p-32f;
+  }
+
+  WindowSize size_;
+  std::vector<std::vector<int32_t>> links_;
+};
+
+constexpr WindowSize small_window() { return {320, 180, 3, 10}; }
+constexpr WindowSize full_window() { return {1280, 720, 3, 10}; }
+
+// Contract 9.6. The small one has wider rims for its size.
+TEST(J1_Window, HoldsAtMost96BytesPerPixelAndFrame) {
+  const WindowSize size = test::full_run() ? full_window() : small_window();
+  const double pixels = double(size.width) * size.height * size.frames;
+  for (const test::Motion motion : {test::Motion::kStatic, test::Motion::kPan, test::Motion::kTurn, test::Motion::kRandom}) {
+    const NoisySource source(size, motion);
+    for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_WEIGHTED}) {
+      const int64_t before = live_bytes();
+      forget_peak();
+      const uint64_t start = process_cpu_nanoseconds();
+      SolveReport report;
+      const WindowSolver solver(source, reconstruction, 0.0f, kNever, &report);
+      const double seconds = 1e-9 * double(process_cpu_nanoseconds() - start), bytes = double(peak_bytes() - before) / pixels;
+      std::printf("  motion %d, reconstruction %u: %.1f bytes, %.2f CPU-s, %d steps, residual %.1e\n", int(motion), reconstruction, bytes,
+                  seconds, report.inner_steps, double(report.residual));
+      EXPECT_LE(bytes, test::full_run() ? 96.0 : 104.0);
+      EXPECT_FALSE(report.hit_cap);
+    }
+  }
+}
+
+// What is kept does not grow with the length of a sequence.
+TEST(J1_Window, SequencesOfAnyLengthNeedTheMemoryOfOneWindow) {
+  const auto peak_of = [](int frames) {
+    const int64_t before = live_bytes();
+    forget_peak();
+    SolveReport report;
+    int delivered = 0;
+    reconstruct_sequence(
+        {0, frames - 1},
+        [](const FrameRange& range) {
+          return std::make_unique<NoisySource>(WindowSize{96, 64, 3, range.count()}, test::Motion::kStatic);
+        },
+        GRADUS_RECONSTRUCTION_L2, 0.0f, kNever, &report, [&](int, const std::vector<float>&) { ++delivered; });
+    EXPECT_EQ(delivered, frames);
+    EXPECT_EQ(live_bytes(), before);
+    return peak_bytes() - before;
+  };
+  const int64_t few = peak_of(15);
+  EXPECT_LE(peak_of(60), few + few / 100);
+}
+
+}  // namespace
+}  // namespace gradus::memory

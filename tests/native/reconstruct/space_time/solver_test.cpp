@@ -1,0 +1,332 @@
+// B1, B2, B3 for windows.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "reconstruct/space_time/sequences.h"
+#include "reconstruct/space_time/track_smoothing.h"
+#include "reconstruct/space_time/window_solver.h"
+#include "support/threads.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr uint32_t kL2 = GRADUS_RECONSTRUCTION_L2, kL1 = GRADUS_RECONSTRUCTION_L1, kWeighted = GRADUS_RECONSTRUCTION_WEIGHTED;
+constexpr uint32_t kAll[] = {kL2, kL1, kWeighted};
+
+WindowSolver solver_of(const WindowSource& window, uint32_t reconstruction, float alpha = 0.0f) {
+  SolveReport report;
+  WindowSolver solver(window, reconstruction, alpha, never, &report);
+  EXPECT_FALSE(report.hit_cap);
+  return solver;
+}
+std::vector<float> solve(const WindowSource& window, uint32_t reconstruction, float alpha = 0.0f) {
+  return joined(solver_of(window, reconstruction, alpha).solution());
+}
+
+Window noisy_window(int width, int height, int channels, int frames, Motion motion) {
+  Window window = measured(width, height, channels, frames, motion);
+  add_noise_of_halves(
+      &window, [](RowKind kind, size_t) { return kind == RowKind::kPrimal ? 0.4f : 0.05f; }, 1);
+  return window;
+}
+
+TEST(B1_SpaceTime, ASequenceWithItsOwnDifferencesStays) {
+  for (const Motion motion : kMotions) {
+    for (const uint32_t reconstruction : kAll) {
+      const Window window = measured(33, 17, 3, 6, motion);
+      const Images images = changing_images(window.size_);
+      EXPECT_LT(max_difference(solve(window, reconstruction), joined(images)), 1e-3) << int(motion) << " by " << reconstruction;
+    }
+  }
+}
+
+TEST(B2_SpaceTime, AnySizeIsSolved) {
+  for (const auto& [w, h] : {std::pair(1, 1), std::pair(1, 7), std::pair(7, 1), std::pair(2, 3), std::pair(64, 33)}) {
+    for (const int frames : {1, 2, 10}) {
+      for (const uint32_t reconstruction : kAll) {
+        const Window window = measured(w, h, 3, frames, Motion::kStatic);
+        EXPECT_LT(max_difference(solve(window, reconstruction), joined(changing_images(window.size_))), 1e-3)
+            << w << "x" << h << "x" << frames << " by " << reconstruction;
+      }
+    }
+  }
+}
+
+// Frames that nothing links are single frames.
+TEST(B2_SpaceTime, WithoutLinksL2IsThatOfSingleFrames) {
+  const Window window = noisy_window(96, 64, 3, 3, Motion::kNone);
+  const Frames x = solver_of(window, kL2).take_solution();
+  for (int t = 0; t < 3; ++t) {
+    SolveReport report;
+    EXPECT_LT(max_difference(interleaved(x[size_t(t)]), reconstruct(frame_of(window, t), kL2, 0.0f, never, &report)), 5e-5);
+  }
+}
+
+// But for the 16 bits that a weight has.
+TEST(B2_SpaceTime, WithoutLinksWeightsAreThoseOfSingleFrames) {
+  const Window window = noisy_window(96, 64, 3, 3, Motion::kNone);
+  for (const uint32_t reconstruction : {kL1, kWeighted}) {
+    const Frames x = solver_of(window, reconstruction).take_solution();
+    for (int t = 0; t < 3; ++t) {
+      SolveReport report;
+      const std::vector<float> still = reconstruct(frame_of(window, t), reconstruction, 0.0f, never, &report);
+      const std::vector<float> l2 = reconstruct(frame_of(window, t), kL2, 0.0f, never, &report);
+      const double apart = rms_difference(interleaved(x[size_t(t)]), still);
+      EXPECT_LT(apart, 0.02 * rms_difference(l2, still)) << reconstruction;
+    }
+  }
+}
+
+TEST(B2_SpaceTime, L2KeepsTheMean) {
+  for (const Motion motion : kMotions) {
+    const Window window = noisy_window(64, 48, 1, 5, motion);
+    Images primal;
+    for (int t = 0; t < 5; ++t) primal.push_back(window.plane(RowKind::kPrimal, t));
+    EXPECT_NEAR(mean(solve(window, kL2)) / mean(joined(primal)), 1.0, 1e-5) << int(motion);
+  }
+}
+
+// Mean squared error that L2 leaves, by the modes of the static window's system (T-GPT eq. 4, with free ends): noise of deviation σ_I in
+// pixels, σ_g in differences in space, none along the links.
+double noise_left(int w, int h, int frames, double alpha, double sigma_i, double sigma_g) {
+  const auto eigenvalue = [](int k, int n) { return 2.0 - 2.0 * std::cos(std::numbers::pi * k / n); };
+  double sum = 0.0;
+  for (int k = 0; k < frames; ++k) {
+    for (int y = 0; y < h; ++y) {
+      for (int x = 0; x < w; ++x) {
+        const double space = eigenvalue(x, w) + eigenvalue(y, h), time = eigenvalue(k, frames);
+        const double a = alpha * alpha + space + time + space * time;
+        sum += (std::pow(alpha, 4) * sigma_i * sigma_i + sigma_g * sigma_g * space) / (a * a);
+      }
+    }
+  }
+  return sum / (double(frames) * w * h);
+}
+
+// A shot where nothing moves: the same random numbers give the same picture, so differences in time are known to be 0.
+TEST(B3_SpaceTime, AStaticShotKeepsTheNoiseThatTheoryLeaves) {
+  constexpr int w = 24, h = 18, runs = 24;
+  for (const int frames : {1, 2, 5, 10}) {
+    double squares = 0.0;
+    for (unsigned run = 0; run < runs; ++run) {
+      Window window(w, h, 3, frames);
+      link(&window, Motion::kStatic);
+      for (int t = 0; t < frames; ++t) {
+        add_noise(&window.plane(RowKind::kPrimal, t), 1.0f, 100 * run + unsigned(t));
+        add_noise(&window.plane(RowKind::kDx, t), 0.2f, 100 * run + 20 + unsigned(t));
+        add_noise(&window.plane(RowKind::kDy, t), 0.2f, 100 * run + 40 + unsigned(t));
+      }
+      const std::vector<float> x = solve(window, kL2, 0.4f);
+      squares += std::pow(rms_difference(x, std::vector<float>(x.size(), 0.0f)), 2) / runs;
+    }
+    const double expected = noise_left(w, h, frames, 0.4, 1.0, 0.2);
+    std::printf("  %d frames: %.5f, expected %.5f\n", frames, squares, expected);
+    EXPECT_NEAR(squares / expected, 1.0, 0.06) << frames;
+  }
+}
+
+// z-test of every pixel over runs with skewed noise in all rows.
+TEST(B3_SpaceTime, L2IsUnbiased) {
+  constexpr int w = 9, h = 7, frames = 4, runs = 600;
+  const Window exact = measured(w, h, 1, frames, Motion::kTurn);
+  const std::vector<float> truth = joined(changing_images(exact.size_));
+  std::vector<double> sum(truth.size()), squares(truth.size());
+  std::mt19937 random(5);
+  std::exponential_distribution<float> exponential(1.0f);
+  for (int run = 0; run < runs; ++run) {
+    Window window = exact;
+    for (const RowKind kind : kRowKinds) {
+      const float sigma = kind == RowKind::kPrimal ? 1.0f : 0.3f;
+      for (auto& plane : window.planes[size_t(kind)]) {
+        for (float& v : plane) v += sigma * (exponential(random) - 1.0f);
+      }
+    }
+    const std::vector<float> x = solve(window, kL2);
+    for (size_t i = 0; i < x.size(); ++i) {
+      const double error = double(x[i]) - truth[i];
+      sum[i] += error;
+      squares[i] += error * error;
+    }
+  }
+  double mean_square = 0.0, worst = 0.0;
+  for (size_t i = 0; i < sum.size(); ++i) {
+    const double variance = (squares[i] - sum[i] * sum[i] / runs) / (runs - 1), z = sum[i] / std::sqrt(variance * runs);
+    mean_square += z * z / double(sum.size());
+    worst = std::max(worst, std::abs(z));
+  }
+  // Neighbours' errors are alike: some 30 are independent of 252.
+  EXPECT_LT(mean_square, 1.8);
+  EXPECT_GT(mean_square, 0.4);
+  EXPECT_LT(worst, 4.2);
+}
+
+// What the first three channels hold, in a source of its own: parts of an image, or its alpha.
+Window share_of(const Window& window, float share, float offset) {
+  Window part = window;
+  for (const RowKind kind : kRowKinds) {
+    for (auto& plane : part.planes[size_t(kind)]) {
+      for (float& v : plane) v = share * v + (kind == RowKind::kPrimal ? offset : 0.0f);
+    }
+  }
+  return part;
+}
+
+TEST(B2_SpaceTime, FrozenWeightsAreALinearOperator) {
+  for (const uint32_t reconstruction : kAll) {
+    const Window window = noisy_window(64, 48, 3, 5, Motion::kTurn);
+    const WindowSolver solver = solver_of(window, reconstruction);
+    SolveReport report;
+    const auto apply = [&](const Window& planes) { return joined(solver.apply(planes, 0, 3, never, &report)); };
+    const std::vector<float> whole = joined(solver.solution());
+    EXPECT_LT(rms_difference(apply(window), whole), 2e-3) << reconstruction;
+    std::vector<float> sum = apply(share_of(window, 0.3f, 0.2f));
+    const std::vector<float> rest = apply(share_of(window, 0.7f, -0.2f));
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += rest[i];
+    EXPECT_LT(max_difference(sum, apply(window)), 1e-3) << reconstruction;
+  }
+}
+
+TEST(B2_SpaceTime, AConstantIsKeptByWeightsOfOtherPlanes) {
+  for (const uint32_t reconstruction : kAll) {
+    const WindowSolver solver = solver_of(noisy_window(64, 48, 3, 5, Motion::kTurn), reconstruction);
+    Window flat = measured(64, 48, 1, 5, Motion::kTurn);
+    flat.measure(Images(5, std::vector<float>(64 * 48, 0.75f)));
+    SolveReport report;
+    for (const float v : joined(solver.apply(flat, 0, 1, never, &report))) ASSERT_NEAR(v, 0.75f, 1e-3f) << reconstruction;
+  }
+}
+
+TEST(L1_Threads, WindowsHaveTheSameBitsForAnyNumberOfThreads) {
+  const Window window = noisy_window(133, 71, 3, 4, Motion::kTurn);
+  for (const uint32_t reconstruction : kAll) {
+    expect_same_bits_for_any_number_of_threads([&] { return solve(window, reconstruction); });
+  }
+}
+
+double error_of(const Window& window, uint32_t reconstruction, const Images& truth) {
+  return rms_difference(solve(window, reconstruction), joined(truth));
+}
+
+TEST(B2_SpaceTime, L1IgnoresOutliersAlongTheLinks) {
+  Window window = measured(64, 48, 3, 5, Motion::kPan);
+  const Images truth = changing_images(window.size_);
+  add_noise_of_halves(
+      &window, [](RowKind kind, size_t) { return kind == RowKind::kPrimal ? 0.1f : 0.02f; }, 1);
+  for (size_t i = 100; i < 64 * 48 * 3; i += 301) {
+    window.plane(RowKind::kDt, 2)[i] += 30.0f;
+    window.plane(RowKind::kDxDt, 1)[i] -= 30.0f;
+    window.plane(RowKind::kDyDt, 3)[i] -= 30.0f;
+  }
+  EXPECT_LT(error_of(window, kL1, truth), 0.06);
+  EXPECT_GT(error_of(window, kL2, truth), 0.15);
+}
+
+// Half of the picture has useless differences in time, half has useless ones in space.
+TEST(B2_SpaceTime, WeightedGoesByTheNoiseOfEachKindAndPlace) {
+  constexpr int w = 64, h = 48;
+  Window window = measured(w, h, 3, 6, Motion::kStatic);
+  const Images truth = changing_images(window.size_);
+  add_noise_of_halves(
+      &window,
+      [](RowKind kind, size_t pixel) {
+        if (kind == RowKind::kPrimal) return 0.5f;
+        return is_temporal(kind) == (int(pixel) % w < w / 2) ? 2.0f : 0.02f;
+      },
+      1);
+  EXPECT_LT(error_of(window, kWeighted, truth), 0.5 * error_of(window, kL2, truth));
+}
+
+// Bright values are the noisy ones where light is rare, so weights by noise lose them; twicing gives them back, and lets no frame flicker
+// more than its noise.
+TEST(B3_SpaceTime, WeightsKeepTheMeanOfSkewedNoise) {
+  for (const uint32_t reconstruction : {kL1, kWeighted}) {
+    Window window(96, 64, 3, 5);
+    link(&window, Motion::kStatic);
+    window.measure(Images(5, std::vector<float>(96 * 64 * 3, 1.0f)));
+    add_noise_of_halves(
+        &window, [](RowKind kind, size_t) { return kind == RowKind::kPrimal || is_temporal(kind) ? 0.0f : 0.3f; }, 1);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> uniform;
+    Images primal;
+    for (int t = 0; t < 5; ++t) {
+      for (size_t i = 0; i < 96 * 64; ++i) {
+        const float a = uniform(random) < 0.1f ? 9.1f : 0.1f, b = uniform(random) < 0.1f ? 9.1f : 0.1f;
+        for (size_t c = 0; c < 3; ++c) window.plane(RowKind::kPrimal, t)[3 * i + c] = 0.5f * (a + b);
+        window.deviations[0][size_t(t)][i] = 0.5f * std::abs(a - b);
+      }
+      primal.push_back(window.plane(RowKind::kPrimal, t));
+    }
+    EXPECT_NEAR(mean(solve(window, reconstruction)) / mean(joined(primal)), 1.0, 1e-3) << reconstruction;
+  }
+}
+
+// A missing row is none: its value may be anything.
+TEST(B2_SpaceTime, RowsThatAreMissingAreLeftOut) {
+  Window window = measured(33, 17, 3, 4, Motion::kTurn);
+  for (const RowKind kind : kRowKinds) {
+    for (size_t i = 3; i < 33 * 17 * 3; i += 37) window.plane(kind, 1)[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  for (const uint32_t reconstruction : kAll) {
+    const double worst = max_difference(solve(window, reconstruction), joined(changing_images(window.size_)));
+    EXPECT_LT(worst, 1e-3) << reconstruction;
+  }
+}
+
+TEST(B2_SpaceTime, TracksAreSmoothedExactly) {
+  const Window window = measured(13, 9, 1, 5, Motion::kTurn);
+  const SpaceTimeSystem system(window);
+  Frames x = system.make_fields(1), right_side = x;
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  double sum = 0.0;
+  for (Field& frame : right_side) {
+    for_rows(9, [&](int y) {
+      for (int i = 0; i < 13; ++i) sum += frame.row(y)[i] = normal(random);
+    });
+  }
+  x = right_side;
+  smooth_tracks(system, 0.04f, &x);
+  std::vector<double> left(size_t(5 * 9 * 13));
+  const auto value = [](const Frames& frames, int pixel) { return frames[size_t(pixel / 117)].row(pixel % 117 / 13)[pixel % 13]; };
+  for (int i = 0; i < 5 * 117; ++i) left[size_t(i)] = 0.04 * (double(value(x, i)) - value(right_side, i));
+  window.for_rows([&](RowKind kind, int, int, int, const Window::Terms& terms) {
+    if (kind != RowKind::kDt) return;
+    const double difference = double(value(x, terms[1].first)) - value(x, terms[0].first);
+    left[size_t(terms[1].first)] += difference;
+    left[size_t(terms[0].first)] -= difference;
+  });
+  double kept = 0.0;
+  for (int i = 0; i < 5 * 117; ++i) {
+    EXPECT_NEAR(left[size_t(i)], 0.0, 1e-5);
+    kept += value(x, i);
+  }
+  EXPECT_NEAR(kept, sum, 1e-3);
+}
+
+TEST(B2_SpaceTime, LinksThatAreNotOneToOneAreRefused) {
+  Window window = measured(8, 8, 1, 2, Motion::kStatic);
+  window.links[0][3] = 4;
+  EXPECT_THROW(SpaceTimeSystem{window}, Error);
+  window.links[0][3] = 64;
+  EXPECT_THROW(SpaceTimeSystem{window}, Error);
+  window.links[0][3] = kNoLink;
+  EXPECT_NO_THROW(SpaceTimeSystem{window});
+}
+
+TEST(K2_Cancel, WindowsEndAtOnce) {
+  const Window window = noisy_window(64, 48, 3, 4, Motion::kStatic);
+  for (const uint32_t reconstruction : kAll) {
+    SolveReport report;
+    const WindowSolver solver(
+        window, reconstruction, 0.0f, [] { return true; }, &report);
+    EXPECT_EQ(report.inner_steps, 0) << reconstruction;
+  }
+}
+
+}  // namespace
+}  // namespace gradus
