@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "integrator/sample_sources.h"
 #include "scene/camera.h"
 #include "scene/snapshot.h"
 
@@ -16,6 +17,7 @@ namespace gradus {
 // frame's region, 0 allowed, replaces `count`; the same map tells the counts of neighbours for the pair weights (contract 1.5).
 // first_map: each pixel's first sample number, the same within a cell of the lattice, replaces `first_sample`.
 // pixel_map: 0 for pixels of the frame's region that are passed over, though their counts are those of the others.
+// sources: whose random numbers the pixels take, where the unit replays another frame; nullptr: their own.
 // gradient_map: 0 for pixels of the region whose paths have no offsets; pairs with such a pixel are absent.
 struct WorkUnit {
   Region tile;
@@ -25,6 +27,7 @@ struct WorkUnit {
   const std::vector<uint32_t>* first_map = nullptr;
   const std::vector<uint8_t>* pixel_map = nullptr;
   const std::vector<uint8_t>* gradient_map = nullptr;
+  const SampleSources* sources = nullptr;
 };
 
 class Integrator {

@@ -6,14 +6,30 @@ namespace gradus {
 
 namespace {
 
-SampleKey sample_key(const PathContext& context, StreamKind kind, uint32_t stream, uint32_t number) {
-  SampleKey key;
-  key.seed = context.settings.seed;
-  key.kind = kind;
-  key.stream = stream;
-  key.stream_frame = context.settings.frame;
-  key.index = number;
-  return key;
+// Whose random numbers a pixel takes.
+struct Source {
+  StreamKind kind = StreamKind::Pixel;
+  int32_t x = 0, y = 0;
+  int32_t frame = 0;
+};
+
+Source source_of(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) {
+  if (unit.sources == nullptr) return {StreamKind::Pixel, x, y, context.settings.frame};
+  const int32_t pixel = unit.sources->pixel[frame.index(x, y)];
+  if (pixel == kNoLink) return {StreamKind::Hole, x, y, context.settings.frame};
+  const int32_t width = frame.region.width();
+  return {StreamKind::Pixel, frame.region.x0 + pixel % width, frame.region.y0 + pixel / width, unit.sources->stream_frame};
+}
+
+Sampler make_sampler(const PathContext& context, StreamKind kind, uint32_t stream, int32_t frame, uint32_t number) {
+  return Sampler({context.settings.seed, kind, stream, frame, number}, context.settings.independent_sampler != 0);
+}
+
+// Jitter of the cell that holds a pixel.
+Vec2 jitter_of_cell(const PathContext& context, const Source& source, uint32_t number) {
+  const uint32_t column = static_cast<uint32_t>(lattice_cell(source.x)), row = static_cast<uint32_t>(lattice_cell(source.y));
+  const Sampler sampler = make_sampler(context, StreamKind::Lattice, (row << 16) ^ (column & 0xffffu), source.frame, number);
+  return context.filter.sample(sampler.get2(dimension::kFilm));
 }
 
 }  // namespace
@@ -31,21 +47,34 @@ uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& ce
   return most;
 }
 
-Vec2 cell_jitter(const PathContext& context, const Region& cell, uint32_t number) {
-  const uint32_t column = static_cast<uint32_t>(lattice_cell(cell.x0)), row = static_cast<uint32_t>(lattice_cell(cell.y0));
-  const SampleKey key = sample_key(context, StreamKind::Lattice, (row << 16) ^ (column & 0xffffu), number);
-  return context.filter.sample(Sampler(key, context.settings.independent_sampler != 0).get2(dimension::kFilm));
+bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& frame, const Region& cell) {
+  if (!shares_jitter(context)) return false;
+  for (int32_t y = cell.y0; y < cell.y1 && unit.sources != nullptr; ++y) {
+    for (int32_t x = cell.x0; x < cell.x1; ++x) {
+      if (unit.sources->pixel[frame.index(x, y)] != static_cast<int32_t>(frame.index(x, y))) return false;
+    }
+  }
+  return true;
 }
 
-PixelSample make_pixel_sample(const PathContext& context, const Frame& frame, int32_t x, int32_t y, uint32_t number) {
+Vec2 cell_jitter(const PathContext& context, const WorkUnit& unit, const Region& cell, uint32_t number) {
+  const int32_t frame = unit.sources != nullptr ? unit.sources->stream_frame : context.settings.frame;
+  return jitter_of_cell(context, {StreamKind::Pixel, cell.x0, cell.y0, frame}, number);
+}
+
+PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, uint32_t number) {
+  const Source source = source_of(context, unit, frame, x, y);
   PixelSample sample;
   sample.x = x;
   sample.y = y;
   sample.pixel = frame.index(x, y);
   sample.number = number;
   sample.half = static_cast<int>(number & 1u);
-  const uint32_t stream = static_cast<uint32_t>(y) * context.settings.width + static_cast<uint32_t>(x);
-  sample.sampler = Sampler(sample_key(context, StreamKind::Pixel, stream, number), context.settings.independent_sampler != 0);
+  const uint32_t stream = static_cast<uint32_t>(source.y) * context.settings.width + static_cast<uint32_t>(source.x);
+  sample.sampler = make_sampler(context, source.kind, stream, source.frame, number);
+  const bool by_cell = shares_jitter(context) && source.kind == StreamKind::Pixel;
+  sample.film = pixel_centre(x, y) +
+                (by_cell ? jitter_of_cell(context, source, number) : context.filter.sample(sample.sampler.get2(dimension::kFilm)));
   return sample;
 }
 

@@ -36,24 +36,26 @@ inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
 
 // Most samples that the unit takes of a pixel of the cell.
 uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& cell);
-// Offset from the centres of a cell's pixels, by the filter.
-Vec2 cell_jitter(const PathContext& context, const Region& cell, uint32_t number);
-// That of a pixel by itself.
-inline Vec2 own_jitter(const PathContext& context, const Sampler& sampler) { return context.filter.sample(sampler.get2(dimension::kFilm)); }
-// All but its place on the film.
-PixelSample make_pixel_sample(const PathContext& context, const Frame& frame, int32_t x, int32_t y, uint32_t number);
+// Neither lens nor time set the rays of neighbours apart: the pixels of a cell share their jitter.
+inline bool shares_jitter(const PathContext& context) { return !context.camera.has_lens() && !context.scene.features.has_motion; }
+// All pixels of a cell take their own random numbers, or those of the same pixels of another frame: what shares its jitter shares its rays.
+bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& frame, const Region& cell);
+// Offset of such a cell's pixels from their centres, by the filter.
+Vec2 cell_jitter(const PathContext& context, const WorkUnit& unit, const Region& cell, uint32_t number);
+// With its place on the film.
+PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, uint32_t number);
 
 // Calls body(PixelSample) for each sample of the unit, until `stop`: cell by cell, in order of sample numbers, over the cell's pixels. Sums
 // of pixels thus do not depend on tiles, threads, or how samples were split over units.
 template <class Body>
 void for_each_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, CameraVertices* vertices,
                      const std::atomic<bool>& stop, Body&& body) {
-  const bool shares_rays = !context.camera.has_lens() && !context.scene.features.has_motion;
   for (const Region& cell : make_cells(unit.tile)) {
+    const bool together = shares_rays(context, unit, frame, cell);
     const uint32_t most = most_samples(unit, frame, cell), first = unit_first(unit, frame.index(cell.x0, cell.y0));
     for (uint32_t i = 0; i < most; ++i) {
       const uint32_t number = first + i;
-      const Vec2 jitter = cell_jitter(context, cell, number);
+      const Vec2 jitter = together ? cell_jitter(context, unit, cell, number) : Vec2(0.0f);
       vertices->begin(jitter);
       for (int32_t y = cell.y0; y < cell.y1; ++y) {
         for (int32_t x = cell.x0; x < cell.x1; ++x) {
@@ -64,11 +66,11 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fra
           if (stop.load(std::memory_order_relaxed)) {
             return;
           }
-          PixelSample sample = make_pixel_sample(context, frame, x, y, number);
-          if (shares_rays) {
+          PixelSample sample = make_pixel_sample(context, unit, frame, x, y, number);
+          if (together) {
             sample.first = vertices->at(x, y);
+            sample.film = pixel_centre(x, y) + jitter;
           }
-          sample.film = pixel_centre(x, y) + (shares_rays ? jitter : own_jitter(context, sample.sampler));
           body(sample);
         }
       }

@@ -82,6 +82,12 @@ const Camera::Pose& Camera::pose_at(float time, Pose* room) const {
   return *room;
 }
 
+Camera Camera::without_lens() const {
+  Camera pinhole = *this;
+  pinhole.desc_.aperture_radius = 0.0f;
+  return pinhole;
+}
+
 Vec2 Camera::lens_point(const Vec2& u) const {
   if (!has_lens()) return Vec2(0.0f);
   Vec2 p = desc_.blades < 3 ? concentric_disk(u) : regular_polygon(desc_.blades, desc_.blade_rotation, u);

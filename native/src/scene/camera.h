@@ -39,6 +39,8 @@ class Camera {
   // Planar distance along the view axis; panorama: distance.
   float depth(const Vec3& world, float time) const;
   bool has_lens() const { return desc_.aperture_radius > 0.0f; }
+  // The same, with a point for a lens.
+  Camera without_lens() const;
   bool is_panorama() const { return desc_.type == GRADUS_CAMERA_PANORAMA; }
   // It moves while the shutter is open.
   bool moves() const { return !keys_.empty(); }

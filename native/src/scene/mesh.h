@@ -46,6 +46,7 @@ struct MeshData {
   Vec3 lower{0.0f}, upper{0.0f};       // bounds of the triangles kept, rest key; lower > upper: there are none
   uint32_t dropped_triangles = 0;
   uint64_t content_hash = 0;
+  uint64_t topology_hash = 0;  // of vertex count and triangles: equal where a triangle of one frame is that of another
 
   const Vec3* rest_positions() const { return positions.data() + size_t(rest_key) * vertex_count; }
   bool is_dropped(uint32_t triangle) const { return triangle_vertices[size_t(triangle) * 3] == kDroppedVertex; }

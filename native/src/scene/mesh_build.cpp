@@ -198,6 +198,13 @@ uint64_t hash_mesh(const MeshData& mesh) {
   return hash.result();
 }
 
+uint64_t hash_topology(const MeshData& mesh) {
+  ContentHash hash;
+  hash.value(mesh.vertex_count);
+  hash.array(mesh.triangle_vertices);
+  return hash.result();
+}
+
 }  // namespace
 
 std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
@@ -217,6 +224,7 @@ std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
   copy_attributes(desc, check, mesh.get());
   copy_generated(desc, mesh.get());
   mesh->content_hash = hash_mesh(*mesh);
+  mesh->topology_hash = hash_topology(*mesh);
   return mesh;
 }
 

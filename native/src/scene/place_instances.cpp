@@ -107,6 +107,7 @@ void set_keys(const InstanceArrays& a, size_t i, const Vec3& origin, InstanceDat
 }
 
 void set_values(const InstanceArrays& a, size_t i, InstanceData* out) {
+  out->id = a.ids.empty() ? i : a.ids[i];
   if (!a.visibility.empty()) out->visibility = a.visibility[i];
   if (!a.random_ids.empty()) out->random_id = a.random_ids[i];
   if (!a.pass_indices.empty()) out->pass_index = a.pass_indices[i];

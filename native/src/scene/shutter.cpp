@@ -26,6 +26,8 @@ Shutter::Shutter(const GradusCamera& desc) {
   for (const double part : sums) cumulative_.push_back(sum > 0.0 ? float(part / sum) : 1.0f);
 }
 
+float Shutter::time_of_frame() const { return opens() ? std::clamp(-open_ / (close_ - open_), 0.0f, 1.0f) : 0.0f; }
+
 float Shutter::sample(float u) const {
   if (cumulative_.empty()) return u;
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u);

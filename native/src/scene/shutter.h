@@ -19,6 +19,8 @@ class Shutter {
   float sample(float u) const;
   // Frames relative to the one rendered.
   float frame_time(float time) const { return open_ + (close_ - open_) * time; }
+  // The time that is nearest to the frame rendered.
+  float time_of_frame() const;
 
  private:
   float open_ = 0.0f, close_ = 0.0f;

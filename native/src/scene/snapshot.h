@@ -36,6 +36,7 @@ struct InstanceData : Placement {
   Mat4 to_world_next{1.0f};
   bool mirrored = false;
   uint32_t visibility = GRADUS_VISIBLE_ALL;
+  uint64_t id = 0;  // the same in every frame
   uint32_t random_id = 0;
   int32_t pass_index = 0;
   Vec4 color{1.0f};

@@ -161,6 +161,15 @@ class TestScene {
     shutter_count_.push_back(uint32_t(way.size()));
     for (const Mat4& m : way) shutter_matrices_.push_back(m * matrix);
   }
+  // Of the instance added as number i: where it is in the next commit.
+  void move(size_t i, const Mat4& matrix) { matrices_[i] = matrix; }
+  void replace_mesh(size_t i, uint64_t mesh_key) { meshes_[i] = mesh_key; }
+  void remove_last() {
+    for (auto* values : {&meshes_, &materials_}) values->pop_back();
+    for (auto* values : {&visibility_, &first_, &count_, &shutter_first_, &shutter_count_}) values->pop_back();
+    matrices_.pop_back();
+    terminators_.pop_back();
+  }
   std::shared_ptr<const Snapshot> commit() {
     GradusInstances instances{};
     instances.struct_size = sizeof(instances);

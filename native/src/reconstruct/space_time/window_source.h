@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "frame/links.h"
+
 namespace gradus {
 
 // Kinds of rows of the system. The last three belong to a frame and the next one, along the links φ between them: of pixel i of frame t,
@@ -16,9 +18,6 @@ inline constexpr bool is_temporal(RowKind kind) { return kind >= RowKind::kDt; }
 struct WindowSize {
   int width = 0, height = 0, channels = 0, frames = 0;
 };
-
-// Linked to nothing.
-inline constexpr int32_t kNoLink = -1;
 
 class WindowSource {
  public:

@@ -1,0 +1,16 @@
+// Whose random numbers the pixels of a frame take, where they replay those of another one (contract 1.1).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/links.h"
+
+namespace gradus {
+
+struct SampleSources {
+  int32_t stream_frame = 0;    // number of the frame that is replayed
+  std::vector<int32_t> pixel;  // by pixels of the region: the pixel of the same region; kNoLink: a stream of its own, tagged as a hole
+};
+
+}  // namespace gradus

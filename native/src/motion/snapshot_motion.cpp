@@ -1,0 +1,29 @@
+#include "motion/snapshot_motion.h"
+
+#include <unordered_map>
+
+#include "scene/mesh.h"
+
+namespace gradus {
+
+SnapshotMotion::SnapshotMotion(const Snapshot& from, const Snapshot& to) : to_(to), instance_(from.instances.size(), UINT32_MAX) {
+  std::unordered_map<uint64_t, uint32_t> by_id;
+  for (uint32_t i = 0; i < to.instances.size(); ++i) by_id.emplace(to.instances[i].id, i);
+  for (size_t i = 0; i < from.instances.size(); ++i) {
+    const auto found = by_id.find(from.instances[i].id);
+    if (found == by_id.end()) continue;
+    const MeshData &a = *from.instances[i].mesh, &b = *to.instances[found->second].mesh;
+    if (a.topology_hash == b.topology_hash) instance_[i] = found->second;
+  }
+}
+
+bool SnapshotMotion::position(const Hit& hit, Vec3* position) const {
+  const uint32_t index = instance_[hit.instance];
+  if (index == UINT32_MAX) return false;
+  Hit there = hit;
+  there.instance = index;
+  *position = to_.position_at(there, Moment::Now);
+  return true;
+}
+
+}  // namespace gradus

@@ -1,0 +1,24 @@
+// Surface motion between two frames: the same point of the same triangle of the same instance.
+#pragma once
+
+#include <vector>
+
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+class SnapshotMotion {
+ public:
+  // Both live as long as it.
+  SnapshotMotion(const Snapshot& from, const Snapshot& to);
+
+  // Where a surface point of `from` is in the frame of `to`, in the internal space of `to`. False: it is not there, or its mesh has another
+  // topology.
+  bool position(const Hit& hit, Vec3* position) const;
+
+ private:
+  const Snapshot& to_;
+  std::vector<uint32_t> instance_;  // in `to`, for each of `from`; UINT32_MAX: none
+};
+
+}  // namespace gradus

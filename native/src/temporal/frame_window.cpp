@@ -1,0 +1,68 @@
+#include "temporal/frame_window.h"
+
+#include <cmath>
+
+namespace gradus {
+
+namespace {
+
+const std::vector<float>& plane_of(const GradientImages& images, RowKind kind) {
+  if (kind == RowKind::kDx || kind == RowKind::kDxDt) return images.dx;
+  if (kind == RowKind::kDy || kind == RowKind::kDyDt) return images.dy;
+  return images.primal;
+}
+
+// Mean over all samples; what one of the two lacks is the other's.
+float mixed(float base, float replay, float share) {
+  if (std::isnan(base)) return replay;
+  if (std::isnan(replay)) return base;
+  return base + share * (replay - base);
+}
+
+}  // namespace
+
+WindowSize FrameWindow::size() const {
+  const GradientImages& first = frames_.front()->base.values;
+  return {first.width, first.height, first.channels, int(frames_.size())};
+}
+
+void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const {
+  const TemporalFrame& frame = *frames_[size_t(t)];
+  const size_t width = size_t(size().width), channels = size_t(size().channels), first = size_t(y) * width;
+  const float* base = plane_of(frame.base.*part, kind).data();
+  if (!is_temporal(kind)) {
+    const float* replay = frame.is_first() ? base : plane_of(frame.replay.*part, kind).data();
+    for (size_t i = first; i < first + width; ++i) {
+      const float share = frame.is_first() ? 0.0f : frame.replay_share[i];
+      for (size_t k = i * channels; k < (i + 1) * channels; ++k) *out++ = mixed(base[k], replay[k], share);
+    }
+    return;
+  }
+  const float* next = plane_of(frames_[size_t(t) + 1]->replay.*part, kind).data();
+  for (size_t i = first; i < first + width; ++i) {
+    const int32_t link = frame.links[i];
+    for (size_t c = 0; c < channels; ++c) {
+      *out++ = link == kNoLink ? kAbsentPair : next[size_t(link) * channels + c] - base[i * channels + c];
+    }
+  }
+}
+
+void FrameWindow::read_row(RowKind kind, int t, int y, float* out) const { read(kind, t, y, &HalvedImages::values, out); }
+
+void FrameWindow::read_deviations(RowKind kind, int t, int y, float* out) const {
+  const size_t channels = size_t(size().channels);
+  std::vector<float> halves(size_t(size().width) * channels);
+  read(kind, t, y, &HalvedImages::half_differences, halves.data());
+  for (size_t x = 0; x < size_t(size().width); ++x) {
+    const float* d = halves.data() + x * channels;
+    out[x] = std::sqrt((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / 3.0f);
+  }
+}
+
+void FrameWindow::read_links(int t, int y, int32_t* out) const {
+  const std::vector<int32_t>& links = frames_[size_t(t)]->links;
+  const auto first = links.begin() + ptrdiff_t(y) * size().width;
+  std::copy(first, first + size().width, out);
+}
+
+}  // namespace gradus

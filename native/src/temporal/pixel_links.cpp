@@ -1,0 +1,132 @@
+#include "temporal/pixel_links.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+#include "motion/snapshot_motion.h"
+#include "path/context.h"
+
+namespace gradus {
+
+namespace {
+
+constexpr float kLargestReturn = 1.0f;  // pixels, in x and in y
+const float kCutCosine = std::cos(kPi / 6.0f);
+constexpr float kCutZoom = 1.5f;
+
+// Where a pixel's centre goes, and how far from the camera that is.
+struct Target {
+  Vec2 film{0.0f};
+  float distance = kInfinity;
+  bool found = false;
+};
+
+Vec2 centre_of(const Region& region, size_t pixel) {
+  const auto width = size_t(region.width());
+  return pixel_centre(region.x0 + int32_t(pixel % width), region.y0 + int32_t(pixel / width));
+}
+
+class Tracker {
+ public:
+  Tracker(const CentreView& from, const CentreView& to) : from_(from), to_(to), motion_(*from.snapshot, *to.snapshot) {}
+
+  Target target(size_t pixel) const {
+    Target t;
+    const Hit& hit = from_.hits[pixel];
+    if (!hit.valid()) {
+      t.film = centre_of(from_.region, pixel);
+      t.found = shows_one_direction() || to_.camera->project_direction(from_.directions[pixel], Moment::Now, &t.film);
+      return t;
+    }
+    Vec3 position;
+    if (!motion_.position(hit, &position)) return t;
+    t.found = to_.camera->project(position, Moment::Now, &t.film);
+    t.distance = glm::length(position - to_.camera->position(to_.snapshot->shutter.time_of_frame()));
+    return t;
+  }
+
+ private:
+  // What is at infinity looks the same all over an orthographic film: it rests.
+  bool shows_one_direction() const { return to_.snapshot->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC; }
+
+  const CentreView &from_, &to_;
+  SnapshotMotion motion_;
+};
+
+// Index of the pixel that holds a film position; kNoLink outside of the region.
+int32_t pixel_at(const Region& region, const Vec2& film) {
+  const float x = std::floor(film.x), y = std::floor(film.y);
+  const bool inside = x >= float(region.x0) && x < float(region.x1) && y >= float(region.y0) && y < float(region.y1);
+  if (!inside) return kNoLink;
+  return (int32_t(y) - region.y0) * region.width() + (int32_t(x) - region.x0);
+}
+
+bool returns(const Tracker& back, const Region& region, size_t pixel, int32_t next) {
+  const Target t = back.target(size_t(next));
+  const Vec2 away = glm::abs(t.film - centre_of(region, pixel));
+  return t.found && away.x <= kLargestReturn && away.y <= kLargestReturn;
+}
+
+template <class Body>
+void for_each_pixel(size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) body(i);
+  });
+}
+
+}  // namespace
+
+CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region) {
+  CentreView view{&snapshot, &camera, region, std::vector<Hit>(size_t(region.area())), std::vector<Vec3>(size_t(region.area()))};
+  const float time = snapshot.shutter.time_of_frame();
+  const Camera pinhole = camera.without_lens();
+  for_each_pixel(view.hits.size(), [&](size_t i) {
+    const Ray ray = pinhole.ray({centre_of(region, i), Vec2(0.0f), time});
+    view.directions[i] = ray.direction;
+    snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &view.hits[i]);
+  });
+  return view;
+}
+
+std::vector<int32_t> link_pixels(const CentreView& from, const CentreView& to) {
+  const Tracker forward(from, to), back(to, from);
+  std::vector<int32_t> links(from.hits.size(), kNoLink);
+  std::vector<float> distances(from.hits.size(), kInfinity);
+  for_each_pixel(links.size(), [&](size_t i) {
+    const Target t = forward.target(i);
+    const int32_t next = t.found ? pixel_at(to.region, t.film) : kNoLink;
+    if (next == kNoLink || !returns(back, from.region, i, next)) return;
+    links[i] = next;
+    distances[i] = t.distance;
+  });
+  // In the pixels' order, so that ties go the same way on any number of threads.
+  std::vector<int32_t> owner(to.hits.size(), kNoLink);
+  for (size_t i = 0; i < links.size(); ++i) {
+    if (links[i] == kNoLink) continue;
+    int32_t& other = owner[size_t(links[i])];
+    const bool nearest = other == kNoLink || distances[i] < distances[size_t(other)];
+    if (nearest && other != kNoLink) links[size_t(other)] = kNoLink;
+    if (nearest) other = int32_t(i);
+    if (!nearest) links[i] = kNoLink;
+  }
+  return links;
+}
+
+std::vector<int32_t> inverse_links(const std::vector<int32_t>& links) {
+  std::vector<int32_t> inverse(links.size(), kNoLink);
+  for (size_t i = 0; i < links.size(); ++i)
+    if (links[i] != kNoLink) inverse[size_t(links[i])] = int32_t(i);
+  return inverse;
+}
+
+bool is_cut(const GradusCamera& from, const GradusCamera& to) {
+  if (from.type != to.type) return true;
+  const auto axis = [](const GradusCamera& c) { return glm::normalize(-Vec3(c.matrix[8], c.matrix[9], c.matrix[10])); };
+  const float zoom = (to.window[1] - to.window[0]) / (from.window[1] - from.window[0]);
+  const bool near = glm::dot(axis(from), axis(to)) >= kCutCosine && zoom < kCutZoom && zoom > 1.0f / kCutZoom;
+  return !near;
+}
+
+}  // namespace gradus

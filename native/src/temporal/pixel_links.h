@@ -1,0 +1,35 @@
+// Which pixel of the next frame shows what a pixel shows: the map φ of temporal gradients (Manzi et al. 2016, Temporal Gradient-Domain Path
+// Tracing, section 4.2). It decides who is compared with whom, nothing else: a wrong link costs variance, never the right result.
+#pragma once
+
+#include <vector>
+
+#include "frame/frame.h"
+#include "frame/links.h"
+#include "scene/camera.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+// A frame as its pixel centres see it, at the moment of the frame and through the middle of the lens.
+struct CentreView {
+  const Snapshot* snapshot = nullptr;
+  const Camera* camera = nullptr;
+  Region region;
+  std::vector<Hit> hits;         // by pixels of the region; not valid: the ray left the scene
+  std::vector<Vec3> directions;  // of the rays
+};
+// Both live as long as the view.
+CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region);
+
+// By pixels of `from`: the pixel of `to`, or kNoLink. One-to-one. A link leads back to within a pixel of where it came from; of several
+// pixels that lead to one the nearest to the camera has it. Both views have the same region.
+std::vector<int32_t> link_pixels(const CentreView& from, const CentreView& to);
+// The other way round: by pixels of `to`, the pixel of `from`.
+std::vector<int32_t> inverse_links(const std::vector<int32_t>& links);
+
+// Whether the film or the view changes so much between two frames that they are no motion but a cut (test C8: a turn of more than 30°,
+// another type of camera, a jump of the zoom).
+bool is_cut(const GradusCamera& from, const GradusCamera& to);
+
+}  // namespace gradus

@@ -1,0 +1,125 @@
+// φ: known motions in pixels, one-to-one, and nothing where nothing is to be found again.
+#include "temporal/pixel_links.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "support/path_scene.h"
+
+namespace gradus::test {
+namespace {
+
+constexpr int kSize = 32;  // pixels of a side, over 4 m
+constexpr float kPixel = 4.0f / kSize;
+
+// A square of 1 m before a wall, seen by an orthographic camera. The square is the last instance.
+class LinkedFrames : public testing::Test {
+ protected:
+  LinkedFrames() {
+    const uint64_t grey = scene_.material(matte(Rgb(0.5f)));
+    scene_.quad(Vec3(-1.75f, -4, -1), Vec3(8, 0, 0), Vec3(0, 8, 0), grey);  // leaves a strip of sky
+    scene_.quad(Vec3(-0.5f, -0.5f, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), grey);
+    look_from(Vec3(0, 0, 3));
+  }
+  void look_from(const Vec3& from) { scene_.camera(from, from - Vec3(0, 0, 1), 4.0f, GRADUS_CAMERA_ORTHOGRAPHIC); }
+  // What was built up to now, as a frame.
+  CentreView* view() {
+    frames_.push_back(std::make_unique<IntegratorContext>(scene_.context(test_settings(kSize, kSize))));
+    const IntegratorContext& c = *frames_.back();
+    views_.push_back(std::make_unique<CentreView>(view_centres(*c.snapshot, c.camera, Region{0, 0, kSize, kSize})));
+    return views_.back().get();
+  }
+  static std::vector<int32_t> links(const CentreView* from, const CentreView* to) {
+    std::vector<int32_t> found = link_pixels(*from, *to);
+    std::set<int32_t> taken;
+    for (const int32_t link : found) {
+      EXPECT_TRUE(link == kNoLink || taken.insert(link).second) << "two pixels lead to " << link;
+    }
+    const std::vector<int32_t> inverse = inverse_links(found);
+    for (size_t i = 0; i < found.size(); ++i) {
+      EXPECT_TRUE(found[i] == kNoLink || inverse[size_t(found[i])] == int32_t(i));
+    }
+    return found;
+  }
+  static int32_t pixel(int x, int y) { return y * kSize + x; }
+  static bool in_square(int x, int y) { return x >= 12 && x < 20 && y >= 12 && y < 20; }
+
+  PathScene scene_;
+  std::vector<std::unique_ptr<IntegratorContext>> frames_;
+  std::vector<std::unique_ptr<CentreView>> views_;
+};
+
+TEST_F(LinkedFrames, WhatRestsIsLinkedToItself) {
+  const std::vector<int32_t> found = links(view(), view());
+  for (size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], int32_t(i));
+}
+
+TEST_F(LinkedFrames, APannedCameraShiftsAll) {
+  const CentreView* from = view();
+  look_from(Vec3(3 * kPixel, -2 * kPixel, 3));
+  const std::vector<int32_t> found = links(from, view());
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const bool sky = x < 2, stays = x >= 3 && y + 2 < kSize;
+      if (!sky) {
+        EXPECT_EQ(found[size_t(pixel(x, y))], stays ? pixel(x - 3, y + 2) : kNoLink) << x << ' ' << y;
+      }
+    }
+}
+
+TEST_F(LinkedFrames, AMovingObjectTakesItsPixelsAlong) {
+  const CentreView* from = view();
+  scene_.scene.move(1, translation(Vec3(4 * kPixel, 0, 0)));
+  const CentreView* to = view();
+  const std::vector<int32_t> found = links(from, to);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const bool covered = !in_square(x, y) && in_square(x - 4, y);
+      const int32_t expected = in_square(x, y) ? pixel(x + 4, y) : covered ? kNoLink : pixel(x, y);
+      EXPECT_EQ(found[size_t(pixel(x, y))], expected) << x << ' ' << y;
+    }
+  // What comes into view has no partner.
+  const std::vector<int32_t> inverse = inverse_links(found);
+  for (int x = 12; x < 16; ++x) EXPECT_EQ(inverse[size_t(pixel(x, 15))], kNoLink);
+}
+
+TEST_F(LinkedFrames, WhatVanishesOrBecomesAnotherMeshHasNoPartner) {
+  const CentreView* from = view();
+  scene_.scene.mesh(77, sphere(Vec3(0.0f), 0.5f, 8, 16));
+  scene_.scene.replace_mesh(1, 77);
+  const CentreView* changed = view();
+  scene_.scene.remove_last();
+  const CentreView* gone = view();
+  for (const CentreView* to : {changed, gone}) {
+    const std::vector<int32_t> found = links(from, to);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) EXPECT_EQ(found[size_t(pixel(x, y))], in_square(x, y) ? kNoLink : pixel(x, y));
+  }
+}
+
+// Of several pixels that come to lie in one, the nearest: a square that shrinks to half its size.
+TEST_F(LinkedFrames, ShrinkingIsOneToOne) {
+  const CentreView* from = view();
+  scene_.scene.move(1, scaling(Vec3(0.5f)));
+  const std::vector<int32_t> found = links(from, view());
+  int linked = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) linked += in_square(x, y) && found[size_t(pixel(x, y))] != kNoLink;
+  EXPECT_EQ(linked, 16);
+}
+
+TEST_F(LinkedFrames, ACutIsNoMotion) {
+  const GradusCamera camera = view()->snapshot->camera;
+  GradusCamera turned = camera, zoomed = camera, other = camera;
+  turned.matrix[8] = 0.6f, turned.matrix[10] = 0.8f;
+  zoomed.window[1] *= 3.0f;
+  other.type = GRADUS_CAMERA_PERSPECTIVE;
+  EXPECT_FALSE(is_cut(camera, camera));
+  EXPECT_TRUE(is_cut(camera, turned));
+  EXPECT_TRUE(is_cut(camera, zoomed));
+  EXPECT_TRUE(is_cut(camera, other));
+}
+
+}  // namespace
+}  // namespace gradus::test

@@ -1,0 +1,130 @@
+// Temporal offset frames: the random numbers of one frame, replayed in the next (contract 1.1, 4.2).
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "integrator/pixel_loop.h"
+#include "support/path_scene.h"
+#include "support/statistics.h"
+#include "temporal/pixel_links.h"
+
+namespace gradus::test {
+namespace {
+
+constexpr uint32_t kSize = 40;  // more than one cell of the lattice
+
+GradusSettings settings_of(int32_t frame, uint32_t seed = 0) {
+  GradusSettings settings = test_settings(kSize, kSize);
+  settings.frame = frame;
+  settings.seed = seed;
+  settings.independent_sampler = 0;
+  return settings;
+}
+
+Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSources* sources = nullptr) {
+  Frame frame = make_test_frame(context.settings, true);
+  WorkUnit unit;
+  unit.tile = frame.region;
+  unit.count = samples;
+  unit.sources = sources;
+  make_gradient_integrator(context)->sample(unit, &frame, &frame.counters, std::atomic<bool>{false});
+  return frame;
+}
+
+SampleSources sources_of(const IntegratorContext& before, const IntegratorContext& now) {
+  const Region region{0, 0, int32_t(kSize), int32_t(kSize)};
+  const std::vector<int32_t> links =
+      link_pixels(view_centres(*before.snapshot, before.camera, region), view_centres(*now.snapshot, now.camera, region));
+  return {before.settings.frame, inverse_links(links)};
+}
+
+class Replays : public testing::TestWithParam<Scenario> {};
+
+TEST_P(Replays, OfAStillSceneHaveTheBitsOfTheFrameBefore) {
+  PathScene scene;
+  build(GetParam(), &scene);
+  const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
+  const SampleSources sources = sources_of(before, now);
+  const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources), own = sampled(now, 4);
+  for (int half = 0; half < kHalves; ++half) {
+    EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
+    for (int k = 0; k < kOffsets; ++k) EXPECT_EQ(base.components[0].gradient[half][k], offset.components[0].gradient[half][k]);
+    EXPECT_NE(base.components[0].primal[half], own.components[0].primal[half]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Replays, testing::Values(Scenario::DiffuseArea, Scenario::Glass, Scenario::Transparent, Scenario::World),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
+
+// A camera that moves aside by 5.3 pixels.
+struct Pan {
+  explicit Pan(Scenario scenario) {
+    build(scenario, &scene);
+    before_desc = scene.camera_desc;
+    scene.camera(Vec3(0.12f, 0, 3.2f), Vec3(0.12f, 0, 0), 0.9f);
+    now_desc = scene.camera_desc;
+  }
+  IntegratorContext context(bool now, uint32_t seed) {
+    scene.camera_desc = now ? now_desc : before_desc;
+    return scene.context(settings_of(now ? 2 : 1, seed));
+  }
+  PathScene scene;
+  GradusCamera before_desc{}, now_desc{};
+};
+
+float gray(const Frame& frame, size_t pixel) {
+  Radiance sum = frame.components[0].primal[0][pixel] + frame.components[0].primal[1][pixel];
+  const uint32_t count = frame.count[0][pixel] + frame.count[1][pixel];
+  return (sum.x + sum.y + sum.z) / (3.0f * float(count));
+}
+
+// The replayed frame is a picture of its own frame, whatever was replayed: the means over seeds agree.
+TEST(Replay, IsAPictureOfItsOwnFrame) {
+  Pan pan(Scenario::DiffuseArea);
+  Moments replayed, fresh;
+  int holes = 0;
+  for (uint32_t seed = 0; seed < 48; ++seed) {
+    const IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
+    const SampleSources sources = sources_of(before, now);
+    const Frame offset = sampled(now, 8, &sources), other = sampled(now, 8);
+    std::vector<float> a(offset.count[0].size()), b(a.size());
+    for (size_t i = 0; i < a.size(); ++i) a[i] = gray(offset, i), b[i] = gray(other, i);
+    replayed.add(a);
+    fresh.add(b);
+    for (const int32_t source : sources.pixel) holes += source == kNoLink;
+  }
+  EXPECT_GT(holes, 48 * 2 * int(kSize)) << "the strip that comes into view";
+  double mean_a = 0.0, mean_b = 0.0, variance = 0.0;
+  for (size_t i = 0; i < replayed.size(); ++i) {
+    mean_a += replayed.mean(i);
+    mean_b += fresh.mean(i);
+    variance += replayed.variance_of_mean(i) + fresh.variance_of_mean(i);
+  }
+  // Pixels of a cell share their jitter: neighbours are correlated, at most as a cell's 256 pixels are alike.
+  EXPECT_LT(std::fabs(mean_a - mean_b), 4.0 * std::sqrt(variance * 16.0));
+  EXPECT_NEAR(mean_a / mean_b, 1.0, 0.02);
+}
+
+// That is what it is for: differences over time between linked pixels have less noise than those of independent samples.
+TEST(Replay, MakesDifferencesOverTimeQuieter) {
+  for (const Scenario scenario : {Scenario::DiffuseArea, Scenario::World}) {
+    Pan pan(scenario);
+    double linked = 0.0, independent = 0.0;
+    for (uint32_t seed = 0; seed < 6; ++seed) {
+      const IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
+      const SampleSources sources = sources_of(before, now);
+      const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources), other = sampled(now, 4);
+      for (size_t q = 0; q < sources.pixel.size(); ++q) {
+        const int32_t i = sources.pixel[q];
+        if (i == kNoLink) continue;
+        linked += std::pow(gray(offset, q) - gray(base, size_t(i)), 2);
+        independent += std::pow(gray(other, q) - gray(base, size_t(i)), 2);
+      }
+    }
+    EXPECT_LT(linked, 0.6 * independent) << name_of(scenario);
+    std::printf("  %s: energy of differences over time %.2f of independent samples'\n", name_of(scenario), linked / independent);
+  }
+}
+
+}  // namespace
+}  // namespace gradus::test
