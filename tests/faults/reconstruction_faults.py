@@ -315,9 +315,10 @@ RECONSTRUCTION = (
         FROZEN,
         "beside differences it is the regression's alone",
         REGULARIZED,
-        "solve_by_noise(planes, cancel, &system, &regressed, report);",
-        "solve_by_noise(planes, cancel, &system, &regressed, report);\n"
-        "  for_values(&regressed, [&](float& v, int x, int y, int c) { v = c < 3 ? v : planes.primal.row(y, c)[x]; });",
+        "  solve();\n  return solution;",
+        "  solve();\n"
+        "  for_values(&solution, [&](float& v, int x, int y, int c) { v = c < 3 ? v : planes.primal.row(y, c)[x]; });\n"
+        "  return solution;",
         OF_ALPHA,
     ),
     Fault(

@@ -59,8 +59,8 @@ RENDERER = (
         "vector off by one frame",
         "motion is read one frame late",
         "addon/gradus/export/motion.py",
-        "            step(offset)\n",
-        "            step(offset + 1)\n",
+        "            step(time)\n",
+        "            step(time + 1)\n",
         (Test("tests/addon/vector_render_test.py", "moving_object or camera_pan"),),
     ),
     Fault(
@@ -149,8 +149,8 @@ RENDERER = (
         "shared random stream",
         "all pixels take the same random numbers",
         PIXELS,
-        "static_cast<uint32_t>(y) * context.settings.width + static_cast<uint32_t>(x);",
-        "0u * static_cast<uint32_t>(x + y);",
+        "static_cast<uint32_t>(source.y) * context.settings.width + static_cast<uint32_t>(source.x);",
+        "0u * static_cast<uint32_t>(source.x + source.y);",
         (statistics("A10_Seeds.*"),),
     ),
     Fault(

@@ -72,10 +72,13 @@ PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, 
   sample.half = static_cast<int>(number & 1u);
   const uint32_t stream = static_cast<uint32_t>(source.y) * context.settings.width + static_cast<uint32_t>(source.x);
   sample.sampler = make_sampler(context, source.kind, stream, source.frame, number);
-  const bool by_cell = shares_jitter(context) && source.kind == StreamKind::Pixel;
-  sample.film = pixel_centre(x, y) +
-                (by_cell ? jitter_of_cell(context, source, number) : context.filter.sample(sample.sampler.get2(dimension::kFilm)));
   return sample;
+}
+
+Vec2 own_jitter(const PathContext& context, const WorkUnit& unit, const Frame& frame, const PixelSample& sample) {
+  const Source source = source_of(context, unit, frame, sample.x, sample.y);
+  if (shares_jitter(context) && source.kind == StreamKind::Pixel) return jitter_of_cell(context, source, sample.number);
+  return context.filter.sample(sample.sampler.get2(dimension::kFilm));
 }
 
 void add_primal(const PathResult& result, const PixelSample& sample, Frame* frame, Counters* counters) {

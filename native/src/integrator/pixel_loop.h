@@ -42,7 +42,9 @@ inline bool shares_jitter(const PathContext& context) { return !context.camera.h
 bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& frame, const Region& cell);
 // Offset of such a cell's pixels from their centres, by the filter.
 Vec2 cell_jitter(const PathContext& context, const WorkUnit& unit, const Region& cell, uint32_t number);
-// With its place on the film.
+// That of a pixel by itself: where it replays one whose cell shares its jitter, that of the cell.
+Vec2 own_jitter(const PathContext& context, const WorkUnit& unit, const Frame& frame, const PixelSample& sample);
+// All but its place on the film.
 PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, uint32_t number);
 
 // Calls body(PixelSample) for each sample of the unit, until `stop`: cell by cell, in order of sample numbers, over the cell's pixels. Sums
@@ -69,8 +71,8 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fra
           PixelSample sample = make_pixel_sample(context, unit, frame, x, y, number);
           if (together) {
             sample.first = vertices->at(x, y);
-            sample.film = pixel_centre(x, y) + jitter;
           }
+          sample.film = pixel_centre(x, y) + (together ? jitter : own_jitter(context, unit, frame, sample));
           body(sample);
         }
       }
