@@ -140,7 +140,7 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
     }
   }
   EXPECT_LT(least, samples * 3 / 4);
-  EXPECT_GT(most, samples * 3 / 2);
+  EXPECT_GT(most, samples * 5 / 4);  // twice the least, with what REGULARIZED leaves of the noise
   double empirical = 0.0, difference = 0.0, sum = 0.0;
   for (size_t i = 0; i < shared.size(); ++i) {
     empirical += shared.variance_of_mean(i) * seeds;
