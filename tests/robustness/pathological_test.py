@@ -220,9 +220,17 @@ def test_e3_odd_cameras_see_the_world(stage: bpy.types.Scene, render: Render, na
     assert image.min() > 0.0 and image.max() < 1.2 * WORLD
 
 
-def test_e3_a_panoramic_camera_is_named(stage: bpy.types.Scene, render: Render) -> None:
+def test_e3_a_panoramic_camera_sees_the_world(stage: bpy.types.Scene, render: Render) -> None:
     stage.camera.data.type = "PANO"
-    with pytest.raises(RuntimeError, match="panoramic"):
+    image = picture(stage, render)["Combined"][:, :, :3]
+    assert image.max() > 0.1 and image.max() < 1.2 * WORLD
+
+
+def test_e3_a_custom_camera_is_named(stage: bpy.types.Scene, render: Render) -> None:
+    if "CUSTOM" not in stage.camera.data.bl_rna.properties["type"].enum_items:
+        pytest.skip("this Blender has none")
+    stage.camera.data.type = "CUSTOM"
+    with pytest.raises(RuntimeError, match="custom"):
         picture(stage, render)
 
 
