@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from gradus.export.mesh import read_mesh
-from support import recording
+from support import animation, recording
 
 POINT, FACE, CORNER = 0, 1, 2
 
@@ -196,9 +196,7 @@ def test_motion_of_a_shape_key(scene: bpy.types.Scene) -> None:
     for frame, value in ((1, 0.0), (11, 1.0)):
         key.value = value
         key.keyframe_insert("value", frame=frame)
-    for curve in _curves(obj.data.shape_keys):
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
+    animation.make_linear(obj.data.shape_keys)
     scene.frame_set(5)
     recorded, _ = recording.export(scene)
     meshes = {mesh.name: mesh for mesh in recorded.meshes.values()}
@@ -207,13 +205,6 @@ def test_motion_of_a_shape_key(scene: bpy.types.Scene) -> None:
     moving = meshes["Grid"]
     assert moving.keys == 3
     assert np.allclose(moving.positions[:, 0, 2], (0.3, 0.4, 0.5), atol=1e-5)
-
-
-def _curves(block: bpy.types.ID) -> list:
-    action = block.animation_data.action
-    if hasattr(action, "fcurves"):
-        return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
 
 
 def test_topology_change_has_no_motion(scene: bpy.types.Scene) -> None:

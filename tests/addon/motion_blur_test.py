@@ -11,32 +11,10 @@ import numpy as np
 import pytest
 from gradus.export.shutter import position_owner
 from support import images, recording
+from support.animation import key
 from support.nodes import new_material, show
 
 EXACT = {"integrator": "PATH", "reconstruction": "NONE", "max_bounces": 0}
-
-
-def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
-    """Keys with linear interpolation."""
-    preferences = bpy.context.preferences.edit
-    before = preferences.keyframe_new_interpolation_type
-    preferences.keyframe_new_interpolation_type = "LINEAR"
-    for frame, value in frames.items():
-        setattr(owner, path, value)
-        owner.keyframe_insert(path, frame=frame)
-    preferences.keyframe_new_interpolation_type = before
-    for curve in curves(owner.id_data):
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
-    owner.id_data.animation_data.action.update_tag()
-
-
-def curves(block: bpy.types.ID) -> list:
-    """Of all that shares its action, as an object and its data do from 4.4 on."""
-    action = block.animation_data.action
-    if not hasattr(action, "layers"):
-        return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
 
 
 def moving_key_shape(obj: bpy.types.Object, by: tuple[float, float, float], frames: dict[int, float]) -> None:

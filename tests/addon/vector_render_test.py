@@ -10,31 +10,10 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from support import recording
+from support import animation, recording
 
 SETTINGS = {"samples": 2, "integrator": "PATH", "reconstruction": "NONE", "max_bounces": 0}
 PIXELS_PER_METRE = 16.0  # 64 px over 4 m
-
-
-def _key(owner: Any, path: str, frames: dict[int, Any]) -> None:
-    """Keys with linear interpolation."""
-    preferences = bpy.context.preferences.edit
-    before = preferences.keyframe_new_interpolation_type
-    preferences.keyframe_new_interpolation_type = "LINEAR"
-    for frame, value in frames.items():
-        setattr(owner, path, value)
-        owner.keyframe_insert(path, frame=frame)
-    preferences.keyframe_new_interpolation_type = before
-    for curve in _curves(owner.id_data):
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
-
-
-def _curves(block: bpy.types.ID) -> list:
-    action = block.animation_data.action
-    if hasattr(action, "fcurves"):
-        return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
 
 
 @pytest.fixture
@@ -57,7 +36,7 @@ def _covered(vector: np.ndarray) -> np.ndarray:
 
 def test_c1_moving_object_over_a_resting_background(vectors: Callable[[], np.ndarray]) -> None:
     obj = recording.add(recording.grid(1, 1.5))
-    _key(obj, "location", {1: (-0.25, -0.125, 0), 2: (0, 0, 0), 3: (0.5, 0.125, 0)})
+    animation.key(obj, "location", {1: (-0.25, -0.125, 0), 2: (0, 0, 0), 3: (0.5, 0.125, 0)})
     found = vectors()
     expected = (-0.25 * PIXELS_PER_METRE, -0.125 * PIXELS_PER_METRE, -0.5 * PIXELS_PER_METRE, -0.125 * PIXELS_PER_METRE)
     assert np.allclose(_covered(found), expected, atol=0.01)
@@ -67,7 +46,7 @@ def test_c1_moving_object_over_a_resting_background(vectors: Callable[[], np.nda
 def test_c1_resting_object_is_exactly_zero(vectors: Callable[[], np.ndarray]) -> None:
     recording.add(recording.grid(1, 1.5)).rotation_euler = (0.3, 0.2, 0.1)
     moving = recording.add(recording.grid(1, 0.2), "Moving", (0, 1.05, 0))
-    _key(moving, "location", {1: (-1, 1.05, 0), 3: (1, 1.05, 0)})
+    animation.key(moving, "location", {1: (-1, 1.05, 0), 3: (1, 1.05, 0)})
     assert np.array_equal(_covered(vectors()), np.zeros((8, 8, 4)))
 
 
@@ -78,7 +57,7 @@ def test_c1_deformation(vectors: Callable[[], np.ndarray]) -> None:
     key = obj.shape_key_add(name="Moved")
     for point in key.data:
         point.co.x += 1.0
-    _key(key, "value", {1: 0.0, 2: 0.25, 3: 0.375})
+    animation.key(key, "value", {1: 0.0, 2: 0.25, 3: 0.375})
     assert np.allclose(_covered(vectors()), (-4.0, 0.0, -2.0, 0.0), atol=0.01)
 
 
@@ -88,21 +67,21 @@ def test_c1_instances(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene)
     source.objects.link(bpy.data.objects.new("Inner", recording.grid(1, 1.5)))
     empty = recording.add(None, "Copy")
     empty.instance_type, empty.instance_collection = "COLLECTION", source
-    _key(empty, "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
+    animation.key(empty, "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
     assert np.allclose(_covered(vectors()), (-4.0, 0.0, -4.0, 0.0), atol=0.01)
 
 
 def test_c1_camera_pan(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
     """What rests moves against the camera."""
     recording.add(recording.grid(1, 1.5))
-    _key(scene.camera, "location", {1: (-0.25, 0, 5), 2: (0, 0, 5), 3: (0.25, 0, 5)})
+    animation.key(scene.camera, "location", {1: (-0.25, 0, 5), 2: (0, 0, 5), 3: (0.25, 0, 5)})
     assert np.allclose(_covered(vectors()), (4.0, 0.0, 4.0, 0.0), atol=0.01)
 
 
 def test_c1_camera_zoom(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
     """A point at p pixels from the centre was at p s_2/s_1 before."""
     recording.add(recording.grid(1, 8.0))
-    _key(scene.camera.data, "ortho_scale", {1: 5.0, 2: 4.0, 3: 3.2})
+    animation.key(scene.camera.data, "ortho_scale", {1: 5.0, 2: 4.0, 3: 3.2})
     found = vectors()
     height, width, _ = found.shape
     x = np.arange(width) + 0.5 - width / 2
@@ -125,7 +104,7 @@ def _panorama(camera: bpy.types.Object, kind: str) -> Any:
 def test_c1_panorama_turns(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
     """Everything moves by the same angle, over the seam, too; next to the poles a pixel is as small as rounding."""
     _panorama(scene.camera, "EQUIRECTANGULAR")
-    _key(scene.camera, "rotation_euler", {1: (math.pi / 2, 0, -0.1), 2: (math.pi / 2, 0, 0), 3: (math.pi / 2, 0, 0.2)})
+    animation.key(scene.camera, "rotation_euler", {1: (math.pi / 2, 0, -0.1), 2: (math.pi / 2, 0, 0), 3: (math.pi / 2, 0, 0.2)})
     found = vectors()
     pixels = found.shape[1] / (2 * math.pi)
     assert np.allclose(found[3:-3], (-0.1 * pixels, 0, -0.2 * pixels, 0), atol=0.01)
@@ -134,7 +113,7 @@ def test_c1_panorama_turns(scene: bpy.types.Scene, vectors: Callable[[], np.ndar
 def test_c1_fisheye_zooms(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
     """The radius in the picture is proportional to the focal length."""
     settings = _panorama(scene.camera, "FISHEYE_EQUISOLID")
-    _key(settings, "fisheye_lens", {1: 10.0, 2: 15.0, 3: 18.0})
+    animation.key(settings, "fisheye_lens", {1: 10.0, 2: 15.0, 3: 18.0})
     scene.gradus.pixel_filter, scene.gradus.filter_width = "GAUSSIAN", 0.01
     found = vectors()
     height, width, _ = found.shape
@@ -150,7 +129,7 @@ def test_c1_rotation(vectors: Callable[[], np.ndarray]) -> None:
     """A quad that turns about the view axis: vectors across the radius, of its length times the angle."""
     obj = recording.add(recording.grid(1, 3.0))
     angle = 0.01
-    _key(obj, "rotation_euler", {1: (0, 0, -angle), 2: (0, 0, 0), 3: (0, 0, angle)})
+    animation.key(obj, "rotation_euler", {1: (0, 0, -angle), 2: (0, 0, 0), 3: (0, 0, angle)})
     found = vectors()
     height, width, _ = found.shape
     x, y = 15.0, 10.0
@@ -161,7 +140,7 @@ def test_c1_rotation(vectors: Callable[[], np.ndarray]) -> None:
 def test_c1_topology_change_does_not_crash(vectors: Callable[[], np.ndarray]) -> None:
     obj = recording.add(recording.grid(2, 2.0))
     modifier = obj.modifiers.new("Array", "ARRAY")
-    _key(modifier, "count", {1: 1, 2: 2, 3: 3})
+    animation.key(modifier, "count", {1: 1, 2: 2, 3: 3})
     assert np.isfinite(vectors()).all()
 
 
@@ -175,7 +154,7 @@ def test_c1_vectors_asked_for_on_the_command_line_move_too(
 ) -> None:
     """The frames around were read only for a view layer that has the pass itself, so that everything seemed to rest."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
-    _key(recording.add(recording.grid(1, 1.5)), "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
+    animation.key(recording.add(recording.grid(1, 1.5)), "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
     monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-passes", "vector"])
     found = render(scene, frame=2, **SETTINGS)["Vector"]
     assert np.allclose(_covered(found), (-4.0, 0.0, -4.0, 0.0), atol=0.01)

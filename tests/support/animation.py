@@ -1,0 +1,35 @@
+"""Keys of animated properties, in every Blender version."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+
+def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
+    """Keys with linear interpolation: value by frame."""
+    preferences = bpy.context.preferences.edit
+    before = preferences.keyframe_new_interpolation_type
+    preferences.keyframe_new_interpolation_type = "LINEAR"
+    for frame, value in frames.items():
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+    preferences.keyframe_new_interpolation_type = before
+    make_linear(owner.id_data)
+
+
+def make_linear(block: bpy.types.ID) -> None:
+    """All keys of a datablock, and of what shares its action."""
+    for curve in _curves(block):
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+    block.animation_data.action.update_tag()
+
+
+def _curves(block: bpy.types.ID) -> list:
+    """An object and its data may share an action from 4.4 on, whose `fcurves` are then those of one of them."""
+    action = block.animation_data.action
+    if not hasattr(action, "layers"):
+        return list(action.fcurves)
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
