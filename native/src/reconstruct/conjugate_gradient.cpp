@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
-#include "reconstruct/rows.h"
+#include "reconstruct/channel_sums.h"
 
 namespace gradus {
 namespace {
@@ -84,18 +84,6 @@ Sums advance(const Stencil& a, const Sums& step, const Field& p, Field* x, Field
     }
   });
   return sums.total();
-}
-
-Sums quotient(const Sums& a, const Sums& b) {
-  Sums q(a.size());
-  for (size_t c = 0; c < a.size(); ++c) q[c] = b[c] > 0.0 ? a[c] / b[c] : 0.0;  // a channel that is solved stands still
-  return q;
-}
-
-float worst(const Sums& rr, const Sums& bb) {
-  double result = 0.0;
-  for (size_t c = 0; c < rr.size(); ++c) result = std::max(result, bb[c] > 0.0 ? rr[c] / bb[c] : rr[c]);
-  return static_cast<float>(std::sqrt(result));
 }
 
 }  // namespace

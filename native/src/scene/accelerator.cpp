@@ -1,5 +1,7 @@
 #include "scene/accelerator.h"
 
+#include <span>
+
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
 
@@ -58,7 +60,7 @@ void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned ma
 void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced, const InstanceData& instance) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, instanced);
-  const std::vector<Mat4> keys = instance.keys ? instance.keys->keys() : std::vector<Mat4>{instance.to_world};
+  const std::span<const Mat4> keys = instance.keys ? std::span(instance.keys->keys()) : std::span(&instance.to_world, 1);
   rtcSetGeometryTimeStepCount(geometry, unsigned(keys.size()));
   for (unsigned i = 0; i < keys.size(); ++i) rtcSetGeometryTransform(geometry, i, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &keys[i][0][0]);
   rtcSetGeometryMask(geometry, mask);

@@ -12,7 +12,7 @@ namespace gradus {
 struct HalvedImages {
   GradientImages values, half_differences;
 };
-// All components summed: component 0.
+// Of its first component.
 HalvedImages read_halved(const Frame& frame);
 
 struct TemporalFrame {

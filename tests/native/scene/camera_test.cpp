@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "camera_fixture.h"
 #include "scene_fixture.h"
 #include "support/chi_square.h"
 
@@ -38,12 +39,7 @@ GradusCamera make_camera(const BlenderCamera& c, double w, double h, const Mat4&
   camera.type = c.orthographic ? GRADUS_CAMERA_ORTHOGRAPHIC : GRADUS_CAMERA_PERSPECTIVE;
   const float window[4] = {float((-1 - p.axis_x) / p.m00), float((1 - p.axis_x) / p.m00), float((-1 - p.axis_y) / p.m11),
                            float((1 - p.axis_y) / p.m11)};
-  for (float* to : {camera.window, camera.window_previous, camera.window_next}) std::copy(window, window + 4, to);
-  for (float* to : {camera.matrix, camera.matrix_previous, camera.matrix_next}) std::copy(&pose[0][0], &pose[0][0] + 16, to);
-  camera.clip_start = 0.1f;
-  camera.clip_end = 1000.0f;
-  camera.aperture_ratio = 1.0f;
-  camera.focus_distance = 4.0f;
+  set_at_rest(&camera, window, pose);
   return camera;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "camera_fixture.h"
 #include "scene/camera.h"
 #include "scene_fixture.h"
 
@@ -41,12 +42,7 @@ GradusCamera make_camera(const Projection& p, const Mat4& pose = Mat4(1.0f)) {
   const bool bent = p.fov == 2.5f;
   const float straight[5] = {-1.17e-5f, -0.019988737f, -3.3525e-6f, 3.0993e-6f, -2.61e-8f}, curved[5] = {0.01f, -0.1f, 0.001f, 0, 0};
   std::copy_n(bent ? curved : straight, 5, camera.fisheye_polynomial);
-  for (float* to : {camera.window, camera.window_previous, camera.window_next}) std::copy(p.window, p.window + 4, to);
-  for (float* to : {camera.matrix, camera.matrix_previous, camera.matrix_next}) std::copy(&pose[0][0], &pose[0][0] + 16, to);
-  camera.clip_start = 0.1f;
-  camera.clip_end = 1000.0f;
-  camera.aperture_ratio = 1.0f;
-  camera.focus_distance = 4.0f;
+  set_at_rest(&camera, p.window, pose);
   return camera;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "reconstruct/channel_sums.h"
 
 namespace gradus {
 namespace {
@@ -50,18 +51,6 @@ void direct(const Sums& factor, const Frames& z, Frames* p) {
       }
     });
   }
-}
-
-Sums quotient(const Sums& a, const Sums& b, double sign = 1.0) {
-  Sums q(a.size());
-  for (size_t c = 0; c < a.size(); ++c) q[c] = b[c] > 0.0 ? sign * a[c] / b[c] : 0.0;  // a channel that is solved stands still
-  return q;
-}
-
-float worst(const Sums& rr, const Sums& bb) {
-  double result = 0.0;
-  for (size_t c = 0; c < rr.size(); ++c) result = std::max(result, bb[c] > 0.0 ? rr[c] / bb[c] : rr[c]);
-  return static_cast<float>(std::sqrt(result));
 }
 
 }  // namespace

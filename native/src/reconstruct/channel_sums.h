@@ -1,0 +1,25 @@
+// What conjugate gradients make of sums per channel: all channels are solved side by side, each with its own step sizes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct/rows.h"
+
+namespace gradus {
+
+// sign · a / b; 0 for a channel that is solved, which stands still.
+inline Sums quotient(const Sums& a, const Sums& b, double sign = 1.0) {
+  Sums q(a.size());
+  for (size_t c = 0; c < a.size(); ++c) q[c] = b[c] > 0.0 ? sign * a[c] / b[c] : 0.0;
+  return q;
+}
+
+// The worst channel's residual from squared norms: of the residual, and of the right side.
+inline float worst(const Sums& rr, const Sums& bb) {
+  double result = 0.0;
+  for (size_t c = 0; c < rr.size(); ++c) result = std::max(result, bb[c] > 0.0 ? rr[c] / bb[c] : rr[c]);
+  return static_cast<float>(std::sqrt(result));
+}
+
+}  // namespace gradus
