@@ -173,13 +173,13 @@ def stored_planes() -> dict[str, np.ndarray]:
     """A frame of 4×5 pixels: 2 samples per half, 1 where pairs are counted but twice."""
     planes = {}
     for half in "AB":
-        planes[f"count.{half}"] = np.full((4, 5), 2.0)
-        for name, channels in (("Normal", "XYZ"), ("Albedo", "XYZ"), ("Depth", "X")):
-            planes |= {f"pass.Denoising_{name}.{half}.{c}": np.full((4, 5), 1.0) for c in channels}
-        planes |= {f"component0.{half}.primal.{c}": np.full((4, 5), 6.0) for c in "RGB"}
+        planes[f"{half}.count.V"] = np.full((4, 5), 2.0)
+        for name, channels in (("Normal", "XYZ"), ("Albedo", "XYZ"), ("Depth", "V")):
+            planes |= {f"{half}.Denoising_{name}.{c}": np.full((4, 5), 1.0) for c in channels}
+        planes |= {f"{half}.{c}": np.full((4, 5), 6.0) for c in "RGB"}
         for value, offset in enumerate(("right", "up", "left", "down")):
-            planes[f"pairs.{half}.{offset}"] = np.full((4, 5), 2.0)
-            planes |= {f"component0.{half}.{offset}.{c}": np.full((4, 5), 2.0 * value) for c in "RGB"}
+            planes[f"{half}.{offset}.pairs.V"] = np.full((4, 5), 2.0)
+            planes |= {f"{half}.{offset}.{c}": np.full((4, 5), 2.0 * value) for c in "RGB"}
     return planes
 
 
@@ -193,8 +193,8 @@ def test_stored_frames_are_means_and_differences_of_both_ends() -> None:
 
 def test_pairs_without_samples_take_the_images_difference() -> None:
     planes = stored_planes()
-    planes["pairs.A.left"][1, 2] = 0.0
-    planes["component0.A.primal.R"][1, 2] = 10.0
+    planes["A.left.pairs.V"][1, 2] = 0.0
+    planes["A.R"][1, 2] = 10.0
     half = frames.frame_of(planes)[0]
     assert half.dx[1, 1] == pytest.approx([2.0, 0.0, 0.0])
 

@@ -272,6 +272,23 @@ def test_scene_file_and_frame_store(cube: bpy.types.Scene, render: Render, tmp_p
     assert stored[0].parent.parent.name == frame_store_name(cube.name)
 
 
+def test_stored_frames_open_in_other_programs(cube: Any, render: Render, tmp_path: Path, arguments: Callable[..., None]) -> None:
+    import OpenImageIO as oiio
+
+    arguments("--gradus-frame-store", tmp_path, "--gradus-integrator", "gradient", "--gradus-passes", "denoising,depth")
+    render(cube)
+    path = str(next(tmp_path.rglob("*.exr")))
+    image = bpy.data.images.load(path)
+    image.size[:]  # reads it
+    assert image.type == "MULTILAYER"
+    file, parts = oiio.ImageInput.open(path), {}
+    while file.seek_subimage(len(parts), 0):
+        parts[file.spec().getattribute("oiio:subimagename")] = file.spec().channelnames
+    assert list(parts) == ["samples", "gradients", "features", "passes"]
+    assert parts["samples"] == tuple(f"{half}.{channel}" for half in "AB" for channel in ("R", "G", "B", "count.V"))
+    assert not any(np.isnan(file.read_image(part, 0, 0, -1, oiio.FLOAT)).any() for part in range(len(parts)))
+
+
 def frame_store_name(name: str) -> str:
     from gradus import frame_store
 

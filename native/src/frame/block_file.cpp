@@ -1,6 +1,7 @@
 #include "frame/block_file.h"
 
 #include <ImfChannelList.h>
+#include <ImfPartType.h>
 #include <ImfVersion.h>
 
 namespace gradus {
@@ -15,31 +16,48 @@ bool has_long_names(const Imf::Header& header) {
   return false;
 }
 
-}  // namespace
-
-BlockFile::BlockFile(const Imf::Header& header, WriterStream* stream) : stream_(stream), row_(header.dataWindow().min.y) {
-  header.sanityCheck();
-  put(int32_t{Imf::MAGIC});
-  put(int32_t{Imf::EXR_VERSION | (has_long_names(header) ? Imf::LONG_NAMES_FLAG : 0)});
-  header.writeTo(*stream);
-  table_ = stream->tellp();
+size_t blocks_of(const Imf::Header& header) {
   const int rows = header.dataWindow().max.y - header.dataWindow().min.y + 1;
-  const std::vector<uint64_t> empty(size_t(rows + kBlockRows - 1) / kBlockRows);
-  for (const uint64_t place : empty) put(place);
+  return size_t(rows + kBlockRows - 1) / kBlockRows;
 }
 
-void BlockFile::write(const Bytes& packed) {
-  places_.push_back(stream_->tellp());
-  put(int32_t{row_});
+}  // namespace
+
+BlockFile::BlockFile(std::vector<Imf::Header> headers, WriterStream* stream) : stream_(stream), top_(headers.front().dataWindow().min.y) {
+  int flags = Imf::MULTI_PART_FILE_FLAG;
+  for (Imf::Header& header : headers) {
+    header.setType(Imf::SCANLINEIMAGE);
+    header.setChunkCount(int(blocks_of(header)));
+    header.sanityCheck(false, true);
+    if (has_long_names(header)) flags |= Imf::LONG_NAMES_FLAG;
+    places_.emplace_back(blocks_of(header));
+  }
+  put(int32_t{Imf::MAGIC});
+  put(int32_t{Imf::EXR_VERSION | flags});
+  for (const Imf::Header& header : headers) header.writeTo(*stream);
+  put('\0');  // no further header
+  table_ = stream->tellp();
+  put_places();
+}
+
+void BlockFile::write(int part, int block, const Bytes& packed) {
+  places_[size_t(part)][size_t(block)] = stream_->tellp();
+  put(int32_t{part});
+  put(int32_t{top_ + kBlockRows * block});
   put(static_cast<int32_t>(packed.size()));
   stream_->write(reinterpret_cast<const char*>(packed.data()), int(packed.size()));
-  row_ += kBlockRows;
+}
+
+void BlockFile::put_places() {
+  for (const auto& part : places_) {
+    for (const uint64_t place : part) put(place);
+  }
 }
 
 void BlockFile::finish() {
   const uint64_t end = stream_->tellp();
   stream_->seekp(table_);
-  for (const uint64_t place : places_) put(place);
+  put_places();
   stream_->seekp(end);
 }
 

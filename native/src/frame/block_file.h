@@ -1,4 +1,4 @@
-// A scan-line file of OpenEXR, written block by block as they come packed: its own writer packs them one after the other.
+// A file of OpenEXR with parts of scan lines, written block by block as they come packed: its own writer packs them one after the other.
 #pragma once
 
 #include <ImfHeader.h>
@@ -10,12 +10,14 @@
 
 namespace gradus {
 
-// Of ZIP compression, rows downwards. (OpenEXR, "OpenEXR File Layout": magic number, version, header, where the blocks lie, blocks.)
+// All parts of ZIP compression and of one size, rows downwards. (OpenEXR, "OpenEXR File Layout": magic number, version, headers, where the
+// blocks of each part lie, blocks.)
 class BlockFile {
  public:
-  BlockFile(const Imf::Header& header, WriterStream* stream);
-  // The next one.
-  void write(const Bytes& packed);
+  // Headers name their parts.
+  BlockFile(std::vector<Imf::Header> headers, WriterStream* stream);
+  // Any block of any part, each once.
+  void write(int part, int block, const Bytes& packed);
   // Where they lie, when all are written.
   void finish();
 
@@ -24,11 +26,12 @@ class BlockFile {
   void put(const T& value) {
     stream_->write(reinterpret_cast<const char*>(&value), sizeof(T));  // little-endian, as the file
   }
+  void put_places();
 
   WriterStream* const stream_;
-  int row_;
-  uint64_t table_;  // where it lies
-  std::vector<uint64_t> places_;
+  int top_;
+  uint64_t table_;                             // where it lies
+  std::vector<std::vector<uint64_t>> places_;  // by parts and blocks
 };
 
 }  // namespace gradus

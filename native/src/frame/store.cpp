@@ -1,226 +1,99 @@
 #include "frame/store.h"
-#include "frame/pass_planes.h"
 
-#include <ImfChannelList.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
-#include <ImfStringAttribute.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
-#include <cstring>
-#include <nlohmann/json.hpp>
-
-#include "base/clock.h"
 #include "base/error.h"
 #include "frame/block_file.h"
 #include "frame/block_rows.h"
-#include "frame/cells.h"
 #include "frame/exr_problem.h"
 #include "frame/exr_stream.h"
+#include "frame/store_header.h"
 #include "frame/store_planes.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {
 
-using nlohmann::json;
+// A part's block, of all parts in a row.
+struct PlacedBlock {
+  int part = 0, block = 0;
+};
 
-constexpr int kFormat = 3;
-constexpr int kMaxSide = 1 << 16;
-constexpr const char* kAttribute = "gradus";
+// The rows of all parts, as their blocks follow each other in the file.
+class PartRows {
+ public:
+  PartRows(const std::vector<StoredPart>& parts, const Frame& frame) {
+    for (const StoredPart& part : parts) rows_.emplace_back(part.planes, frame.region.width(), frame.region.height());
+  }
+  int blocks() const { return int(rows_.size()) * rows_.front().blocks(); }
+  PlacedBlock at(int i) const { return {i / rows_.front().blocks(), i % rows_.front().blocks()}; }
+  const BlockRows& of(int part) const { return rows_[size_t(part)]; }
 
-// What is wrong with a file, as the exception that load_frame() throws.
-Error damaged(const std::string& why) { return invalid_argument(why); }
+ private:
+  std::vector<BlockRows> rows_;
+};
 
-std::string hex(uint64_t value) {
-  char text[20];
-  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
+struct PackedBlock {
+  PlacedBlock place;
+  Bytes bytes;
+};
 
-json counters_to_json(const Counters& counters) {
-  std::vector<uint64_t> values(sizeof(Counters) / sizeof(uint64_t));
-  std::memcpy(values.data(), &counters, sizeof(Counters));
-  return values;
-}
-
-Counters counters_from_json(const json& j) {
-  const auto values = j.get<std::vector<uint64_t>>();
-  Counters counters;
-  std::memcpy(static_cast<void*>(&counters), values.data(), std::min(values.size() * sizeof(uint64_t), sizeof(Counters)));
-  return counters;
-}
-
-json ranges_to_json(const SampleRanges& ranges) {
-  json list = json::array();
-  for (const SampleRange& r : ranges.list()) list.push_back({r.begin, r.end});
-  return list;
-}
-
-SampleRanges ranges_from_json(const json& j) {
-  std::vector<SampleRange> list;
-  for (const json& r : j) list.push_back({r.at(0).get<uint32_t>(), r.at(1).get<uint32_t>()});
-  return SampleRanges(std::move(list));
-}
-
-json shared_to_json(const SharedSamples& shared) {
-  return {{"mean", shared.mean}, {"uncounted", shared.uncounted}, {"rays", shared.rays}, {"stopped", shared.stopped}};
-}
-
-SharedSamples shared_from_json(const json& j, const Region& region) {
-  SharedSamples shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
-                       j.at("stopped").get<std::vector<uint8_t>>()};
-  const size_t cells = make_cells(region).size();
-  if (shared.rays.size() != cells || shared.stopped.size() != cells) throw damaged("its cells are wrong");
-  return shared;
-}
-
-json describe_samples(const Frame& frame) {
-  return {{"format", kFormat},
-          {"version", gradus_version_text()},
-          {"frame", frame.frame_number},
-          {"channels", frame.channels},
-          {"components", frame.components.size()},
-          {"gradients", frame.gradients},
-          {"sampling_key", hex(sampling_key(frame.settings))},
-          {"scene_key", hex(frame.scene_key)},
-          {"settings", settings_to_json(frame.settings)},
-          {"planes", kept_passes(frame)},
-          {"samples", ranges_to_json(frame.samples)},
-          {"counters", counters_to_json(frame.counters)}};
-}
-
-json describe(const Frame& frame) {
-  json j = describe_samples(frame);
-  if (!frame.shared.rays.empty()) j["shared"] = shared_to_json(frame.shared);
-  return j;
-}
-
-Imf::PixelType type_of(const StoredPlane& plane) { return plane.integer ? Imf::UINT : Imf::FLOAT; }
-
-Imf::Header make_header(const Frame& frame, const std::vector<StoredPlane>& planes) {
-  const int width = int(frame.full_width), height = int(frame.full_height);
-  const Region& r = frame.region;
-  // OpenEXR's rows run downwards.
-  const Imath::Box2i display({0, 0}, {width - 1, height - 1});
-  const Imath::Box2i data({r.x0, height - r.y1}, {r.x1 - 1, height - 1 - r.y0});
-  Imf::Header header(display, data);
-  header.compression() = Imf::ZIP_COMPRESSION;
-  for (const StoredPlane& plane : planes) header.channels().insert(plane.name, Imf::Channel(type_of(plane)));
-  header.insert(kAttribute, Imf::StringAttribute(describe(frame).dump()));
-  return header;
-}
-
-void write_blocks(const BlockRows& rows, BlockFile* file) {
+void write_blocks(const PartRows& rows, BlockFile* file) {
   tbb::enumerable_thread_specific<BlockCodec> codecs;
   int next = 0;
   const auto number = [&](tbb::flow_control& control) {
     if (next == rows.blocks()) control.stop();
     return next++;
   };
-  const auto pack = [&](int block) {
-    Bytes bytes(rows.bytes(block));
-    rows.gather(block, &bytes);
-    return codecs.local().pack(bytes);
+  const auto pack = [&](int i) {
+    const PlacedBlock place = rows.at(i);
+    Bytes bytes(rows.of(place.part).bytes(place.block));
+    rows.of(place.part).gather(place.block, &bytes);
+    return PackedBlock{place, codecs.local().pack(bytes)};
   };
-  const auto write = [&](const Bytes& packed) { file->write(packed); };
+  const auto write = [&](const PackedBlock& packed) { file->write(packed.place.part, packed.place.block, packed.bytes); };
   const auto tokens = 2 * size_t(tbb::this_task_arena::max_concurrency());
   tbb::parallel_pipeline(tokens, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
-                                     tbb::make_filter<int, Bytes>(tbb::filter_mode::parallel, pack) &
-                                     tbb::make_filter<Bytes, void>(tbb::filter_mode::serial_in_order, write));
+                                     tbb::make_filter<int, PackedBlock>(tbb::filter_mode::parallel, pack) &
+                                     tbb::make_filter<PackedBlock, void>(tbb::filter_mode::serial_in_order, write));
 }
 
-Frame make_frame(const Imf::Header& header, const json& description) {
-  const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
-  const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
-  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxSide || display.max.y < 0 ||
-      display.max.y >= kMaxSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
-      !inside(data.min.y, data.max.y, display.max.y + 1)) {
-    throw damaged("its size is wrong");
-  }
-  const int height = display.max.y + 1, channels = description.at("channels"), components = description.at("components");
-  if ((channels != 3 && channels != 4) || components < 1 || components > 64) throw damaged("its planes are wrong");
-  const bool gradients = description.at("gradients");
-  GradusSettings settings = settings_from_json(description.at("settings"));
-  const uint64_t passes = description.at("planes");
-  const Region region{data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
-  const bool has_fallback = wants(settings.passes, GRADUS_PASS_FALLBACK);
-  const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
-  const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes) * uint64_t(region.area()), available = machine_memory_bytes();
-  if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
-
-  Frame frame(uint32_t(display.max.x + 1), uint32_t(height), region, channels, components, gradients);
-  frame.settings = settings;
-  frame.frame_number = description.at("frame");
-  frame.scene_key = std::stoull(description.at("scene_key").get<std::string>(), nullptr, 16);
-  frame.counters = counters_from_json(description.at("counters"));
-  frame.samples = ranges_from_json(description.at("samples"));
-  if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), region);
-  frame.passes = make_pass_planes(passes, size_t(region.area()));
-  if (has_fallback) frame.fallback.assign(size_t(region.area()), 0.0f);
-  return frame;
-}
-
-void check_content(const Imf::Header& header, const std::vector<StoredPlane>& planes) {
-  for (const StoredPlane& plane : planes) {
-    const Imf::Channel* channel = header.channels().findChannel(plane.name);
-    if (!channel || channel->type != type_of(plane) || channel->xSampling != 1 || channel->ySampling != 1) {
-      throw damaged("channel " + plane.name + " is missing or of another type");
-    }
-  }
-  size_t channels = 0;
-  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) ++channels;
-  if (channels != planes.size()) throw damaged("it has channels of something else");
-  if (header.compression() != Imf::ZIP_COMPRESSION) throw damaged("it was packed by another program");
-}
-
-void check_regions(const Frame& frame) {
-  const uint32_t* r = frame.settings.region;
-  const bool whole = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
-  const Region delivered{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
-  if (!whole && (r[2] > frame.full_width || r[3] > frame.full_height || delivered.x0 < frame.region.x0 || delivered.y0 < frame.region.y0 ||
-                 delivered.x1 > frame.region.x1 || delivered.y1 > frame.region.y1 || delivered.width() <= 0 || delivered.height() <= 0)) {
-    throw damaged("its region lies outside of it");
-  }
-  if (frame.settings.width != frame.full_width || frame.settings.height != frame.full_height)
-    throw damaged("its settings name another size");
-}
-
-void read_blocks(const Imf::InputFile& file, const BlockRows& rows) {
+void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, size_t parts) {
   struct Reader {
     BlockCodec codec;
     Bytes packed, bytes;
   };
   tbb::enumerable_thread_specific<Reader> readers;
-  const int top = file.header().dataWindow().min.y;
-  tbb::parallel_for(0, rows.blocks(), [&](int block) {
+  std::vector<Imf::InputPart> inputs;
+  for (size_t part = 0; part < parts; ++part) inputs.emplace_back(*file, int(part));
+  const int top = file->header(0).dataWindow().min.y;
+  tbb::parallel_for(0, rows.blocks(), [&](int i) {
+    const auto [part, block] = rows.at(i);
+    const BlockRows& own = rows.of(part);
     Reader& reader = readers.local();
-    reader.bytes.resize(rows.bytes(block));
-    reader.packed.resize(rows.most_bytes());  // OpenEXR reads as much, if the file says so
+    reader.bytes.resize(own.bytes(block));
+    reader.packed.resize(own.most_bytes());  // OpenEXR reads as much, if the file says so
     int size = int(reader.packed.size());
-    file.rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()), size);
-    if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes)) throw damaged("a block of its rows is broken");
-    rows.scatter(reader.bytes, block);
+    inputs[size_t(part)].rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()), size);
+    if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes)) throw invalid_argument("a block of its rows is broken");
+    own.scatter(reader.bytes, block);
   });
 }
 
 Frame read_frame(const std::string& path) {
-  Imf::InputFile file(path.c_str());
-  const Imf::Header& header = file.header();
-  const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
-  if (!attribute) throw damaged("it is no frame of Gradus");
-  const json description = json::parse(attribute->value());
-  if (description.at("format") != kFormat) throw damaged("it was written by another version of Gradus");
-  Frame frame = make_frame(header, description);
-  check_regions(frame);
-  const std::vector<StoredPlane> planes = stored_planes(&frame);
-  check_content(header, planes);
-  read_blocks(file, BlockRows(planes, frame.region.width(), frame.region.height()));
+  constexpr int kNoThreads = 0;  // ours unpack
+  constexpr bool kRepair = false;
+  Imf::MultiPartInputFile file(path.c_str(), kNoThreads, kRepair);
+  Frame frame = make_frame(file.header(0));
+  const std::vector<StoredPart> parts = stored_parts(&frame);
+  if (size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
+  for (size_t i = 0; i < parts.size(); ++i) check_part(file.header(int(i)), file.header(0), parts[i]);
+  read_blocks(&file, PartRows(parts, frame), parts.size());
   return frame;
 }
 
@@ -228,10 +101,10 @@ Frame read_frame(const std::string& path) {
 
 void save_frame(const Frame& frame, const std::string& path) {
   // The planes are only read here; the list is shared with reading, which writes them.
-  const std::vector<StoredPlane> planes = stored_planes(const_cast<Frame*>(&frame));
+  const std::vector<StoredPart> parts = stored_parts(const_cast<Frame*>(&frame));
   write_exr(path, [&](WriterStream* stream) {
-    BlockFile file(make_header(frame, planes), stream);
-    write_blocks(BlockRows(planes, frame.region.width(), frame.region.height()), &file);
+    BlockFile file(make_headers(frame, parts), stream);
+    write_blocks(PartRows(parts, frame), &file);
     file.finish();
   });
 }

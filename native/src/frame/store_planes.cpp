@@ -10,60 +10,94 @@ constexpr const char* kOffsetNames[kOffsets] = {"right", "up", "left", "down"};
 constexpr const char* kColorNames[4] = {"R", "G", "B", "A"};
 constexpr const char* kVectorNames[4] = {"X", "Y", "Z", "W"};
 
+// Planes that the frame has not are left out.
 class PlaneList {
  public:
-  explicit PlaneList(int channels) : channels_(channels) {}
-
-  void radiance(const std::string& name, std::vector<Radiance>* plane) {
+  void radiance(const std::string& layer, int channels, std::vector<Radiance>* plane) {
     if (plane->empty()) return;
-    for (int c = 0; c < channels_; ++c) add(name + "." + kColorNames[c], false, &(*plane)[0][c], sizeof(Radiance));
+    for (int c = 0; c < channels; ++c) add(layer + "." + kColorNames[c], false, &(*plane)[0][c], sizeof(Radiance));
   }
-  void floats(const std::string& name, std::vector<float>* plane, size_t width = 1, size_t offset = 0) {
-    if (!plane->empty()) add(name, false, plane->data() + offset, width * sizeof(float));
+  void vectors(const std::string& layer, uint32_t width, std::vector<float>* plane) {
+    if (plane->empty()) return;
+    for (uint32_t c = 0; c < width; ++c) {
+      add(layer + "." + (width == 1 ? "V" : kVectorNames[c]), false, plane->data() + c, width * sizeof(float));
+    }
   }
-  void counts(const std::string& name, std::vector<uint32_t>* plane) { add(name, true, plane->data(), sizeof(uint32_t)); }
+  void counts(const std::string& layer, std::vector<uint32_t>* plane) { add(layer + ".V", true, plane->data(), sizeof(uint32_t)); }
 
-  std::vector<StoredPlane> planes;
+  std::vector<StoredPlane> take() { return std::move(planes_); }
 
  private:
   template <class T>
   void add(const std::string& name, bool integer, T* data, size_t stride) {
-    planes.push_back({name, integer, reinterpret_cast<unsigned char*>(data), stride});
+    planes_.push_back({name, integer, reinterpret_cast<unsigned char*>(data), stride});
   }
-  int channels_;
+  std::vector<StoredPlane> planes_;
 };
 
-std::string pass_channel(uint32_t pass) {
-  std::string name = pass_info(pass).name;
+std::string layer_of(size_t component, int half) {
+  return (component == 0 ? "" : "component" + std::to_string(component) + ".") + kHalfNames[half];
+}
+
+std::string layer_of(const PassPlane& plane) {
+  std::string name = pass_info(plane.pass).name;
   for (char& c : name) c = c == ' ' ? '_' : c;
-  return "pass." + name;
+  return name;
+}
+
+std::vector<StoredPlane> samples(Frame* frame) {
+  PlaneList list;
+  for (int half = 0; half < kHalves; ++half) {
+    for (size_t c = 0; c < frame->components.size(); ++c) {
+      list.radiance(layer_of(c, half), frame->channels, &frame->components[c].primal[half]);
+    }
+    list.counts(std::string(kHalfNames[half]) + ".count", &frame->count[half]);
+  }
+  return list.take();
+}
+
+std::vector<StoredPlane> gradients(Frame* frame) {
+  PlaneList list;
+  for (int half = 0; half < kHalves; ++half) {
+    for (int o = 0; o < kOffsets; ++o) {
+      const std::string offset = std::string(".") + kOffsetNames[o];
+      for (size_t c = 0; c < frame->components.size(); ++c) {
+        list.radiance(layer_of(c, half) + offset, frame->channels, &frame->components[c].gradient[half][o]);
+      }
+      list.vectors(kHalfNames[half] + offset + ".pairs", 1, &frame->pair_count[half][o]);
+    }
+  }
+  return list.take();
+}
+
+std::vector<StoredPlane> features(Frame* frame) {
+  PlaneList list;
+  for (int half = 0; half < kHalves; ++half) {
+    for (PassPlane& plane : frame->passes) {
+      if (plane.in_halves) list.vectors(std::string(kHalfNames[half]) + "." + layer_of(plane), plane.channels, &plane.values[half]);
+    }
+  }
+  return list.take();
+}
+
+std::vector<StoredPlane> passes(Frame* frame) {
+  PlaneList list;
+  for (PassPlane& plane : frame->passes) {
+    if (plane.in_halves) continue;
+    list.vectors(layer_of(plane), plane.channels, &plane.values[0]);
+    list.vectors(layer_of(plane) + ".weight", 1, &plane.weight);
+  }
+  list.vectors("Fallback", 1, &frame->fallback);
+  return list.take();
 }
 
 }  // namespace
 
-std::vector<StoredPlane> stored_planes(Frame* frame) {
-  PlaneList list(frame->channels);
-  for (int half = 0; half < kHalves; ++half) {
-    const std::string h = kHalfNames[half];
-    for (size_t c = 0; c < frame->components.size(); ++c) {
-      const std::string name = "component" + std::to_string(c) + "." + h;
-      list.radiance(name + ".primal", &frame->components[c].primal[half]);
-      for (int o = 0; o < kOffsets; ++o) list.radiance(name + "." + kOffsetNames[o], &frame->components[c].gradient[half][o]);
-    }
-    list.counts("count." + h, &frame->count[half]);
-    for (int o = 0; o < kOffsets; ++o) list.floats("pairs." + h + "." + kOffsetNames[o], &frame->pair_count[half][o]);
-  }
-  for (PassPlane& plane : frame->passes) {
-    for (int half = 0; half < (plane.in_halves ? kHalves : 1); ++half) {
-      const std::string name = pass_channel(plane.pass) + (plane.in_halves ? std::string(".") + kHalfNames[half] : "");
-      for (uint32_t c = 0; c < plane.channels; ++c) {
-        list.floats(name + "." + kVectorNames[c], &plane.values[half], plane.channels, c);
-      }
-    }
-    list.floats(pass_channel(plane.pass) + ".weight", &plane.weight);
-  }
-  list.floats("fallback", &frame->fallback);
-  return list.planes;
+std::vector<StoredPart> stored_parts(Frame* frame) {
+  std::vector<StoredPart> parts = {
+      {"samples", samples(frame)}, {"gradients", gradients(frame)}, {"features", features(frame)}, {"passes", passes(frame)}};
+  std::erase_if(parts, [](const StoredPart& part) { return part.planes.empty(); });
+  return parts;
 }
 
 }  // namespace gradus

@@ -4,8 +4,12 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,7 +17,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 
 #include "frame/file_writer.h"
 #include "render/combine.h"
@@ -92,53 +99,153 @@ TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
   }
 }
 
-// By OpenEXR alone: reads every channel and writes it again, as earlier versions wrote frames.
-void rewrite(const std::string& from, const std::string& to) {
-  Imf::InputFile file(from.c_str());
-  const Imath::Box2i window = file.header().dataWindow();
-  const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
-  std::vector<std::vector<uint32_t>> planes;
-  Imf::FrameBuffer buffer;
-  for (auto channel = file.header().channels().begin(); channel != file.header().channels().end(); ++channel) {
-    planes.emplace_back(size_t(width) * size_t(height));
-    buffer.insert(channel.name(), Imf::Slice::Make(channel.channel().type, planes.back().data(), window));
+// A file by OpenEXR alone, with headers as `change` leaves them: every channel of every part is read and written again.
+template <class Change>
+void rewrite(const std::string& from, const std::string& to, const Change& change) {
+  Imf::MultiPartInputFile file(from.c_str());
+  std::vector<Imf::Header> headers;
+  for (int i = 0; i < file.parts(); ++i) headers.push_back(file.header(i));
+  change(&headers);
+  Imf::MultiPartOutputFile written(to.c_str(), headers.data(), int(headers.size()));
+  for (int i = 0; i < int(headers.size()); ++i) {
+    const Imath::Box2i window = headers[size_t(i)].dataWindow();
+    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+    std::vector<std::vector<uint32_t>> planes;
+    Imf::FrameBuffer buffer;
+    const Imf::ChannelList& channels = headers[size_t(i)].channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+      planes.emplace_back(size_t(width) * size_t(height));
+      buffer.insert(channel.name(), Imf::Slice::Make(channel.channel().type, planes.back().data(), window));
+    }
+    Imf::InputPart input(file, i);
+    input.setFrameBuffer(buffer);
+    input.readPixels(window.min.y, window.max.y);
+    Imf::OutputPart output(written, i);
+    output.setFrameBuffer(buffer);
+    output.writePixels(height);
   }
-  file.setFrameBuffer(buffer);
-  file.readPixels(window.min.y, window.max.y);
-  Imf::OutputFile written(to.c_str(), file.header());
-  written.setFrameBuffer(buffer);
-  written.writePixels(height);
 }
 
 TEST_F(F6_Store, OpenExrReadsItAndWhatOpenExrPackedIsRead) {
   for (const auto& [width, height] : {std::pair{61u, 37u}, {64u, 48u}, {1u, 1u}}) {
     const auto frame = rendered(all_passes(width, height, 4));
     save_frame(*frame, path());
-    rewrite(path(), path("old.exr"));
-    EXPECT_TRUE(same_samples(*frame, *load_frame(path("old.exr"))));
+    rewrite(path(), path("again.exr"), [](std::vector<Imf::Header>*) {});
+    EXPECT_TRUE(same_samples(*frame, *load_frame(path("again.exr"))));
   }
 }
 
-TEST_F(F6_Store, FilesOfAnotherCompressionAreNamed) {
+std::vector<std::string> names_of(const Imf::MultiPartInputFile& file) {
+  std::vector<std::string> names;
+  for (int i = 0; i < file.parts(); ++i) names.push_back(file.header(i).name());
+  return names;
+}
+
+TEST_F(F6_Store, PartsAreThereByPurpose) {
+  save_frame(*rendered(all_passes(20, 10, 2)), path());
+  EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples", "gradients", "features", "passes"}));
+  GradusSettings settings = small_settings(20, 10, 2);
+  settings.integrator = GRADUS_INTEGRATOR_PATH;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;  // reads no features
+  save_frame(*rendered(settings), path());
+  EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples"}));
+  EXPECT_NO_THROW(load_frame(path()));
+}
+
+// Readers that throw the parts together lose none.
+TEST_F(F6_Store, NoChannelIsThereTwice) {
+  save_frame(*rendered(all_passes(20, 10, 2)), path());
+  const Imf::MultiPartInputFile file(path().c_str());
+  std::set<std::string> names;
+  for (int i = 0; i < file.parts(); ++i) {
+    const Imf::ChannelList& channels = file.header(i).channels();
+    for (auto c = channels.begin(); c != channels.end(); ++c) EXPECT_TRUE(names.insert(c.name()).second) << c.name();
+  }
+}
+
+// The first row of the file is the top of the picture (contract 7.2).
+TEST_F(F6_Store, RowsRunDownwards) {
+  const auto frame = rendered(small_settings(20, 10, 2));
+  save_frame(*frame, path());
+  Imf::MultiPartInputFile file(path().c_str());
+  std::vector<uint32_t> row(20);
+  Imf::FrameBuffer buffer;
+  buffer.insert("A.G", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(row.data()), sizeof(uint32_t), 0));
+  Imf::InputPart part(file, 0);
+  part.setFrameBuffer(buffer);
+  part.readPixels(0);
+  for (size_t x = 0; x < row.size(); ++x) {
+    float value = 0.0f;
+    std::memcpy(&value, &row[x], sizeof(value));
+    EXPECT_EQ(value, frame->components[0].primal[0][9 * 20 + x].y);
+  }
+}
+
+struct Refusal {
+  const char* what;
+  uint32_t code;
+  std::function<void(std::vector<Imf::Header>*)> change;
+};
+
+nlohmann::json description_of(const Imf::Header& header) {
+  return nlohmann::json::parse(header.typedAttribute<Imf::StringAttribute>("gradus").value());
+}
+
+void set_format(int format, Imf::Header* header) {
+  nlohmann::json j = description_of(*header);
+  j["format"] = format;
+  header->insert("gradus", Imf::StringAttribute(j.dump()));
+}
+
+TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
+  save_frame(*rendered(all_passes(32, 32, 1)), path());
+  const Refusal refusals[] = {
+      {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { set_format(3, &h->front()); }},
+      {"it is no frame of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().erase("gradus"); }},
+      {"it was packed by another program", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { (*h)[1].compression() = Imf::PIZ_COMPRESSION; }},
+      {"it has parts of something else", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->pop_back(); }},
+      {"part gradients is missing", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { (*h)[1].setName("other"); }},
+      {"channel A.R is missing", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().channels()["A.R"].type = Imf::HALF; }},
+  };
+  for (const Refusal& refusal : refusals) {
+    rewrite(path(), path("foreign.exr"), refusal.change);
+    try {
+      load_frame(path("foreign.exr"));
+      ADD_FAILURE() << refusal.what;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), refusal.code);
+      EXPECT_NE(std::string(e.what()).find(refusal.what), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("foreign.exr"), std::string::npos) << e.what();
+    }
+  }
+}
+
+// Versions before multi-part files wrote one part without a name.
+TEST_F(F6_Store, FramesOfOnePartAreOfAnotherVersion) {
   save_frame(*rendered(small_settings(32, 32, 1)), path());
-  Imf::InputFile file(path().c_str());
-  Imf::Header header = file.header();
-  header.compression() = Imf::PIZ_COMPRESSION;
-  { Imf::OutputFile(path("piz.exr").c_str(), header); }
+  Imf::Header header(32, 32);
+  header.insert("gradus", Imf::MultiPartInputFile(path().c_str()).header(0)["gradus"]);
+  set_format(3, &header);
+  header.channels().insert("component0.A.primal.R", Imf::Channel(Imf::FLOAT));
+  { Imf::OutputFile(path("old.exr").c_str(), header); }
   try {
-    load_frame(path("piz.exr"));
+    load_frame(path("old.exr"));
     FAIL();
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("packed by another program"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("it was written by another version of Gradus"), std::string::npos) << e.what();
   }
 }
 
 TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
   save_frame(*rendered(small_settings(32, 32, 1)), path());
-  Imf::InputFile file(path().c_str());
-  Imf::Header header = file.header();
-  header.displayWindow() = header.dataWindow() = Imath::Box2i({0, 0}, {65535, 65535});
-  { Imf::OutputFile(path("large.exr").c_str(), header); }
+  const Imf::MultiPartInputFile file(path().c_str());
+  std::vector<Imf::Header> headers;
+  for (int i = 0; i < file.parts(); ++i) {
+    headers.push_back(file.header(i));
+    headers.back().displayWindow() = headers.back().dataWindow() = Imath::Box2i({0, 0}, {65535, 65535});
+    headers.back().setChunkCount(4096);
+  }
+  { Imf::MultiPartOutputFile(path("large.exr").c_str(), headers.data(), int(headers.size())); }
   try {
     load_frame(path("large.exr"));
     FAIL();

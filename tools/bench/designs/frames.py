@@ -27,12 +27,13 @@ def planes_of(path: Path) -> dict[str, np.ndarray]:
     import OpenEXR
 
     with OpenEXR.File(str(path), separate_channels=True) as file:
-        return {name: np.asarray(channel.pixels, dtype=np.float64) for name, channel in file.channels().items()}
+        channels = [channel for part in file.parts for channel in part.channels.items()]
+        return {name: np.asarray(channel.pixels, dtype=np.float64) for name, channel in channels}
 
 
 def frame_of(planes: dict[str, np.ndarray]) -> Frame:
     """From planes by the names of native/src/frame/store_planes.cpp."""
-    depths = [_mean_of_samples(planes, half, f"pass.Denoising_Depth.{half}", "X") for half in "AB"]
+    depths = [_mean_of_samples(planes, half, f"{half}.Denoising_Depth", "V") for half in "AB"]
     median = _median_of_positive(np.concatenate(depths))
     a, b = (_half_of(planes, half, depth / (depth + median)) for half, depth in zip("AB", depths, strict=True))
     return a, b
@@ -62,7 +63,7 @@ def differences(image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _half_of(planes: dict[str, np.ndarray], half: str, depth: np.ndarray) -> Half:
-    image = _mean_of_samples(planes, half, f"component0.{half}.primal", "RGB")
+    image = _mean_of_samples(planes, half, half, "RGB")
     dx, dy = np.zeros_like(image), np.zeros_like(image)
     dx[:, :-1] = _mean_of_pairs(planes, half, "right")[:, :-1] - _mean_of_pairs(planes, half, "left")[:, 1:]
     dy[:-1] = _mean_of_pairs(planes, half, "down")[:-1] - _mean_of_pairs(planes, half, "up")[1:]
@@ -71,16 +72,16 @@ def _half_of(planes: dict[str, np.ndarray], half: str, depth: np.ndarray) -> Hal
 
 def _mean_of_pairs(planes: dict[str, np.ndarray], half: str, offset: str) -> np.ndarray:
     """Of the samples from this end of each pair (native/src/frame/read.cpp joins both ends); NaN where there are none."""
-    pairs = planes[f"pairs.{half}.{offset}"][:, :, None]
-    return _vector(planes, f"component0.{half}.{offset}", "RGB") / np.where(pairs > 0.0, pairs, np.nan)
+    pairs = planes[f"{half}.{offset}.pairs.V"][:, :, None]
+    return _vector(planes, f"{half}.{offset}", "RGB") / np.where(pairs > 0.0, pairs, np.nan)
 
 
 def _mean_of_samples(planes: dict[str, np.ndarray], half: str, name: str, channels: str) -> np.ndarray:
-    return _vector(planes, name, channels) / np.maximum(planes[f"count.{half}"], 1.0)[:, :, None]
+    return _vector(planes, name, channels) / np.maximum(planes[f"{half}.count.V"], 1.0)[:, :, None]
 
 
 def _surface(planes: dict[str, np.ndarray], half: str) -> np.ndarray:
-    normal, albedo = (_mean_of_samples(planes, half, f"pass.Denoising_{name}.{half}", "XYZ") for name in ("Normal", "Albedo"))
+    normal, albedo = (_mean_of_samples(planes, half, f"{half}.Denoising_{name}", "XYZ") for name in ("Normal", "Albedo"))
     return np.concatenate([0.5 + 0.5 * normal, albedo], axis=2)
 
 

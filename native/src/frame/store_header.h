@@ -1,0 +1,21 @@
+// What stands before the planes of a stored frame: sizes and channels, and in words keys, settings, samples and the version of the format.
+#pragma once
+
+#include <ImfHeader.h>
+
+#include <vector>
+
+#include "frame/frame.h"
+#include "frame/store_planes.h"
+
+namespace gradus {
+
+// One for each part; the description is in the first.
+std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<StoredPart>& parts);
+
+// From the first part's: a frame with zeroed planes. Throws Error with what is wrong: no frame, another version, larger than the memory.
+Frame make_frame(const Imf::Header& header);
+// The header of a part as make_headers() makes it.
+void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part);
+
+}  // namespace gradus
