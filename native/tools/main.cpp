@@ -1,4 +1,5 @@
 // gradus: renders saved scenes into frame stores, reconstructs frame stores, compares images.
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -6,6 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace gradus::tool;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a name
   CLI::App app("Gradus, a gradient-domain path tracer: renders saved scenes, reconstructs stored frames, compares images.", "gradus");
   app.set_version_flag("--version", gradus_version_text());
   app.require_subcommand(1);

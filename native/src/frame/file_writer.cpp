@@ -3,20 +3,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 
 #include "base/error.h"
+#include "frame/part_file.h"
 
 namespace gradus {
 namespace {
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  if (gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return "host";
-  return name.data();
-}
 
 // So that the new name itself survives a power cut. Not every file system can do it; the data is safe already.
 void sync_folder_of(const std::string& path) {
@@ -30,11 +24,16 @@ void sync_folder_of(const std::string& path) {
 
 }  // namespace
 
-FileWriter::FileWriter(const std::string& path)
-    : path_(path),
-      temporary_(path + "." + std::to_string(getpid()) + "." + host_name() + ".part"),
-      file_(std::fopen(temporary_.c_str(), "wbe")) {
-  if (!file_) fail("create");
+FileWriter::FileWriter(const std::string& path) : path_(path) {
+  const PartFile part = make_part_file(path);
+  if (part.descriptor < 0) fail("create");
+  temporary_ = part.name;
+  file_ = fdopen(part.descriptor, "wb");
+  if (file_ == nullptr) {
+    close(part.descriptor);
+    unlink(temporary_.c_str());
+    fail("create");
+  }
 }
 
 FileWriter::~FileWriter() {

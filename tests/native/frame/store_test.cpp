@@ -11,16 +11,23 @@
 #include <ImfOutputPart.h>
 #include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "frame/file_writer.h"
 #include "render/combine.h"
@@ -333,6 +340,115 @@ TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
   EXPECT_GE(whole, 10);
 }
 
+// One of them wins, whoever reads meanwhile sees a whole frame of one or the other.
+TEST_F(F6_Store, WritersOfOneFrameDoNotMeet) {
+  const std::shared_ptr<const Frame> frames[] = {rendered(all_passes(64, 48, 1)), rendered(all_passes(64, 48, 2))};
+  const auto write = [&](int n) {
+    for (int i = 0; i < 20; ++i) save_frame(*frames[n], path());
+  };
+  write(0);
+  pid_t processes[2];
+  for (int n = 0; n < 2; ++n) {
+    processes[n] = fork();
+    if (processes[n] == 0) {
+      write(n);
+      _exit(0);
+    }
+  }
+  std::atomic<int> writing{2};
+  std::thread threads[2];
+  for (int n = 0; n < 2; ++n) {
+    threads[n] = std::thread([&, n] {
+      write(n);
+      --writing;
+    });
+  }
+  while (writing > 0) {
+    const auto seen = load_frame(path());
+    EXPECT_TRUE(same_samples(*seen, *frames[0]) || same_samples(*seen, *frames[1]));
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const pid_t process : processes) {
+    int status = -1;
+    waitpid(process, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(files(), 1u);
+}
+
+// Runs `write` in a process of its own, which has prepared itself: what went wrong, "" for nothing. No answer where it could not prepare.
+std::optional<std::string> failure_of(const std::function<bool()>& prepare, const std::function<void()>& write) {
+  int ends[2];
+  EXPECT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (!prepare()) _exit(1);
+    std::string what;
+    try {
+      write();
+    } catch (const std::exception& e) {
+      what = e.what();
+    }
+    const ssize_t written = ::write(ends[1], what.data(), what.size());
+    _exit(written == ssize_t(what.size()) ? 0 : 2);
+  }
+  close(ends[1]);
+  std::string what;
+  char text[256];
+  for (ssize_t n = 0; (n = ::read(ends[0], text, sizeof(text))) > 0;) what.append(text, size_t(n));
+  close(ends[0]);
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) < 2) << status;
+  return status == 0 ? std::optional(what) : std::nullopt;
+}
+
+bool limit_files_to(rlim_t bytes) {
+  signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{bytes, bytes};
+  return setrlimit(RLIMIT_FSIZE, &limit) == 0;
+}
+
+TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
+  const auto frame = rendered(all_passes(96, 64, 2));
+  save_frame(*frame, path("old.exr"));
+  const auto what = failure_of([] { return limit_files_to(100000); }, [&] { save_frame(*frame, path()); });
+  ASSERT_TRUE(what);
+  EXPECT_NE(what->find("cannot write " + path() + ": File too large"), std::string::npos) << *what;
+  EXPECT_EQ(files(), 1u);
+  EXPECT_NE(failure_of([] { return limit_files_to(100000); }, [&] { save_frame(*frame, path("old.exr")); }), "");
+  EXPECT_TRUE(same_samples(*frame, *load_frame(path("old.exr")))) << "the frame that was there remains";
+}
+
+// A disk of 100 kB: for those who may mount one in a name space of their own.
+TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
+  const auto frame = rendered(all_passes(96, 64, 2));
+  const auto mount_disk = [&] {
+    return (unshare(CLONE_NEWNS) == 0 || unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) &&
+           mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 && mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=100k") == 0;
+  };
+  const auto what = failure_of(mount_disk, [&] {
+    try {
+      save_frame(*frame, path());
+    } catch (...) {
+      if (files() > 0) throw std::runtime_error("something is left");
+      throw;
+    }
+  });
+  if (!what) GTEST_SKIP() << "no disk can be mounted here";
+  EXPECT_NE(what->find("cannot write " + path() + ": No space left on device"), std::string::npos) << *what;
+}
+
+TEST_F(F6_Store, AFolderThatIsReadOnlyIsNamed) {
+  const auto frame = rendered(small_settings(8, 8, 1));
+  fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+  const auto become_nobody = [] { return geteuid() != 0 || setuid(65534) == 0; };  // permissions do not hold for root
+  const auto what = failure_of(become_nobody, [&] { save_frame(*frame, path()); });
+  fs::permissions(folder, fs::perms::owner_all);
+  ASSERT_TRUE(what);
+  EXPECT_NE(what->find("cannot create " + path() + ": Permission denied"), std::string::npos) << *what;
+}
+
 TEST_F(F6_Store, AnAbandonedWriterLeavesNothing) {
   {
     FileWriter writer(path("half"));
@@ -341,13 +457,21 @@ TEST_F(F6_Store, AnAbandonedWriterLeavesNothing) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(F6_Store, AFullDiskIsAnError) {
-  try {
-    FileWriter writer("/dev/full/x");
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("/dev/full/x"), std::string::npos);
+// Under the name of the process, which a killed one cannot remove.
+TEST_F(F6_Store, WhatDeadWritersHaveLeftIsRemoved) {
+  const pid_t child = fork();
+  if (child == 0) {
+    FileWriter first(path("a.exr")), second(path("a.exr"));
+    _exit(0);
   }
+  waitpid(child, nullptr, 0);
+  std::ofstream(path("b.exr." + std::to_string(child) + ".another-host.part")) << "of a machine that shares the folder";
+  std::ofstream(path("notes." + std::to_string(child))) << "of someone else";
+  ASSERT_EQ(files(), 4u);
+  FileWriter writer(path("c.exr"));
+  EXPECT_EQ(files(), 3u);  // and the new one
+  FileWriter other(path("c.exr"));
+  EXPECT_EQ(files(), 4u) << "those that live keep theirs";
 }
 
 }  // namespace

@@ -1,0 +1,72 @@
+#include "frame/part_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <filesystem>
+
+namespace gradus {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return "host";
+  return name.data();
+}
+
+std::string ending() { return std::string(".") + host_name() + ".part"; }
+
+// Of this host's part file; 0: it is none. The threads of a process count theirs up, as 123-2.
+pid_t process_of(const std::string& name) {
+  const std::string end = ending();
+  if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) return 0;
+  const std::string rest = name.substr(0, name.size() - end.size()), number = rest.substr(rest.rfind('.') + 1);
+  pid_t process = 0;
+  const auto [after, problem] = std::from_chars(number.data(), number.data() + number.size(), process);
+  const bool whole = after == number.data() + number.size() || *after == '-';
+  return problem == std::errc() && whole && rest.size() > number.size() ? process : 0;
+}
+
+bool is_alive(pid_t process) { return kill(process, 0) == 0 || errno != ESRCH; }
+
+// By the lock, too: a container on this host may have numbers of its own for its processes.
+void remove_unlocked(const fs::path& part) {
+  const int descriptor = open(part.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(part.c_str());
+  close(descriptor);
+}
+
+void remove_dead_parts(const fs::path& folder) {
+  std::error_code problem;
+  for (fs::directory_iterator file(folder, problem), end; !problem && file != end; file.increment(problem)) {
+    const pid_t process = process_of(file->path().filename().string());
+    if (process > 0 && !is_alive(process)) remove_unlocked(file->path());
+  }
+}
+
+}  // namespace
+
+PartFile make_part_file(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  remove_dead_parts(folder.empty() ? "." : folder);
+  PartFile part;
+  for (int n = 1; part.descriptor < 0; ++n) {
+    const std::string process = std::to_string(getpid());
+    part.name = path + "." + (n == 1 ? process : process + "-" + std::to_string(n)) + ending();
+    part.descriptor = open(part.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (part.descriptor < 0 && errno != EEXIST) return part;
+  }
+  flock(part.descriptor, LOCK_EX | LOCK_NB);  // not every file system can do it; the process's number is enough on most
+  return part;
+}
+
+}  // namespace gradus

@@ -1,0 +1,17 @@
+// Files that are being written, PATH.<pid>.<host>.part: no two writers have one in common, and each is locked while its writer lives, so
+// that what a killed one has left is known.
+#pragma once
+
+#include <string>
+
+namespace gradus {
+
+struct PartFile {
+  std::string name;
+  int descriptor = -1;  // -1: it could not be made, for errno's reason
+};
+
+// New and locked. Those that dead processes of this host have left in its folder are removed.
+PartFile make_part_file(const std::string& path);
+
+}  // namespace gradus
