@@ -7,7 +7,7 @@ BLENDER ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help build render test test-full test-native test-addon stress faults compilers package format lint clean
-.PHONY: bench bench-errors bench-compare bench-agreement bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture
+.PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -50,6 +50,10 @@ bench-errors:   ## error against CPU time alone; limited by the same variables
 
 bench-agreement: ## converged images against those of Cycles and Mitsuba; limited by the same variables
 	@SCENES='$(SCENES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' tools/bench.sh --agreement
+
+bench-animation: ## flicker of animations against CPU time; limited by the same variables
+	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
+	 tools/bench.sh --animation
 
 bench-quick:    ## errors of two scenes, in under five minutes
 	@tools/bench.sh --quick

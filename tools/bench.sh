@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --compare | --agreement | --speed | --designs | --suite | --pictures | --host | --report]; all without one.
+# Runs the benchmark and writes its report. usage: bench.sh [--errors | --quick | --compare | --agreement | --animation | --speed | --designs | --suite | --pictures | --host | --report]; all without one.
 #   --errors  error against CPU time; SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 SEEDS=5 SAMPLES=4,16,64 MINUTES=60 limit it
 #   --quick   the same of two scenes, smaller
 #   --compare  the errors of two versions among the stored results; OLD=772811d NEW=414ff4f WIDTH=160
 #   --agreement  converged images against those of Cycles and Mitsuba; SCENES, WIDTH and REFERENCE as above
+#   --animation  flicker against CPU time; SCENES, MODES, WIDTH, REFERENCE, SEEDS, SAMPLES and MINUTES limit it
 #   --speed   time of a sample in the room; ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3 MINUTES=60 limit it
 #   --designs  reconstructions that were published, written anew in Python, against the product's; SCENES and REFERENCE as above
 #   --suite   time of the statistical tests and of the reconstructions
@@ -22,8 +23,7 @@ set_up() {
 }
 option() { [ -z "$2" ] || arguments+=("$1" "$2"); }
 
-errors() {
-  local arguments=("$@")
+limits() {
   option --scenes "${SCENES:-}"
   option --modes "${MODES:-}"
   option --width "${WIDTH:-}"
@@ -31,7 +31,16 @@ errors() {
   option --seeds "${SEEDS:-}"
   option --samples "${SAMPLES:-}"
   option --minutes "${MINUTES:-}"
+}
+errors() {
+  local arguments=("$@")
+  limits
   "$python" tools/bench/bench.py "${arguments[@]}"
+}
+animation() {
+  local arguments=()
+  limits
+  "$python" tools/bench/animation.py "${arguments[@]}"
 }
 compare() {
   local arguments=("${OLD:?which versions?}" "${NEW:?which versions?}")
@@ -77,12 +86,13 @@ case $part in
   --quick) set_up; errors --quick; report ;;
   --compare) tools/setup/setup bpy; compare ;;
   --agreement) set_up; agreement; report ;;
+  --animation) set_up; animation; report ;;
   --speed) set_up blender; speed; report ;;
   --designs) set_up; designs ;;
   --suite) set_up; suite; report ;;
   --pictures) set_up; pictures; report ;;
   --host) set_up blender; host ;;
   --report) tools/setup/setup bpy; report ;;
-  all) set_up blender; host; suite; speed; errors; pictures; agreement || differs=1; report; exit "${differs:-0}" ;;
+  all) set_up blender; host; suite; speed; errors; animation; pictures; agreement || differs=1; report; exit "${differs:-0}" ;;
   *) echo "bench.sh: unknown option $part" >&2; exit 1 ;;
 esac

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import bpy
 import numpy as np
 import pytest
 from gradus import settings
@@ -121,6 +122,13 @@ def test_slope_is_that_of_the_last_decade() -> None:
     curve = [(0.01, 5.0), (0.1, 5.0), (1.0, 1.0), (3.0, 1.0 / 3.0), (10.0, 0.1)]
     assert metrics.slope(curve) == pytest.approx(-1.0)
     assert metrics.slope(curve[:1]) is None
+
+
+def test_a_setting_that_does_not_exist_refuses_the_mode(scene: bpy.types.Scene) -> None:
+    """Blender takes any attribute: a temporal mode was measured without being temporal."""
+    mode = modes.Mode("unknown", modes.GRADUS, {"use_more_light": True})
+    with pytest.raises(ValueError, match="use_more_light"):
+        modes.apply(scene, mode, 4, 0)
 
 
 def test_every_mode_has_a_reference() -> None:

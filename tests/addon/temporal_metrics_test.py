@@ -31,6 +31,10 @@ def noise(seed: int, *shape: int) -> np.ndarray:
     return np.random.default_rng(seed).normal(scale=DEVIATION, size=shape)
 
 
+def steadiness(images: np.ndarray, reference: np.ndarray) -> float:
+    return measures.flicker_map(images, reference, NONE).mean() / measures.independent_map(images, reference, NONE).mean()
+
+
 def flicker_ratio(images: np.ndarray, reference: np.ndarray = REFERENCE) -> float:
     """F / (2 relMSE)."""
     return measures.flicker_map(images, reference, NONE).mean() / (2.0 * measures.error_map(images, reference, NONE).mean())
@@ -41,6 +45,7 @@ def test_errors_of_frames_that_are_independent_flicker_by_twice_their_energy() -
     expected = DEVIATION**2 * (1.0 / (1e-3 + REFERENCE.mean(axis=3) ** 2)).mean()
     assert measures.error_map(images, REFERENCE, NONE).mean() == pytest.approx(expected, rel=0.03)
     assert flicker_ratio(images) == pytest.approx(1.0, rel=0.03)
+    assert steadiness(images, REFERENCE) == pytest.approx(1.0, rel=0.03)
     assert measures.fast_share(images, REFERENCE, NONE) == pytest.approx(0.5, rel=0.03)
 
 
@@ -127,6 +132,13 @@ OFF = 6
 def lamp() -> np.ndarray:
     """A light that goes off at frame OFF."""
     return RESTING + 2.0 * (np.arange(FRAMES) < OFF)[:, None, None, None]
+
+
+def test_a_light_that_goes_off_makes_independent_errors_no_less_steady() -> None:
+    """Noise of the bright frame before counts relative to the dark one: F is more than twice relMSE."""
+    images = lamp() * (1.0 + noise(6, *SHAPE))
+    assert flicker_ratio(images, lamp()) > 1.2
+    assert steadiness(images, lamp()) == pytest.approx(1.0, rel=0.03)
 
 
 def test_frames_for_themselves_have_no_lag() -> None:

@@ -102,7 +102,7 @@ class SceneBench:
             row |= {"peak_memory_bytes": answer["peak_memory_bytes"]} | answer.get("stats", {})
             if job.bounces is None and job.mode in ESTIMATES_ERROR:
                 row["estimated"] = self._estimated_error(job)
-        append(row)
+        append(row, RESULTS)
         print(f"{self.scene.name:18} {job.mode:17} {job.samples:5} spp seed {job.seed}: {row['cpu']:8.2f} CPU-s", flush=True)
 
     def _estimated_error(self, job: Job) -> float:
@@ -142,8 +142,8 @@ def bench_scene(scene: Scene, arguments: argparse.Namespace, version: str, deadl
         bench.renderers.close()
 
 
-def append(row: dict[str, Any]) -> None:
-    with RESULTS.open("a") as file:
+def append(row: dict[str, Any], results: Path) -> None:
+    with results.open("a") as file:
         file.write(json.dumps(shortened(row), separators=(",", ":")) + "\n")
 
 

@@ -141,11 +141,12 @@ def to_html(title: str, blocks: list[Block], style: str, script: str) -> str:
 
 
 def inline(text: str) -> str:
-    """Bold, code, links and emphasis of Markdown."""
+    """Bold, code, pictures, links and emphasis of Markdown."""
     text = html.escape(text, quote=False)
     text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
     text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
     text = re.sub(r"(?<!\w)\*([^*]+)\*", r"<i>\1</i>", text)
+    text = re.sub(r"!\[([^\]]+)\]\(([^)]+)\)", r'<img src="\2" alt="\1">', text)
     return re.sub(r"\[([^\]]+)\]\(([^)]+)\)", r'<a href="\2">\1</a>', text)
 
 

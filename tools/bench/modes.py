@@ -22,7 +22,7 @@ def _gradus(integrator: str, reconstruction: str, denoiser: str = "NONE") -> dic
 # Plain path tracing by both: light tree on; no guiding, clamps, filter glossy, adaptive sampling or denoiser.
 _CYCLES_PLAIN = {
     "use_light_tree": True, "use_guiding": False, "use_adaptive_sampling": False, "use_denoising": False,
-    "blur_glossy": 0.0, "sample_clamp_direct": 0.0, "sample_clamp_indirect": 0.0,
+    "blur_glossy": 0.0, "sample_clamp_direct": 0.0, "sample_clamp_indirect": 0.0, "use_animated_seed": True,
 }  # fmt: skip
 _DENOISER = {
     "use_denoising": True, "denoiser": "OPENIMAGEDENOISE", "denoising_quality": "HIGH", "denoising_prefilter": "ACCURATE",
@@ -57,9 +57,8 @@ ESTIMATES_ERROR = {name for name, mode in MODES.items() if mode.settings.get("de
 _CYCLES_OWN = {name for mode in MODES.values() if mode.engine == CYCLES for name in mode.settings}
 
 
-def apply(scene: Any, name: str, samples: int, seed: int) -> None:
+def apply(scene: Any, mode: Mode, samples: int, seed: int) -> None:
     """Sets engine and settings; raises ValueError for what this Blender or this version of Gradus refuses."""
-    mode = MODES[name]
     scene.render.engine = mode.engine
     target = scene.gradus if mode.engine == GRADUS else scene.cycles
     target.samples, target.seed = samples, seed
@@ -72,6 +71,8 @@ def apply(scene: Any, name: str, samples: int, seed: int) -> None:
         for setting in known:
             target.property_unset(setting)
     for setting, value in settings.items():
+        if setting not in target.bl_rna.properties:  # assigned all the same, it would mean nothing
+            raise ValueError(f"{setting} does not exist here")
         try:
             setattr(target, setting, value)
         except TypeError as error:

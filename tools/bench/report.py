@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import animation_report
 import behind
 import figures
 import maps
@@ -205,7 +206,7 @@ def conditions(scene: SceneResults) -> str:
 def blocks() -> list[Block]:
     scenes = results.load()
     made: list[Block] = [Text((FOLDER / "preface.md").read_text()), Text("## Targets"), targets.table(scenes)]
-    made += [*equal_time(scenes), *shortfalls(scenes), *room(), *sample_costs(scenes), *agreement()]
+    made += [*equal_time(scenes), *shortfalls(scenes), *animation_report.blocks(), *room(), *sample_costs(scenes), *agreement()]
     for scene in scenes:
         made += details(scene)
     return made

@@ -52,15 +52,20 @@ QUICK = ("cornell", "door-ajar")
 
 
 def select(names: str) -> list[Scene]:
+    """Scenes of stills."""
+    return chosen(SCENES, names)
+
+
+def chosen(scenes: list[Scene], names: str) -> list[Scene]:
     """Scenes by name ('a,b'), all for ''. Missing files are named on standard output."""
     wanted = [n for n in names.split(",") if n]
-    unknown = set(wanted) - {s.name for s in SCENES}
+    unknown = set(wanted) - {s.name for s in scenes}
     if unknown:
         raise SystemExit(f"unknown scenes: {', '.join(sorted(unknown))}")
-    chosen = [s for s in SCENES if not wanted or s.name in wanted]
-    for scene in chosen:
+    found = [s for s in scenes if not wanted or s.name in wanted]
+    for scene in found:
         if scene.maker and not scene.path.exists():
             subprocess.run([sys.executable, str(Path(__file__).with_name(scene.maker)), str(scene.path)], check=True)
         if not scene.path.exists():
             print(f"SKIP {scene.name}: its file is not here")
-    return [s for s in chosen if s.path.exists()]
+    return [s for s in found if s.path.exists()]

@@ -27,7 +27,7 @@ from rooms import ROOMS  # noqa: E402
 
 def render(job: dict, bounces: int) -> dict:
     scene = bpy.context.scene
-    modes.apply(scene, job["mode"], job["samples"], job["seed"])
+    modes.apply(scene, modes.MODES[job["mode"]], job["samples"], job["seed"])
     set_bounces(scene.gradus if scene.render.engine == modes.GRADUS else scene.cycles, bounces)
     memory.reset_peak()
     wall, cpu = time.perf_counter(), time.process_time()

@@ -32,6 +32,12 @@ def flicker_map(images: np.ndarray, reference: np.ndarray, variance: np.ndarray)
     return (change**2 - variance[1:] - variance[:-1]).mean(axis=-1) / relative_to(reference[1:])
 
 
+def independent_map(images: np.ndarray, reference: np.ndarray, variance: np.ndarray) -> np.ndarray:
+    """What F would be, by pixels, if errors of frames were independent: twice relMSE where the reference does not change."""
+    squared = (images - reference) ** 2 - variance
+    return (squared[1:] + squared[:-1]).mean(axis=-1) / relative_to(reference[1:])
+
+
 def warped_flicker_map(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """F along the motion of surfaces; not a number where the frame before does not show the same point."""
     errors, (frames, rows, columns), seen = images - reference, *_sources(vectors)
@@ -95,6 +101,7 @@ def lead(shares: list[float], off: int) -> int:
 def all_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray) -> dict[str, float | list[float]]:
     """By their names in animation.jsonl."""
     errors, flicker = error_map(images, reference, variance), flicker_map(images, reference, variance)
+    independent = independent_map(images, reference, variance)
     warped = warped_flicker_map(images, reference, variance, vectors)
     found = {
         "relmse": float(errors.mean()),
@@ -102,6 +109,8 @@ def all_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray
         "relmse_by_frame": [float(error) for error in errors.mean(axis=(1, 2))],
         "flicker": float(flicker.mean()),
         "flicker_trimmed": trimmed_mean(flicker),
+        "flicker_if_independent": float(independent.mean()),
+        "flicker_if_independent_trimmed": trimmed_mean(independent),
         "flicker_warped": float(np.nanmean(warped)),
         "flicker_warped_trimmed": trimmed_mean(warped),
         "fast_share": fast_share(images, reference, variance),

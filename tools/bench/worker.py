@@ -58,7 +58,7 @@ def choose_file(layers: bool) -> None:
 
 def render(job: dict, folder: Path, bounces: dict[str, int]) -> dict:
     scene = bpy.context.scene
-    modes.apply(scene, job["mode"], job["samples"], job["seed"])
+    modes.apply(scene, modes.MODES[job["mode"]], job["samples"], job["seed"])
     is_gradus = scene.render.engine == modes.GRADUS
     for name, limit in bounces.items():
         setattr(scene.gradus if is_gradus else scene.cycles, name, job.get("bounces", limit))

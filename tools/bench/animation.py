@@ -1,0 +1,142 @@
+"""Flicker of animations against CPU time: modes frame by frame, temporal ones, and Cycles on the same frames.
+
+    animation.py [--scenes a,b] [--modes path,temporal-l2] [--minutes 60] [--references-only]
+
+Every run renders the whole range of frames in one job, as `blender -b -a` does, and is appended to docs/benchmark/animation.jsonl with the
+version that made it: an interrupted benchmark goes on. Each engine is compared with its own converged frames, which are cached
+(animation_references.py). Strips of the project's own scenes are stored on the way (animation_strips.py). Report: report.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import animation_strips
+import numpy as np
+import temporal_metrics
+from animation_modes import MODES, REFERENCES
+from animation_references import Reference, reference, vectors
+from animation_renderer import AnimationRenderer
+from animation_scenes import Animation, select
+from bench import append, powers_of_two
+from renderers import RefusedError
+from results import FOLDER
+from version import cpu_name, version_of_build
+
+RESULTS = FOLDER / "animation.jsonl"
+
+
+@dataclass(frozen=True)
+class Job:
+    seed: int
+    samples: int
+    mode: str
+
+
+def jobs_of(arguments: argparse.Namespace) -> list[Job]:
+    """Interleaved: a seed runs through all counts and modes before the next one begins."""
+    return [Job(seed, samples, mode) for seed in range(arguments.seeds) for samples in arguments.samples for mode in arguments.modes]
+
+
+def done_jobs(animation: Animation, width: int, version: str) -> set[Job]:
+    if not RESULTS.exists():
+        return set()
+    rows = [json.loads(line) for line in RESULTS.read_text().splitlines()]
+    wanted = (animation.name, list(animation.frames), width, version)
+    return {Job(r["seed"], r["samples"], r["mode"]) for r in rows if (r["scene"], r["frames"], r["width"], r["version"]) == wanted}
+
+
+class AnimationBench:
+    """One animation at one size, with its process and references."""
+
+    def __init__(self, animation: Animation, arguments: argparse.Namespace, version: str) -> None:
+        self.animation, self.samples, self.version = animation, arguments.reference, version
+        self.size = (arguments.width, arguments.width * 9 // 16)
+        self.renderer = AnimationRenderer(animation, self.size)
+        self._references: dict[str, Reference] = {}
+
+    def works(self, mode: str) -> bool:
+        if why := self.renderer.refusal(mode):
+            print(f"SKIP {mode} in {self.animation.name}: {why}", flush=True)
+        return not why
+
+    def reference(self, mode: str) -> Reference:
+        """Of the engine of a mode."""
+        engine = REFERENCES[MODES[mode].engine]
+        if engine not in self._references:
+            self._references[engine] = reference(self.renderer, engine, self.size, self.samples)
+        return self._references[engine]
+
+    def run(self, job: Job) -> None:
+        images, answer = self.renderer.render(job.mode, job.samples, job.seed)
+        row = {
+            "scene": self.animation.name, "frames": self.animation.frames, "mode": job.mode, "samples": job.samples, "seed": job.seed,
+            "width": self.size[0], "height": self.size[1], "version": self.version, "machine": cpu_name(),
+        }  # fmt: skip
+        append(row | answer | self._measures(job.mode, images), RESULTS)
+        if animation_strips.wanted(self.animation, job.mode, job.samples, job.seed):
+            animation_strips.store(self.animation, job.mode, images, self.reference(job.mode).mean)
+        print(f"{self.animation.name:18} {job.mode:27} {job.samples:5} spp seed {job.seed}: {answer['cpu']:8.2f} CPU-s", flush=True)
+
+    def _measures(self, mode: str, images: np.ndarray) -> dict[str, Any]:
+        converged = self.reference(mode)
+        found = temporal_metrics.all_measures(images, converged.mean, converged.variance, vectors(self.renderer, self.size))
+        if self.animation.goes_off is not None:
+            off = self.animation.goes_off - self.animation.frames[0]
+            found["shares_of_light"] = temporal_metrics.shares_of_a_light(images, converged.mean, off)
+        return found | {"reference_samples": converged.samples}
+
+
+def bench_animation(animation: Animation, arguments: argparse.Namespace, version: str, deadline: float) -> None:
+    done = done_jobs(animation, arguments.width, version)
+    jobs = [job for job in jobs_of(arguments) if job not in done]
+    if not jobs:
+        return
+    bench = AnimationBench(animation, arguments, version)
+    try:
+        modes = {mode for mode in dict.fromkeys(job.mode for job in jobs) if bench.works(mode)}
+        for mode in modes:
+            bench.reference(mode)
+        for job in jobs:
+            if arguments.references_only or time.monotonic() > deadline:
+                return
+            if job.mode in modes:
+                bench.run(job)
+    finally:
+        bench.renderer.close()
+
+
+def names(text: str) -> list[str]:
+    if unknown := set(text.split(",")) - set(MODES):
+        raise argparse.ArgumentTypeError(f"unknown modes {', '.join(sorted(unknown))}; there are {', '.join(MODES)}")
+    return text.split(",")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenes", default="")
+    parser.add_argument("--minutes", type=float, default=600.0)
+    parser.add_argument("--references-only", action="store_true", help="compute what is not timed, and stop")
+    parser.add_argument("--width", type=int, default=160)
+    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--reference", type=int, default=512, help="samples per pixel of the references")
+    parser.add_argument("--samples", type=powers_of_two, default=[4, 16, 64])
+    parser.add_argument("--modes", type=names, default=list(MODES))
+    arguments = parser.parse_args()
+    version, deadline = version_of_build(), time.monotonic() + 60.0 * arguments.minutes
+    for animation in select(arguments.scenes):
+        try:
+            bench_animation(animation, arguments, version, deadline)
+        except (RuntimeError, RefusedError) as error:
+            print(f"FAILED {animation.name}: {error}", flush=True)
+        if time.monotonic() > deadline:
+            print("time is up; run again to go on")
+            break
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+"""Converged frames: each engine's own by plain path tracing, with the variance of their mean, cached in the user's cache folder.
+
+Every part is a rendering of the whole range with a seed of its own; the sums are stored after each, so that an interrupted reference goes
+on, and one of more samples takes over what is there. Seeds 1000 and up are never used by the runs. The cache outlives versions: what path
+tracing converges to is held by tests; remove the files where it was changed on purpose.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from animation_renderer import AnimationRenderer
+from references import CACHE
+
+PART = 64  # samples per pixel
+LEAST_PARTS = 4  # for a variance
+VECTOR_SAMPLES = 16
+
+
+@dataclass
+class Reference:
+    """Mean and variance of the mean (frames, height, width, 3)."""
+
+    mean: np.ndarray
+    variance: np.ndarray
+    samples: int
+
+
+@dataclass
+class _Sums:
+    file: Path
+    parts: int = 0
+    sum: np.ndarray | float = 0.0
+    squares: np.ndarray | float = 0.0
+
+    def load(self) -> None:
+        if self.file.exists():
+            stored = np.load(self.file)
+            self.parts, self.sum, self.squares = int(stored["parts"]), stored["sum"], stored["squares"]
+
+    def add(self, images: np.ndarray) -> None:
+        self.parts, self.sum, self.squares = self.parts + 1, self.sum + images, self.squares + images**2
+        _store(self.file, parts=self.parts, sum=self.sum, squares=self.squares)
+
+    def reference(self) -> Reference:
+        mean = np.asarray(self.sum) / self.parts
+        variance = (np.asarray(self.squares) / self.parts - mean**2) / (self.parts - 1)
+        return Reference(mean, np.maximum(variance, 0.0), self.parts * PART)
+
+
+def reference(renderer: AnimationRenderer, engine: str, size: tuple[int, int], samples: int) -> Reference:
+    """`engine` is a mode of plain path tracing."""
+    sums = _Sums(_file(renderer, engine, size))
+    sums.load()
+    while sums.parts < max(samples // PART, LEAST_PARTS):
+        sums.add(renderer.render(engine, PART, 1000 + sums.parts)[0])
+        print(f"{renderer.animation.name:18} reference {engine}: {sums.parts * PART} spp", flush=True)
+    return sums.reference()
+
+
+def vectors(renderer: AnimationRenderer, size: tuple[int, int]) -> np.ndarray:
+    """Pass Vector of Gradus (frames, height, width, 4)."""
+    file = _file(renderer, "vectors", size)
+    if not file.exists():
+        _store(file, vectors=renderer.vectors(VECTOR_SAMPLES).astype(np.float32))
+    return np.load(file)["vectors"].astype(np.float64)
+
+
+def _file(renderer: AnimationRenderer, what: str, size: tuple[int, int]) -> Path:
+    animation = renderer.animation
+    content = hashlib.sha256(animation.scene.path.read_bytes()).hexdigest()[:12]
+    first, last = animation.frames
+    return CACHE / f"animation-{animation.name}-{content}-{first}-{last}-{what}-{size[0]}x{size[1]}.npz"
+
+
+def _store(file: Path, **arrays: np.ndarray | float | int) -> None:
+    """Under its name only when it is complete."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = file.with_suffix(".unfinished.npz")
+    np.savez(unfinished, **arrays)
+    unfinished.rename(file)

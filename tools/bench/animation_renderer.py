@@ -1,0 +1,45 @@
+"""One process that renders ranges of frames of one scene (animation_worker.py)."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from animation_scenes import Animation
+from renderers import RefusedError, Worker
+
+WORKER = Path(__file__).with_name("animation_worker.py")
+
+
+class AnimationRenderer:
+    def __init__(self, animation: Animation, size: tuple[int, int]) -> None:
+        self.animation = animation
+        self._folder = tempfile.TemporaryDirectory()
+        self._worker = Worker([sys.executable, str(WORKER), str(animation.scene.path), *(str(s) for s in size)])
+
+    def render(self, mode: str, samples: int, seed: int, **more: Any) -> tuple[np.ndarray, dict]:
+        """Pictures (frames, height, width, 3) and what they took."""
+        out = Path(self._folder.name) / "frames.npy"
+        job = {"mode": mode, "samples": samples, "seed": seed, "frames": self.animation.frames, "out": str(out)}
+        answer = self._worker.ask(job | more)
+        return np.load(out).astype(np.float64), answer
+
+    def vectors(self, samples: int) -> np.ndarray:
+        """Pass Vector (frames, height, width, 4)."""
+        return self.render("path", samples, 1000, vectors=True)[0]
+
+    def refusal(self, mode: str) -> str:
+        """Why a mode does not work here, or nothing. One frame of one sample, which also loads libraries, and is not counted."""
+        first = self.animation.frames[0]
+        try:
+            self.render(mode, 1, 999, frames=[first, first])
+        except RefusedError as error:
+            return str(error)
+        return ""
+
+    def close(self) -> None:
+        self._worker.close()
+        self._folder.cleanup()

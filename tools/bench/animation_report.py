@@ -1,0 +1,168 @@
+"""The part of the report about animations, from docs/benchmark/animation.jsonl alone."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import animation_strips
+import numpy as np
+import temporal_metrics
+from animation_modes import MODES, is_temporal
+from animation_scenes import ANIMATIONS, Animation
+from document import Block, HtmlOnly, Table, Text, number
+from results import FOLDER, Point, SceneResults
+
+RESULTS = FOLDER / "animation.jsonl"
+PREFACE = FOLDER / "animation.md"
+PEER = "cycles-denoised"
+
+
+class AnimationResults(SceneResults):
+    """The newest runs of one animation."""
+
+    def __init__(self, animation: Animation, rows: list[dict]) -> None:
+        super().__init__(animation.name, rows)
+        self.animation = animation
+
+    def modes(self) -> list[str]:
+        return [mode for mode in MODES if mode in self.points]
+
+    def steadiness(self, point: Point) -> float | None:
+        """F / (2 relMSE) without the worst pixels of either: 1 for errors that are independent between frames."""
+        flicker, independent = point.median("flicker_trimmed"), point.median("flicker_if_independent_trimmed")
+        return flicker / independent if flicker is not None and independent and independent > 0.0 else None
+
+    def lag_and_lead(self, point: Point) -> tuple[int, int] | None:
+        """Of the mean over the seeds, whose noise is least."""
+        found = [row["shares_of_light"] for row in point.rows if "shares_of_light" in row]
+        if self.animation.goes_off is None or not found:
+            return None
+        off = self.animation.goes_off - self.animation.frames[0]
+        shares = [float(share) for share in np.mean(found, axis=0)]
+        return temporal_metrics.lag(shares, off), temporal_metrics.lead(shares, off)
+
+
+@dataclass(frozen=True)
+class Aim:
+    """A measure of a mode over that of another one at equal CPU time."""
+
+    measure: str
+    other: Callable[[str], str]
+    label: str
+    most: float
+
+    def ratio(self, scene: AnimationResults, mode: str) -> float | None:
+        return scene.ratio(mode, self.other(mode), self.measure)
+
+
+def per_frame(mode: str) -> str:
+    """What a temporal mode is called frame by frame."""
+    return mode.replace("temporal", "gradient")
+
+
+AIMS = (
+    Aim("flicker", lambda _: "path", "F / PT", 0.1),
+    Aim("flicker", per_frame, "F / the same frame by frame", 0.4),
+    Aim("relmse", per_frame, "relMSE / the same frame by frame", 0.8),
+    Aim("flicker", lambda _: PEER, "F / Cycles + denoiser", 0.6),
+)
+
+
+def load() -> list[AnimationResults]:
+    """Of each mode the rows of its newest version, at the size and range of the newest row of the scene."""
+    if not RESULTS.exists():
+        return []
+    rows = [row for line in RESULTS.read_text().splitlines() if (row := json.loads(line))["mode"] in MODES]
+    setting = {row["scene"]: (row["width"], row["frames"]) for row in rows}
+    newest = {(row["scene"], row["mode"]): row["version"] for row in rows}
+    by_scene: dict[str, list[dict]] = defaultdict(list)
+    for row in rows:
+        if setting[row["scene"]] == (row["width"], row["frames"]) and newest[row["scene"], row["mode"]] == row["version"]:
+            by_scene[row["scene"]].append(row)
+    return [AnimationResults(animation, by_scene[animation.name]) for animation in ANIMATIONS if animation.name in by_scene]
+
+
+def blocks() -> list[Block]:
+    scenes = load()
+    if not scenes:
+        return []
+    made: list[Block] = [Text(PREFACE.read_text()), about(scenes), Text("### Aims at equal CPU time"), aims(scenes)]
+    made += [HtmlOnly(Text("The same without the worst 0.1 % of the pixels:")), HtmlOnly(aims(scenes, "_trimmed"))]
+    made += [Text("Modes frame by frame and peers, F over that of Gradus PT and of Cycles with its denoiser at equal CPU time:")]
+    made += [frame_by_frame(scenes), *lags(scenes)]
+    for scene in scenes:
+        made += details(scene)
+    return made
+
+
+def about(scenes: list[AnimationResults]) -> Table:
+    made = Table(["animation", "frames", "moves", "samples of the converged frames", "seeds", "versions"])
+    for scene in scenes:
+        first, last = scene.animation.frames
+        seeds = sorted({len(point.rows) for points in scene.points.values() for point in points})
+        converged, versions = ({str(row[name]) for row in scene.rows} for name in ("reference_samples", "version"))
+        seeds_range = str(seeds[0]) if len(seeds) == 1 else f"{seeds[0]}–{seeds[-1]}"
+        made.rows.append(
+            [scene.name, f"{first}–{last}", scene.animation.moves, ", ".join(sorted(converged)), seeds_range, ", ".join(sorted(versions))]
+        )
+    return made
+
+
+def aims(scenes: list[AnimationResults], suffix: str = "") -> Table:
+    """Of every temporal mode that was measured."""
+    made = Table(["mode", "ratio", "aim", *(scene.name for scene in scenes), "met"])
+    for mode in filter(is_temporal, MODES):
+        if not any(mode in scene.points for scene in scenes):
+            continue
+        for aim in AIMS:
+            aimed = Aim(aim.measure + suffix, aim.other, aim.label, aim.most)
+            ratios = [aimed.ratio(scene, mode) for scene in scenes]
+            known = [ratio for ratio in ratios if ratio is not None]
+            met = f"{sum(ratio <= aim.most for ratio in known)} of {len(known)}"
+            made.rows.append([MODES[mode].label, aim.label, f"≤ {aim.most:g}", *map(number, ratios), met])
+    return made
+
+
+def frame_by_frame(scenes: list[AnimationResults]) -> Table:
+    made = Table(["mode", *(f"{scene.name}: / PT" for scene in scenes), *(f"{scene.name}: / Cycles + denoiser" for scene in scenes)])
+    for mode in (mode for mode in MODES if not is_temporal(mode)):
+        ratios = [scene.ratio(mode, other, "flicker") for other in ("path", PEER) for scene in scenes]
+        if any(ratio is not None for ratio in ratios):
+            made.rows.append([MODES[mode].label, *map(number, ratios)])
+    return made
+
+
+def lags(scenes: list[AnimationResults]) -> list[Block]:
+    """At the most samples that were run."""
+    made = Table(["animation", "mode", "samples", "frames too late", "frames too early"])
+    for scene in scenes:
+        for mode in scene.modes():
+            point = scene.points[mode][-1]
+            if (found := scene.lag_and_lead(point)) is not None:
+                made.rows.append([scene.name, MODES[mode].label, str(point.samples), *map(str, found)])
+    text = "A light goes off: frames in which more than 5 % of it is wrong, from then on and before (mean over the seeds)."
+    return [Text(text), made] if made.rows else []
+
+
+def details(scene: AnimationResults) -> list[Block]:
+    made: list[Block] = [Text(f"### Animation {scene.name}")]
+    if strips := animation_strips.table(scene.name):
+        made.append(strips)
+    return [*made, measures(scene)]
+
+
+def measures(scene: AnimationResults) -> Table:
+    made = Table(
+        ["mode", "spp", "seeds", "CPU-s a frame", "relMSE", "relMSE-t", "F", "F-t", "F/(2 relMSE)", "F-t warped", "where it moves", "fast"]
+    )
+    for mode in scene.modes():
+        for point in scene.points[mode]:
+            cpu = (point.median("cpu") or 0.0) / scene.animation.length
+            names = ("relmse", "relmse_trimmed", "flicker", "flicker_trimmed")
+            cells = [number(cpu), *(number(point.median(name), ".4f") for name in names), number(scene.steadiness(point))]
+            cells += [number(point.median(name), ".4f") for name in ("flicker_warped_trimmed", "flicker_warped_moving")]
+            made.rows.append([MODES[mode].label, str(point.samples), str(len(point.rows)), *cells, number(point.median("fast_share"))])
+    return made

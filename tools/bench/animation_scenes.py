@@ -1,0 +1,64 @@
+"""The animations of the benchmark: ten frames of each, chosen by looking at all of them, where most moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scenes import MADE, REAL, SAMPLES, Scene, chosen
+
+
+@dataclass(frozen=True)
+class Animation:
+    scene: Scene
+    frames: tuple[int, int]
+    moves: str
+    goes_off: int | None = None  # first frame without a light that shone before
+
+    @property
+    def name(self) -> str:
+        return self.scene.name
+
+    @property
+    def length(self) -> int:
+        return self.frames[1] - self.frames[0] + 1
+
+
+ANIMATIONS = [
+    Animation(
+        Scene("animated", SAMPLES / "animated.blend", own=True),
+        (10, 19),
+        "the camera sideways, so nearly every pixel; a rolling ball that comes into sight in a turning mirror, and a flag that waves",
+    ),
+    Animation(
+        Scene("lamp-off", MADE / "lamp-off.blend", own=True, maker="lamp_off.py"),
+        (1, 10),
+        "nothing; one of two lamps goes off at frame 6",
+        goes_off=6,
+    ),
+    Animation(
+        Scene("moving-light", REAL / "moving-light.blend"),
+        (5, 14),
+        "a panel of light, fast at first, which turns back at frame 13; the blocks and the camera rest",
+    ),
+    Animation(
+        Scene("specular-motion", REAL / "specular-motion.blend"),
+        (8, 17),
+        "a teapot of chrome and a ball of copper turn, a ball of glass rolls, a mirror swings; the camera rests",
+    ),
+    Animation(
+        Scene("robot-room", REAL / "robot-room.blend"),
+        (5, 14),
+        "a dancing robot, whose arm swings up and down by up to 31 pixels a frame, and its reflections in mirror and floor",
+    ),
+    Animation(
+        Scene("instances", REAL / "instances.blend"),
+        (8, 17),
+        "instances in two levels, which turn: a third of the picture",
+    ),
+]
+
+
+def select(names: str) -> list[Animation]:
+    """Animations by name ('a,b'), all for ''. Missing files are named on standard output."""
+    scenes = chosen([animation.scene for animation in ANIMATIONS], names)
+    return [animation for animation in ANIMATIONS if animation.scene in scenes]
