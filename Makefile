@@ -1,12 +1,12 @@
 # Everyday commands; the work is done by the scripts in tools/. `make help` lists them.
-SCENE ?= sample_blends/hero.blend
-FRAMES ?= 1
+SCENE ?=
+FRAMES ?=
 OUT ?= out
 ARGS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build render test test-full test-native test-addon stress faults compilers package format lint clean
+.PHONY: help build render render-animation test test-full test-native test-addon stress faults compilers package format lint clean
 .PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture
 
 help:           ## this list
@@ -15,8 +15,12 @@ help:           ## this list
 build:          ## the library (into addon/gradus/lib) and the tool
 	@tools/build.sh
 
-render:         ## a picture: SCENE=my.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 32" BLENDER=/path/to/blender
+render:         ## a picture: SCENE=sample_blends/hero.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 32" BLENDER=/path/to/blender
 	@SCENE='$(SCENE)' FRAMES='$(FRAMES)' OUT='$(OUT)' ARGS='$(ARGS)' BLENDER='$(BLENDER)' tools/render.sh
+
+render-animation: ## frames by blender -b -a, and a film strip: SCENE=sample_blends/animated.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 16"
+	@SCENE='$(or $(SCENE),sample_blends/animated.blend)' FRAMES='$(or $(FRAMES),1-24)' OUT='$(OUT)' ARGS='$(or $(ARGS),--gradus-samples 16)' \
+	 BLENDER='$(BLENDER)' tools/render.sh --animation
 
 test:           ## all tests that every change must pass; last line: N passed, N failed
 	@tools/test.sh all

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,11 +54,19 @@ def scripts_folder() -> Path:
     return folder
 
 
-def command(blender: str, scene: Path, arguments: list[str]) -> list[str]:
-    script = str(ROOT / "tools" / "render_output.py")
+def blender_path() -> str:
+    return os.environ.get("BLENDER") or "/usr/bin/blender"
+
+
+def opened(blender: str, scene: Path) -> list[str]:
+    """Blender with a file, to be rendered by Gradus."""
     # The add-on comes before the file, or Blender complains of an unknown engine when it reads a file that names ours.
     head = [blender, "-b", "--factory-startup", "-noaudio", "--addons", "gradus", str(scene), "-E", "GRADUS"]
-    return [*head, "--python-exit-code", "1", "--python", script, "--", *arguments]
+    return [*head, "--python-exit-code", "1"]
+
+
+def command(blender: str, scene: Path, arguments: list[str]) -> list[str]:
+    return [*opened(blender, scene), "--python", str(ROOT / "tools" / "render_output.py"), "--", *arguments]
 
 
 def stats_of(path: Path) -> list[dict]:
@@ -104,7 +113,7 @@ def request() -> Request:
 
 
 def render(wanted: Request) -> None:
-    blender = os.environ.get("BLENDER") or "/usr/bin/blender"
+    blender = blender_path()
     prefix = wanted.out / f"{wanted.scene.stem}_"
     names = [f"{prefix}{frame_name(frame)}" for first, last in wanted.ranges for frame in range(first, last + 1)]
     files = [Path(name + suffix) for name in names for suffix in (".png", ".exr")]
@@ -137,11 +146,12 @@ def render(wanted: Request) -> None:
         print(f"render: {timing(len(names), wall, stats_of(stats))}")
 
 
-def main() -> int:
+def main(work: Callable[[Request], None] = render, check: Callable[[Request], None] = lambda _: None) -> int:
     try:
         wanted = request()
+        check(wanted)
         if "--check" not in sys.argv:
-            render(wanted)
+            work(wanted)
     except RenderError as error:
         print(f"render: {error}", file=sys.stderr)
         return 1

@@ -19,10 +19,18 @@ MISTAKES = {
 @pytest.mark.parametrize("name", list(MISTAKES))
 def test_a_mistake_is_told_before_anything_is_built(name: str) -> None:
     value, message = MISTAKES[name]
+    refused(name, value, message)
+    refused(name, value, message, "--animation")
+
+
+def test_an_animation_is_one_range() -> None:
+    refused("FRAMES", "1-3,7", "expected one range", "--animation")
+
+
+def refused(name: str, value: str, message: str, *options: str) -> None:
     environment = {k: v for k, v in os.environ.items() if k not in MISTAKES} | {name: value, "BLENDER": "/nope"}
-    result = subprocess.run(
-        ["bash", str(ROOT / "tools" / "render.sh")], env=environment, capture_output=True, text=True, timeout=60, check=False
-    )
+    command = ["bash", str(ROOT / "tools" / "render.sh"), *options]
+    result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
     assert result.returncode == 1
     assert message in result.stderr
     assert result.stdout == ""
