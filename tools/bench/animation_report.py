@@ -31,8 +31,8 @@ class AnimationResults(SceneResults):
         return [mode for mode in MODES if mode in self.points]
 
     def steadiness(self, point: Point) -> float | None:
-        """F / (2 relMSE) without the worst pixels of either: 1 for errors that are independent between frames."""
-        flicker, independent = point.median("flicker_trimmed"), point.median("flicker_if_independent_trimmed")
+        """F / (2 relMSE): 1 for errors that are independent between frames."""
+        flicker, independent = point.median("flicker"), point.median("flicker_if_independent")
         return flicker / independent if flicker is not None and independent and independent > 0.0 else None
 
     def lag_and_lead(self, point: Point) -> tuple[int, int] | None:

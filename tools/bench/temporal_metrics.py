@@ -101,7 +101,6 @@ def lead(shares: list[float], off: int) -> int:
 def all_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray) -> dict[str, float | list[float]]:
     """By their names in animation.jsonl."""
     errors, flicker = error_map(images, reference, variance), flicker_map(images, reference, variance)
-    independent = independent_map(images, reference, variance)
     warped = warped_flicker_map(images, reference, variance, vectors)
     found = {
         "relmse": float(errors.mean()),
@@ -109,8 +108,7 @@ def all_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray
         "relmse_by_frame": [float(error) for error in errors.mean(axis=(1, 2))],
         "flicker": float(flicker.mean()),
         "flicker_trimmed": trimmed_mean(flicker),
-        "flicker_if_independent": float(independent.mean()),
-        "flicker_if_independent_trimmed": trimmed_mean(independent),
+        "flicker_if_independent": float(independent_map(images, reference, variance).mean()),
         "flicker_warped": float(np.nanmean(warped)),
         "flicker_warped_trimmed": trimmed_mean(warped),
         "fast_share": fast_share(images, reference, variance),
