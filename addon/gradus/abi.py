@@ -159,7 +159,9 @@ class Pass(IntEnum):
     VARIANCE = 28
     FALLBACK = 29
     ERROR = 30
-    COUNT = 31
+    GRADIENT_T = 31
+    GRADIENT_T_LINK = 32
+    COUNT = 33
 
 
 class OptionType(IntEnum):
@@ -473,6 +475,18 @@ class Progress(Struct):
     ]
 
 
+class SequenceSettings(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("step", c_uint32),
+        ("first", c_int32),
+        ("last", c_int32),
+        ("window_size", c_uint32),
+        ("window_overlap", c_uint32),
+        ("folder", c_char_p),
+    ]
+
+
 STRUCTS: tuple[type[Struct], ...] = (
     DeviceSettings,
     ColorSpace,
@@ -490,6 +504,7 @@ STRUCTS: tuple[type[Struct], ...] = (
     Settings,
     OptionInfo,
     Progress,
+    SequenceSettings,
 )
 
 ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
@@ -513,7 +528,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     Phase,
 )
 
-Device = Scene = Render = Frame = c_uint64  # handles are values, never addresses
+Device = Scene = Render = Sequence = Frame = c_uint64  # handles are values, never addresses
 
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_version": (c_uint32, []),
@@ -554,6 +569,14 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_render_read_pass": (c_int, [Render, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_render_stats": (c_int, [Render, POINTER(c_char_p)]),
     "gradus_render_frame": (c_int, [Render, POINTER(Frame)]),
+    "gradus_sequence_applies": (c_int, [POINTER(Settings), POINTER(c_uint32), POINTER(c_char_p)]),
+    "gradus_sequence_create": (c_int, [Device, POINTER(SequenceSettings), POINTER(Sequence)]),
+    "gradus_sequence_needs": (c_int, [Sequence, c_int32, POINTER(c_int32), POINTER(c_int32)]),
+    "gradus_sequence_sample": (c_int, [Sequence, Scene, POINTER(Settings), POINTER(Render)]),
+    "gradus_sequence_pass_by": (c_int, [Sequence, Scene, POINTER(Settings)]),
+    "gradus_sequence_end_at": (c_int, [Sequence, c_int32]),
+    "gradus_sequence_deliver": (c_int, [Sequence, c_int32, POINTER(Settings), POINTER(Render)]),
+    "gradus_sequence_release": (c_int, [Sequence]),
     "gradus_frame_save": (c_int, [Frame, c_char_p]),
     "gradus_frame_load": (c_int, [Device, c_char_p, POINTER(Frame)]),
     "gradus_frame_merge": (c_int, [Frame, Frame]),

@@ -68,13 +68,15 @@ TABLE: tuple[PassInfo, ...] = (
     _same(Pass.SAMPLE_COUNT, "Debug Sample Count", "X", "VALUE", "gradus.use_pass_sample_count"),
     _same(Pass.GRADIENT_X, "Gradient X", "RGB", "COLOR", "gradus.use_pass_gradients"),
     _same(Pass.GRADIENT_Y, "Gradient Y", "RGB", "COLOR", "gradus.use_pass_gradients"),
+    _same(Pass.GRADIENT_T, "Gradient T", "RGB", "COLOR", "gradus.use_pass_gradients"),
+    _same(Pass.GRADIENT_T_LINK, "Gradient T Link", "XYZ", "VECTOR", "gradus.use_pass_gradients"),
     _same(Pass.VARIANCE, "Variance", "RGB", "COLOR", "gradus.use_pass_variance"),
     _same(Pass.ERROR, "Error", "X", "VALUE", "gradus.use_pass_error"),
     _same(Pass.FALLBACK, "Fallback", "X", "VALUE", "option"),
 )
 
 GROUPS: dict[str, tuple[Pass, ...]] = {
-    "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y),
+    "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y, Pass.GRADIENT_T, Pass.GRADIENT_T_LINK),
     "DENOISING": (Pass.DENOISING_NORMAL, Pass.DENOISING_ALBEDO, Pass.DENOISING_DEPTH),
     "ALL": tuple(info.plane for info in TABLE),
 }

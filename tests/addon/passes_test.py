@@ -86,7 +86,13 @@ def listed(view_layer: SimpleNamespace, reconstructed: bool = False, extra: tupl
 def test_only_what_is_enabled() -> None:
     assert listed(layer()) == [Pass.COMBINED]
     assert listed(layer(use_pass_z=True, use_pass_vector=False)) == [Pass.COMBINED, Pass.DEPTH]
-    assert listed(layer(gradus_use_pass_gradients=True)) == [Pass.COMBINED, Pass.GRADIENT_X, Pass.GRADIENT_Y]
+    assert listed(layer(gradus_use_pass_gradients=True)) == [
+        Pass.COMBINED,
+        Pass.GRADIENT_X,
+        Pass.GRADIENT_Y,
+        Pass.GRADIENT_T,
+        Pass.GRADIENT_T_LINK,
+    ]
     assert listed(layer(), extra=(Pass.VARIANCE,)) == [Pass.COMBINED, Pass.VARIANCE]
 
 

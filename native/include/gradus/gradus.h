@@ -469,6 +469,8 @@ typedef enum GradusPass {
   GRADUS_PASS_VARIANCE,
   GRADUS_PASS_FALLBACK,            /* share of samples that met a replaced node; for tests and the bench */
   GRADUS_PASS_ERROR,               /* estimated squared error of Combined, mean over RGB */
+  GRADUS_PASS_GRADIENT_T,          /* difference to the next frame along Gradient T Link; 0 outside of sequences (contract 4.3) */
+  GRADUS_PASS_GRADIENT_T_LINK,     /* pixels to where the next frame shows the same, x and y; 1 if it does */
   GRADUS_PASS_COUNT
 } GradusPass;
 
@@ -539,6 +541,44 @@ GRADUS_API GradusError gradus_render_read_pass(GradusRender render, uint32_t pas
 GRADUS_API GradusError gradus_render_stats(GradusRender render, const char** json);
 /* The frame of a finished render: planes with half-buffers. */
 GRADUS_API GradusError gradus_render_frame(GradusRender render, GradusFrame* frame);
+
+/* ------------------------------------------------------------------------------------------------ sequence */
+
+/* Frames of an animation, sampled one after the other and reconstructed together, so that they do not flicker. Half of a frame's samples
+ * repeat those of the frame before (docs/method.md). */
+typedef uint64_t GradusSequence;
+
+typedef struct GradusSequenceSettings {
+  uint32_t struct_size;
+  uint32_t step;                   /* frames between those that are rendered; at least 1 */
+  int32_t first;                   /* frames that are rendered: first, first + step and so on, not beyond last */
+  int32_t last;
+  uint32_t window_size;            /* frames that are reconstructed together; 0 = 10 */
+  uint32_t window_overlap;         /* those that two windows share, at most half; taken where window_size is not 0 */
+  const char* folder;              /* where raw frames are kept and found again, UTF-8; NULL: a temporary one, which release removes */
+} GradusSequenceSettings;
+
+/* Whether frames of an animation with these settings have differences over time; *why_not says what is against it, "" nothing. Valid until
+ * the thread's next call. */
+GRADUS_API GradusError gradus_sequence_applies(const GradusSettings* settings, uint32_t* applies, const char** why_not);
+GRADUS_API GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSettings* settings, GradusSequence* sequence);
+/* Frames that must have been sampled before `frame` can be delivered: *first, *first + step … *last. */
+GRADUS_API GradusError gradus_sequence_needs(GradusSequence sequence, int32_t frame, int32_t* first, int32_t* last);
+/* Samples frame settings->frame on the scene's current snapshot and returns at once; the render is polled, waited for, cancelled and
+ * released as any other. Frames in order, each when the render of the one before has ended. A frame that the folder holds is not sampled
+ * again, or goes on from its samples where it has fewer than are asked for; one that is as the frame before neither. */
+GRADUS_API GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene, const GradusSettings* settings,
+                                              GradusRender* render);
+/* The scene shows settings->frame, which is not sampled here: the next frame follows it. For parts of a job that share a folder. */
+GRADUS_API GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusScene scene, const GradusSettings* settings);
+/* Frames beyond `last` do not come after all: what is there is delivered without them. */
+GRADUS_API GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last);
+/* Reconstructs what is needed of the windows of `frame`; passes, stats and frame of the render are those of the delivered frame, once it
+ * has ended. Frames in order. settings: other values of reconstruction, reconstruction_alpha, denoiser and film_exposure than the frames
+ * were sampled for; may be NULL. */
+GRADUS_API GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings,
+                                               GradusRender* render);
+GRADUS_API GradusError gradus_sequence_release(GradusSequence sequence);
 
 /* ------------------------------------------------------------------------------------------------ frame */
 

@@ -20,13 +20,6 @@ using namespace gradus;
 namespace gradus::api {
 namespace {
 
-// What was asked for, without the guard ring.
-Region delivered(const Frame& frame) {
-  const uint32_t* r = frame.settings.region;
-  if (r[2] == 0 && r[3] == 0) return frame.region;
-  return {int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
-}
-
 void check_count(size_t count, const Region& region, uint32_t channels) {
   const size_t expected = size_t(region.area()) * channels;
   if (count != expected)
@@ -62,12 +55,13 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
   tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
     SolveReport report;
-    image = combine(frame, reconstruction, alpha, delivered(frame), never, &report, error != nullptr ? &estimate : nullptr);
+    image = combine(frame, reconstruction, alpha, delivered_region(frame), never, &report, error != nullptr ? &estimate : nullptr);
   });
   if (library) {
     if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
     std::string failure;
-    std::vector<float> denoised = denoise_combined(*library, frame, reconstruction, delivered(frame), threads, never, image, &failure);
+    std::vector<float> denoised =
+        denoise_combined(*library, frame, reconstruction, delivered_region(frame), threads, never, image, &failure);
     if (denoised.empty()) {
       object->device->warnings().add(failure);
     } else {
@@ -113,7 +107,7 @@ GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other) {
 
 GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height) {
   return api::guard([&] {
-    const Region region = api::delivered(*api::find_handle<api::FrameObject>(frame)->get());
+    const Region region = delivered_region(*api::find_handle<api::FrameObject>(frame)->get());
     api::require(width, "width") = uint32_t(region.width());
     api::require(height, "height") = uint32_t(region.height());
   });
@@ -124,7 +118,7 @@ GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction,
   return api::guard([&] {
     const auto object = api::find_handle<api::FrameObject>(frame);
     const std::shared_ptr<const Frame> content = object->get();
-    api::check_count(count, api::delivered(*content), 4);
+    api::check_count(count, delivered_region(*content), 4);
     api::check_array(rgba, count, "rgba");
     if (error != nullptr) api::check_array(error, count / 4, "error");
     check_alpha(alpha);
@@ -136,7 +130,7 @@ GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixe
   return api::guard([&] {
     const auto object = api::find_handle<api::FrameObject>(frame);
     const std::shared_ptr<const Frame> content = object->get();
-    const Region region = api::delivered(*content);
+    const Region region = delivered_region(*content);
     api::check_count(count, region, pass_info(pass).channels);
     api::check_array(pixels, count, "pixels");
     const GradusSettings& s = content->settings;

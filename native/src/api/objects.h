@@ -9,6 +9,7 @@
 #include "base/device.h"
 #include "frame/frame.h"
 #include "render/render.h"
+#include "render/sequence/sequence.h"
 #include "scene/scene.h"
 
 namespace gradus::api {
@@ -34,10 +35,21 @@ struct RenderObject {
   RenderObject(std::shared_ptr<Device> shared_device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
                std::shared_ptr<const Frame> resumed)
       : device(std::move(shared_device)), render(device, std::move(snapshot), settings, std::move(resumed)) {}
+  RenderObject(std::shared_ptr<Device> shared_device, std::unique_ptr<RenderTask> task)
+      : device(std::move(shared_device)), render(std::move(task)) {}
   std::shared_ptr<Device> device;
   Render render;
   std::mutex mutex;
   std::string stats;  // kept for the caller until release
+};
+
+struct SequenceObject {
+  SequenceObject(std::shared_ptr<Device> shared_device, const SequenceSettings& settings)
+      : device(std::move(shared_device)), sequence(std::make_shared<Sequence>(device, settings)) {}
+  std::mutex mutex;  // calls of one sequence wait for each other
+  std::shared_ptr<Device> device;
+  std::shared_ptr<Sequence> sequence;
+  std::weak_ptr<RenderObject> running;  // what was started last
 };
 
 // Frames of renders are shared and immutable; merging replaces the frame by a new one.
@@ -63,6 +75,10 @@ struct HandleOf<SceneObject> {
 template <>
 struct HandleOf<RenderObject> {
   static constexpr HandleType type = HandleType::Render;
+};
+template <>
+struct HandleOf<SequenceObject> {
+  static constexpr HandleType type = HandleType::Sequence;
 };
 template <>
 struct HandleOf<FrameObject> {

@@ -23,6 +23,8 @@ const char* name_of(HandleType type) {
       return "render";
     case HandleType::Frame:
       return "frame";
+    case HandleType::Sequence:
+      return "sequence";
   }
   return "unknown";
 }

@@ -34,7 +34,7 @@ Frame::Frame(uint32_t full_width_, uint32_t full_height_, const Region& region_,
 }
 
 uint64_t Frame::memory_bytes() const {
-  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float);
+  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + replayed.pixel.size() * sizeof(int32_t);
   for (const ComponentPlanes& component : components) {
     for (int half = 0; half < kHalves; ++half) {
       bytes += component.primal[half].size() * sizeof(Radiance);
@@ -59,6 +59,12 @@ double mean_samples(const Frame& frame) {
   uint64_t sum = 0;
   for (const std::vector<uint32_t>& counts : frame.count) sum = std::accumulate(counts.begin(), counts.end(), sum);
   return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
+}
+
+Region delivered_region(const Frame& frame) {
+  const uint32_t* r = frame.settings.region;
+  if (r[2] == 0 && r[3] == 0) return frame.region;
+  return {int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
 }
 
 }  // namespace gradus

@@ -14,6 +14,7 @@
 
 #include "base/types.h"
 #include "frame/sample_ranges.h"
+#include "frame/sample_sources.h"
 #include "gradus/gradus.h"
 
 namespace gradus {
@@ -98,6 +99,7 @@ class Frame {
   // Sample numbers that were taken; of some pixels fewer, where tiles stopped early or the render was cancelled.
   SampleRanges samples;
   SharedSamples shared;
+  SampleSources replayed;  // whose random numbers they have taken; no pixels: their own
   // Keys of what was sampled (contract 7.2) and settings that reading needs.
   GradusSettings settings{};
   uint64_t scene_key = 0;
@@ -106,6 +108,8 @@ class Frame {
 
 // Samples of a pixel, on average over the region.
 double mean_samples(const Frame& frame);
+// What was asked for, without the guard ring.
+Region delivered_region(const Frame& frame);
 
 // Which halves an image is read from: [first, last).
 struct HalfRange {

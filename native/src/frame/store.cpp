@@ -85,6 +85,12 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, size_t par
   });
 }
 
+void check_sources(const Frame& frame) {
+  for (const int32_t pixel : frame.replayed.pixel) {
+    if (pixel < kNoLink || pixel >= frame.region.area()) throw invalid_argument("it replays pixels that do not exist");
+  }
+}
+
 Frame read_frame(const std::string& path) {
   constexpr int kNoThreads = 0;  // ours unpack
   constexpr bool kRepair = false;
@@ -94,6 +100,7 @@ Frame read_frame(const std::string& path) {
   if (size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
   for (size_t i = 0; i < parts.size(); ++i) check_part(file.header(int(i)), file.header(0), parts[i]);
   read_blocks(&file, PartRows(parts, frame), parts.size());
+  check_sources(frame);
   return frame;
 }
 

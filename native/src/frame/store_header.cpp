@@ -87,6 +87,7 @@ json describe_samples(const Frame& frame) {
 json describe(const Frame& frame) {
   json j = describe_samples(frame);
   if (!frame.shared.rays.empty()) j["shared"] = shared_to_json(frame.shared);
+  if (!frame.replayed.pixel.empty()) j["replayed_frame"] = frame.replayed.stream_frame;
   return j;
 }
 
@@ -133,6 +134,8 @@ Frame make_frame(const Imf::Header& header, const json& description) {
   if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), region);
   frame.passes = make_pass_planes(passes, size_t(region.area()));
   if (has_fallback) frame.fallback.assign(size_t(region.area()), 0.0f);
+  if (description.contains("replayed_frame"))
+    frame.replayed = {description.at("replayed_frame"), std::vector<int32_t>(size_t(region.area()))};
   return frame;
 }
 

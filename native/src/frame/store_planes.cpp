@@ -23,6 +23,9 @@ class PlaneList {
       add(layer + "." + (width == 1 ? "V" : kVectorNames[c]), false, plane->data() + c, width * sizeof(float));
     }
   }
+  void links(const std::string& layer, std::vector<int32_t>* plane) {
+    if (!plane->empty()) add(layer + ".V", true, plane->data(), sizeof(int32_t));
+  }
   void counts(const std::string& layer, std::vector<uint32_t>* plane) { add(layer + ".V", true, plane->data(), sizeof(uint32_t)); }
 
   std::vector<StoredPlane> take() { return std::move(planes_); }
@@ -53,6 +56,7 @@ std::vector<StoredPlane> samples(Frame* frame) {
     }
     list.counts(std::string(kHalfNames[half]) + ".count", &frame->count[half]);
   }
+  list.links("source", &frame->replayed.pixel);
   return list.take();
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frame/frame.h"
-#include "integrator/sample_sources.h"
+#include "frame/sample_sources.h"
 #include "scene/camera.h"
 #include "scene/snapshot.h"
 

@@ -35,12 +35,17 @@ std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float al
     read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, region, rgba.data());
     return rgba;
   }
+  return crop_picture(frame, reconstruction, solved.image, region);
+}
+
+std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
+  std::vector<float> rgba(size_t(region.area()) * 4);
   const float exposure = frame.settings.film_exposure;
   const bool keeps_negative = reconstruction == GRADUS_RECONSTRUCTION_L2;
   float* p = rgba.data();
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x, p += 4) {
-      const float* from = solved.image.data() + frame.index(x, y) * size_t(frame.channels);
+      const float* from = image.data() + frame.index(x, y) * size_t(frame.channels);
       for (int c = 0; c < 3; ++c) p[c] = exposure * (keeps_negative ? from[c] : std::max(from[c], 0.0f));
       p[3] = frame.channels == 4 ? std::clamp(from[3], 0.0f, 1.0f) : 1.0f;
     }

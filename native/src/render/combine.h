@@ -13,4 +13,7 @@ namespace gradus {
 std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
                            SolveReport* report, std::vector<float>* error = nullptr);
 
+// RGBA of `region` from what a reconstruction has made of the frame's region, channels interleaved.
+std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region);
+
 }  // namespace gradus

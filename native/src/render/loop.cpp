@@ -1,12 +1,10 @@
 #include "render/loop.h"
 
-#include <chrono>
 #include <cmath>
 
 #include "base/bill.h"
 #include "base/device.h"
 #include "base/error.h"
-#include "base/fpu.h"
 #include "frame/pass_planes.h"
 #include "render/batches.h"
 #include "render/combine.h"
@@ -51,8 +49,7 @@ RenderLoop::RenderLoop(LoopInput input)
       plan_(make_plan(input_.settings, *input_.snapshot, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
       arena_(arena_size(input_.threads)),
       picture_(plan_.delivered),
-      live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_),
-      process_cpu_start_(process_cpu_nanoseconds()) {
+      live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
   const uint64_t bytes = planned_bytes(plan_), available = machine_memory_bytes();
   if (available > 0 && bytes > available) {
@@ -62,33 +59,18 @@ RenderLoop::RenderLoop(LoopInput input)
   if (input_.resumed) check_resumable(*input_.resumed, input_.settings, plan_, input_.snapshot->content_key);
 }
 
-void RenderLoop::run() noexcept {
-  try {
-    const FlushDenormals flush;
-    render();
-    end(GRADUS_OK, "");
-  } catch (const Error& e) {
-    end(e.code(), e.what());
-  } catch (const std::bad_alloc&) {
-    end(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while rendering");
-  } catch (const std::exception& e) {
-    end(GRADUS_ERROR_UNKNOWN, e.what());
-  } catch (...) {
-    end(GRADUS_ERROR_UNKNOWN, "unknown exception while rendering");
-  }
-}
-
 void RenderLoop::render() {
   prepare();
   set_phase(GRADUS_PHASE_SAMPLING);
   sample();
-  if (stop_.load(std::memory_order_relaxed)) throw cancelled();
+  stop_if_asked();
+  if (input_.samples_only) return;
   const bool denoises = denoises_after(plan_, mean_samples(*frame_), &stats_.chosen, &stats_.skipped);
   if (!denoises) frame_->settings.denoiser = GRADUS_DENOISER_NONE;
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
   reconstruct_frame();
-  if (denoises && !stop_.load(std::memory_order_relaxed)) denoise_frame();
-  if (stop_.load(std::memory_order_relaxed)) throw cancelled();
+  if (denoises && !is_stopped()) denoise_frame();
+  stop_if_asked();
 }
 
 GradientMap RenderLoop::choose_gradients() {
@@ -105,7 +87,7 @@ GradientMap RenderLoop::choose_gradients() {
   arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_, quarter); });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu) - live_view_.cpu_seconds();
   // A pilot that was cut short has found nothing out.
-  if (stop_.load(std::memory_order_relaxed)) throw cancelled();
+  stop_if_asked();
   return map;
 }
 
@@ -132,6 +114,7 @@ void RenderLoop::prepare() {
   frame->settings.denoiser = plan_.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
   frame->scene_key = input_.snapshot->content_key;
   frame->frame_number = settings.frame;
+  if (input_.replay) frame->replayed = input_.replay->sources;
   stats_.warnings = input_.snapshot->warnings;
 
   integrator_ = input_.make_integrator(frame->settings, integrator);
@@ -142,8 +125,9 @@ void RenderLoop::prepare() {
 }
 
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
-  if (stop_.load(std::memory_order_relaxed) || begin >= input_.settings.samples) return false;
+  if (is_stopped() || begin >= input_.settings.samples) return false;
   *end = std::min(batch_end(begin, input_.settings.samples), begin + affordable_samples(begin));
+  if (input_.replay && !input_.replay->counts.empty()) *end = input_.settings.samples;  // their number is not the same everywhere
   return *end > begin;
 }
 
@@ -151,7 +135,7 @@ bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
 // of the limit. The first one is always taken.
 uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
   const double limit = input_.settings.time_limit;
-  if (!(limit > 0.0)) return kLongestBatch;
+  if (!(limit > 0.0) || input_.replay) return kLongestBatch;
   const uint32_t taken = begin - first_begin_;
   if (taken == 0) return 1;
   const double elapsed = std::max(sampling_.seconds(), 1e-9);
@@ -160,7 +144,7 @@ uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
 
 void RenderLoop::judge() {
   const uint64_t cpu = process_cpu_nanoseconds();
-  const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
+  const CancelTest cancel = [this] { return is_stopped(); };
   const uint32_t reconstruction = frame_->settings.reconstruction;
   std::vector<CellNoise> noise;
   arena_.execute(
@@ -172,14 +156,15 @@ void RenderLoop::judge() {
 // In adaptive renders `begin` and `end` count the samples of pixels on average over the cells that go on.
 void RenderLoop::sample() {
   sampling_.start();
-  const auto cancel = [this] { return stop_.load(std::memory_order_relaxed); };
-  const bool adaptively = input_.settings.noise_threshold > 0.0f;  // a render that is too short to be so may go on as one that is
+  const auto cancel = [this] { return is_stopped(); };
+  const bool adaptively =
+      input_.settings.noise_threshold > 0.0f && !input_.replay;  // a render that is too short to be so may go on as one that is
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
   if (adaptively) adaptive_ = std::make_unique<AdaptiveSampling>(*frame_, input_.settings.noise_threshold, plan_.first_check);
   first_begin_ = begin;
   sampler_ = std::make_unique<TileSampler>(*integrator_, make_cells(plan_.sampled, tile_side(plan_.sampled, input_.threads)), gradients_,
-                                           adaptive_.get(), stop_, frame_.get());
+                                           adaptive_.get(), input_.replay.get(), stop_, frame_.get());
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
@@ -213,13 +198,14 @@ void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
   for (;;) {
     bool is_whole = false;
     arena_.execute([&] { is_whole = sampler_->run(after_tile); });
-    if (is_whole || stop_.load(std::memory_order_relaxed)) return;
+    if (is_whole || is_stopped()) return;
     show(begin);
   }
 }
 
 bool RenderLoop::show_is_due(uint32_t begin) const {
   const uint32_t reconstruction = frame_->settings.reconstruction;
+  if (input_.samples_only) return false;
   if (begin < kBothHalves) return live_view_.quarter_is_due(reconstruction);
   return live_view_.refresh_is_due(reconstruction, sampling_.seconds(), tracker_.fraction() / ProgressTracker::kSamplingShare);
 }
@@ -256,7 +242,7 @@ void RenderLoop::reconstruct_frame() {
 
 void RenderLoop::denoise_frame() {
   const Bill bill(&stats_.seconds.denoise, &stats_.cpu_seconds.denoise);
-  const CancelTest cancel = [this] { return stop_.load(std::memory_order_relaxed); };
+  const CancelTest cancel = [this] { return is_stopped(); };
   std::string failure;
   std::vector<float> rgba = denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel,
                                              picture_.combined(), &failure);
@@ -274,58 +260,14 @@ void RenderLoop::set_phase(GradusPhase phase) {
   if (!is_sampling()) picture_.end_tiles();
 }
 
-void RenderLoop::end(GradusError code, const std::string& text) noexcept {
-  try {
-    integrator_.reset();
-    const std::lock_guard lock(mutex_);
-    stats_.total_seconds = clock_.seconds();
-    stats_.process_cpu = 1e-9 * double(process_cpu_nanoseconds() - process_cpu_start_);
-    code_ = code;
-    phase_ = code == GRADUS_OK ? GRADUS_PHASE_DONE : code == GRADUS_ERROR_CANCELLED ? GRADUS_PHASE_CANCELLED : GRADUS_PHASE_FAILED;
-    picture_.end_tiles();
-    if (code == GRADUS_OK) tracker_.raise_to(1.0f);
-    tracker_.new_image();
-    text_ = text;
-  } catch (...) {  // only the text can fail; the phase is set
-  }
-  ended_.notify_all();
+void RenderLoop::ending(GradusError) {
+  integrator_.reset();
+  stats_.total_seconds = seconds();
+  stats_.process_cpu = process_cpu_seconds();
+  picture_.end_tiles();
 }
 
-bool RenderLoop::wait(double seconds) const {
-  std::unique_lock lock(mutex_);
-  const auto ended = [this] { return is_ended(); };
-  // Far beyond any render, and no overflow of the clock.
-  if (!(seconds >= 0.0) || seconds > 1e8) {
-    ended_.wait(lock, ended);
-    return true;
-  }
-  return ended_.wait_for(lock, std::chrono::duration<double>(seconds), ended);
-}
-
-GradusProgress RenderLoop::progress() const {
-  GradusProgress p{};
-  p.struct_size = sizeof(p);
-  p.seconds = static_cast<float>(clock_.seconds());
-  p.samples_done = tracker_.samples();
-  p.version = tracker_.version();
-  p.fraction = tracker_.fraction();
-  p.peak_memory_bytes = peak_memory_bytes();
-  const std::lock_guard lock(mutex_);
-  p.phase = phase_;
-  if (is_ended()) {
-    p.fraction = tracker_.fraction();
-    p.seconds = static_cast<float>(stats_.total_seconds);
-  }
-  p.memory_bytes = (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes();
-  return p;
-}
-
-GradusError RenderLoop::outcome(std::string* text) const {
-  const std::lock_guard lock(mutex_);
-  if (!is_ended()) throw invalid_operation("the render is still running");
-  if (text) *text = text_;
-  return code_;
-}
+uint64_t RenderLoop::memory_bytes() const { return (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes(); }
 
 void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   if (pass == GRADUS_PASS_COMBINED) live_view_.watch();
@@ -348,14 +290,14 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
 
 std::string RenderLoop::stats() const {
   const std::lock_guard lock(mutex_);
-  if (!is_ended()) throw invalid_operation("the render is still running: its stats come at the end");
+  require_end("its stats come");
   if (!frame_) throw invalid_operation("the render failed before it began: " + text_);
   return stats_json(stats_, plan_, *frame_);
 }
 
 std::shared_ptr<const Frame> RenderLoop::frame() const {
   const std::lock_guard lock(mutex_);
-  if (!is_ended()) throw invalid_operation("the render is still running: its frame comes at the end");
+  require_end("its frame comes");
   if (!frame_) throw invalid_operation("the render failed before it began: " + text_);
   return frame_;
 }

@@ -1,10 +1,8 @@
-// The loop of one render, and what can be asked of it meanwhile from other threads.
+// The loop of one render.
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -19,30 +17,30 @@
 #include "render/loop_input.h"
 #include "render/picture.h"
 #include "render/pilot.h"
+#include "render/render_task.h"
 #include "render/stats.h"
 #include "render/tile_sampler.h"
-#include "render/tracker.h"
 
 namespace gradus {
 
-class RenderLoop {
+class RenderLoop final : public RenderTask {
  public:
   explicit RenderLoop(LoopInput input);
 
-  // Renders; called once, on the render's thread. Never throws: what goes wrong becomes the outcome.
-  void run() noexcept;
-
-  void cancel() { stop_.store(true, std::memory_order_relaxed); }
-  bool wait(double seconds) const;
-  GradusProgress progress() const;
-  GradusError outcome(std::string* text) const;
   const Plan& plan() const { return plan_; }
-  void read_pass(uint32_t pass, float* pixels) const;
-  std::string stats() const;
-  std::shared_ptr<const Frame> frame() const;
+  bool resumes() const { return input_.resumed != nullptr; }
+  // When it has ended.
+  const RenderStats& what_it_took() const { return stats_; }
+
+  const Region& delivered() const override { return plan_.delivered; }
+  void read_pass(uint32_t pass, float* pixels) const override;
+  std::string stats() const override;
+  std::shared_ptr<const Frame> frame() const override;
 
  private:
-  void render();
+  void render() override;
+  void ending(GradusError code) override;
+  uint64_t memory_bytes() const override;
   void prepare();
   // Whether gradients pay, and where; all of the picture if that is not asked.
   GradientMap choose_gradients();
@@ -60,22 +58,16 @@ class RenderLoop {
   bool show_is_due(uint32_t begin) const;
   void show(uint32_t begin);
   bool is_done() const { return adaptive_ && adaptive_->all_done(); }  // by noise
-  bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
   bool is_sampling() const { return phase_ < GRADUS_PHASE_RECONSTRUCTING; }
   void set_phase(GradusPhase phase);
-  void end(GradusError code, const std::string& text) noexcept;
 
   const LoopInput input_;
   std::string why_no_denoiser_;
   const std::shared_ptr<const OidnLibrary> denoiser_;
   const Plan plan_;
   mutable tbb::task_arena arena_;
-  std::atomic<bool> stop_{false};
-  ProgressTracker tracker_;
   Picture picture_;
   mutable LiveView live_view_;  // readers are its watchers
-  const WallClock clock_;
-  const uint64_t process_cpu_start_;
 
   // Set by prepare(), before the phase becomes SAMPLING; the frame's content is the samplers' alone until that phase ends.
   std::shared_ptr<Frame> frame_;
@@ -90,12 +82,6 @@ class RenderLoop {
   Stopwatch sampling_;        // without what a watcher is shown meanwhile
   uint32_t first_begin_ = 0;  // samples that were resumed
   RenderStats stats_;
-
-  mutable std::mutex mutex_;  // guards what follows
-  mutable std::condition_variable ended_;
-  GradusPhase phase_ = GRADUS_PHASE_WAITING;
-  GradusError code_ = GRADUS_OK;
-  std::string text_;
 };
 
 }  // namespace gradus

@@ -5,9 +5,21 @@
 
 #include "base/device.h"
 #include "frame/frame.h"
+#include "frame/sample_sources.h"
 #include "render/render.h"
 
 namespace gradus {
+
+// What a frame of a sequence repeats of the frame before (contract 4.2).
+struct Replay {
+  SampleSources sources;
+  std::vector<uint32_t> counts;  // samples of each pixel; empty: those of the settings
+};
+
+// Threads that a render with these settings has. device: may be nullptr if settings.threads is set.
+inline uint32_t threads_of(const GradusSettings& settings, const Device* device) {
+  return settings.threads > 0 ? settings.threads : device != nullptr ? device->threads() : 1;
+}
 
 struct LoopInput {
   std::shared_ptr<Device> device;
@@ -16,6 +28,9 @@ struct LoopInput {
   std::shared_ptr<const Frame> resumed;
   IntegratorFactory factory;
   uint32_t threads = 1;
+  // A part of a frame of a sequence: it is sampled everywhere, and reconstructed later, with others.
+  bool samples_only = false;
+  std::shared_ptr<const Replay> replay;  // nullptr: the samples are the frame's own
 
   // An integrator of the snapshot's camera, for settings that may differ from the render's.
   std::unique_ptr<Integrator> make_integrator(const GradusSettings& its_settings, uint32_t integrator) const;

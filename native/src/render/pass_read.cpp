@@ -116,7 +116,7 @@ void read_stored(const Frame& frame, const PassInfo& info, const PassPlane& plan
 bool has_pass(const Frame& frame, uint32_t pass) {
   const PassInfo& info = pass_info(pass);
   if (pass == GRADUS_PASS_FALLBACK) return !frame.fallback.empty();
-  if (info.kind == PassKind::Image || info.kind == PassKind::Derived) return true;
+  if (info.kind == PassKind::Image || info.kind == PassKind::Derived || info.kind == PassKind::Sequence) return true;
   return find_plane(frame, pass) != nullptr;
 }
 
@@ -125,6 +125,10 @@ void read_frame_pass(const Frame& frame, uint32_t pass, const Region& region, fl
   if (!has_pass(frame, pass)) throw invalid_operation("pass " + std::string(info.name) + " was not asked for when the render began");
   if (info.kind == PassKind::Image) return read_noisy(frame, region, pixels);
   if (info.kind == PassKind::Derived) return read_derived(frame, pass, region, pixels);
+  if (info.kind == PassKind::Sequence) {
+    std::fill_n(pixels, size_t(region.area()) * info.channels, 0.0f);
+    return;
+  }
   const PassPlane* plane = find_plane(frame, pass);
   if (info.kind == PassKind::Light) return read_light(frame, *plane, *find_plane(frame, info.color), region, pixels);
   read_stored(frame, info, *plane, region, pixels);

@@ -35,51 +35,62 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorContext& context, ui
   return integrator == GRADUS_INTEGRATOR_GRADIENT ? make_gradient_integrator(context) : make_path_integrator(context);
 }
 
-struct Render::State {
-  State(LoopInput input) : loop(std::move(input)) {}
-  RenderLoop loop;
-  std::thread thread;
-};
+namespace {
 
-Render::Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-               std::shared_ptr<const Frame> resumed, const IntegratorFactory& factory) {
+LoopInput make_input(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
+                     std::shared_ptr<const Frame> resumed, const IntegratorFactory& factory) {
   LoopInput input;
-  input.threads = settings.threads > 0 ? settings.threads : device ? device->threads() : 1;
+  input.threads = threads_of(settings, device.get());
   input.device = std::move(device);
   input.snapshot = std::move(snapshot);
   input.settings = settings;
   input.resumed = std::move(resumed);
   input.factory = factory;
-  state_ = std::make_unique<State>(std::move(input));
+  return input;
+}
+
+}  // namespace
+
+struct Render::State {
+  explicit State(std::unique_ptr<RenderTask> its_task) : task(std::move(its_task)) {}
+  const std::unique_ptr<RenderTask> task;
+  std::thread thread;
+};
+
+Render::Render(std::unique_ptr<RenderTask> task) : state_(std::make_unique<State>(std::move(task))) {
   const BlockSignals blocked;
-  state_->thread = std::thread([loop = &state_->loop] {
+  state_->thread = std::thread([running = state_->task.get()] {
     pthread_setname_np(pthread_self(), "gradus-render");
-    loop->run();
+    running->run();
   });
 }
 
+Render::Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
+               std::shared_ptr<const Frame> resumed, const IntegratorFactory& factory)
+    : Render(std::make_unique<RenderLoop>(make_input(std::move(device), std::move(snapshot), settings, std::move(resumed), factory))) {}
+
 Render::~Render() {
-  state_->loop.cancel();
+  state_->task->cancel();
   if (state_->thread.joinable()) state_->thread.join();
 }
 
-GradusProgress Render::progress() const { return state_->loop.progress(); }
-void Render::cancel() { state_->loop.cancel(); }
-bool Render::wait(double seconds) { return state_->loop.wait(seconds); }
-GradusError Render::outcome(std::string* text) const { return state_->loop.outcome(text); }
+GradusProgress Render::progress() const { return state_->task->progress(); }
+void Render::cancel() { state_->task->cancel(); }
+bool Render::wait(double seconds) { return state_->task->wait(seconds); }
+GradusError Render::outcome(std::string* text) const { return state_->task->outcome(text); }
 
 void Render::read_pass(uint32_t pass, float* pixels, size_t count) const {
-  const Region& region = state_->loop.plan().delivered;
+  const Region& region = state_->task->delivered();
   const PassInfo& info = pass_info(pass);
   const size_t expected = size_t(region.area()) * info.channels;
   if (count != expected) {
     throw invalid_argument("pass " + std::string(info.name) + " has " + std::to_string(expected) + " floats, " + std::to_string(count) +
                            " were given");
   }
-  state_->loop.read_pass(pass, pixels);
+  state_->task->read_pass(pass, pixels);
 }
 
-std::string Render::stats_json() const { return state_->loop.stats(); }
-std::shared_ptr<const Frame> Render::frame() const { return state_->loop.frame(); }
+std::string Render::stats_json() const { return state_->task->stats(); }
+std::shared_ptr<const Frame> Render::frame() const { return state_->task->frame(); }
 
 }  // namespace gradus

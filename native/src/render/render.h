@@ -14,6 +14,7 @@
 namespace gradus {
 
 class Device;
+class RenderTask;
 
 // Makes the integrator of a plan: `integrator` is a GradusIntegrator, never AUTO. Tests bring their own.
 using IntegratorFactory = std::function<std::unique_ptr<Integrator>(const IntegratorContext& context, uint32_t integrator)>;
@@ -25,6 +26,8 @@ class Render {
   // samples; invalid_argument if its keys or planes differ. device: for the number of threads; may be nullptr if settings.threads is set.
   Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
          std::shared_ptr<const Frame> resumed = nullptr, const IntegratorFactory& factory = make_integrator);
+  // Runs another task.
+  explicit Render(std::unique_ptr<RenderTask> task);
   ~Render();  // cancels and waits
   Render(const Render&) = delete;
   Render& operator=(const Render&) = delete;
@@ -34,8 +37,9 @@ class Render {
   // False: still running after `seconds` (negative: no limit). Rethrows nothing; see outcome().
   bool wait(double seconds);
   GradusError outcome(std::string* text) const;  // OK, CANCELLED or the failure, once ended
-  // The delivered region. While sampling, Noisy Image is the noisy image so far, each tile as of its last batch that ended, 0 before the first
-  // one; so is Combined until its reader, a watcher, is shown more (render/live_view.h). Never waits. Others: invalid_operation until then.
+  // The delivered region. While sampling, Noisy Image is the noisy image so far, each tile as of its last batch that ended, 0 before the
+  // first one; so is Combined until its reader, a watcher, is shown more (render/live_view.h). Never waits. Others: invalid_operation until
+  // then.
   void read_pass(uint32_t pass, float* pixels, size_t count) const;
   // Throw invalid_operation while running.
   std::string stats_json() const;

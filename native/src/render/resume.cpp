@@ -85,6 +85,20 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
     throw invalid_argument("the frame has more samples than are asked for");
 }
 
+void add_sums(Frame* frame, const Frame& other) {
+  for (int half = 0; half < kHalves; ++half) {
+    for (size_t c = 0; c < frame->components.size(); ++c) {
+      add(&frame->components[c].primal[half], other.components[c].primal[half]);
+      for (int o = 0; o < kOffsets; ++o) add(&frame->components[c].gradient[half][o], other.components[c].gradient[half][o]);
+    }
+    add(&frame->count[half], other.count[half]);
+    for (int o = 0; o < kOffsets; ++o) add(&frame->pair_count[half][o], other.pair_count[half][o]);
+  }
+  for (size_t i = 0; i < frame->passes.size(); ++i) add_planes(&frame->passes[i], other.passes[i]);
+  add(&frame->fallback, other.fallback);
+  frame->counters.add(other.counters);
+}
+
 void merge_frames(Frame* frame, const Frame& other) {
   if (frame->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
   if (sampling_key(frame->settings) != sampling_key(other.settings))
@@ -98,21 +112,11 @@ void merge_frames(Frame* frame, const Frame& other) {
     throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));
   }
   const bool other_is_first = other.settings.first_sample < frame->settings.first_sample;
-  for (int half = 0; half < kHalves; ++half) {
-    for (size_t c = 0; c < frame->components.size(); ++c) {
-      add(&frame->components[c].primal[half], other.components[c].primal[half]);
-      for (int o = 0; o < kOffsets; ++o) add(&frame->components[c].gradient[half][o], other.components[c].gradient[half][o]);
-    }
-    add(&frame->count[half], other.count[half]);
-    for (int o = 0; o < kOffsets; ++o) add(&frame->pair_count[half][o], other.pair_count[half][o]);
-  }
   for (size_t i = 0; i < frame->passes.size(); ++i) {
     if (frame->passes[i].first_sample_only && other_is_first) frame->passes[i] = other.passes[i];
-    add_planes(&frame->passes[i], other.passes[i]);
   }
-  add(&frame->fallback, other.fallback);
+  add_sums(frame, other);
   frame->shared = {};  // each has taken other samples of a cell
-  frame->counters.add(other.counters);
   for (const SampleRange& range : other.samples.list()) frame->samples.add(range);
   if (other_is_first) frame->settings.first_sample = other.settings.first_sample;
   frame->settings.samples = uint32_t(std::min<uint64_t>(frame->samples.total(), UINT32_MAX));

@@ -16,6 +16,8 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
 // Throws invalid_argument if the frame has gradients and none are wanted, or the other way round.
 void check_gradients(const Frame& frame, bool wanted);
 
+// Adds the sums and counts of `other`, which has the same planes; what belongs to the first sample stays.
+void add_sums(Frame* frame, const Frame& other);
 // Adds the samples of `other`, which has other sample numbers. Throws invalid_argument with the reason if they do not fit together.
 void merge_frames(Frame* frame, const Frame& other);
 

@@ -1,5 +1,6 @@
 #include "render/stats.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
@@ -48,6 +49,16 @@ json phases(const PhaseTimes& t) {
 
 }  // namespace
 
+void RenderStats::add(const RenderStats& part) {
+  seconds.add(part.seconds);
+  cpu_seconds.add(part.cpu_seconds);
+  total_seconds += part.total_seconds;
+  process_cpu += part.process_cpu;
+  for (const std::string& warning : part.warnings) {
+    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
+  }
+}
+
 std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& frame) {
   const GradusSettings& settings = frame.settings;
   const Region& d = plan.delivered;
@@ -63,8 +74,8 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["denoiser"] = stats.denoiser.empty() ? json(nullptr) : json(stats.denoiser);
   j["unbiased"] = delivers_unbiased(plan, settings.reconstruction, settings.denoiser != GRADUS_DENOISER_NONE);
   j["samples"] = mean_samples(frame);
-  j["spp_base"] = j["samples"];
-  j["spp_offset"] = 0;
+  j["spp_base"] = mean_samples(frame) - stats.offset_samples;
+  j["spp_offset"] = stats.offset_samples;
   j["stopped"] = stats.stopped;
   j["plan"] = {{"chosen", reasons(plan.chosen, stats.chosen)}, {"skipped", reasons(plan.skipped, stats.skipped)}};
   j["seconds"] = phases(stats.seconds);

@@ -15,6 +15,12 @@ struct PhaseTimes {
   double preview = 0.0;  // what a watcher saw meanwhile
   double reconstruct = 0.0;
   double denoise = 0.0;
+  void add(const PhaseTimes& other) {
+    sample += other.sample;
+    preview += other.preview;
+    reconstruct += other.reconstruct;
+    denoise += other.denoise;
+  }
 };
 
 struct RenderStats {
@@ -27,7 +33,11 @@ struct RenderStats {
   std::string stopped;   // why sampling ended: samples, noise, time, cancelled
   SolveReport solve;
   std::vector<std::string> warnings;
-  Reasons chosen, skipped;  // what was decided after the plan, by samples
+  Reasons chosen, skipped;      // what was decided after the plan, by samples
+  double offset_samples = 0.0;  // per pixel, those that replay the frame before
+
+  // The work of a second part of the frame.
+  void add(const RenderStats& part);
 };
 
 std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& frame);

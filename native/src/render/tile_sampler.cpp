@@ -13,11 +13,12 @@ uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.
 }  // namespace
 
 TileSampler::TileSampler(const Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients, AdaptiveSampling* adaptive,
-                         const std::atomic<bool>& stop, Frame* frame)
+                         const Replay* replay, const std::atomic<bool>& stop, Frame* frame)
     : integrator_(integrator),
       tiles_(std::move(tiles)),
       gradients_(gradients),
       adaptive_(adaptive),
+      replay_(replay),
       stop_(stop),
       frame_(frame),
       first_sample_(frame->settings.first_sample) {}
@@ -40,6 +41,8 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   unit.first_sample = first_sample_ + begin_;
   unit.count = end_ - begin_;
   if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
+  if (replay_ != nullptr) unit.sources = &replay_->sources;
+  if (replay_ != nullptr && !replay_->counts.empty()) unit.count_map = &replay_->counts;
   const uint64_t cpu = thread_cpu_nanoseconds();
   const Counters counters = adaptive_ ? sample_cells(unit) : sample(unit);
   done_[tile] = 1;

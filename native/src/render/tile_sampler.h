@@ -9,15 +9,17 @@
 
 #include "integrator/integrator.h"
 #include "render/adaptive_sampling.h"
+#include "render/loop_input.h"
 #include "render/pilot.h"
 
 namespace gradus {
 
 class TileSampler {
  public:
-  // What it is given lives as long as it. adaptive: nullptr where all pixels take the same samples.
+  // What it is given lives as long as it. adaptive: nullptr where all pixels take the same samples. replay: nullptr where they are the
+  // frame's own.
   TileSampler(const Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients, AdaptiveSampling* adaptive,
-              const std::atomic<bool>& stop, Frame* frame);
+              const Replay* replay, const std::atomic<bool>& stop, Frame* frame);
 
   // Samples [begin, end) of each pixel; in adaptive renders that many on average, as the sharing of these says.
   void start_batch(uint32_t begin, uint32_t end);
@@ -37,6 +39,7 @@ class TileSampler {
   const std::vector<Region> tiles_;
   const GradientMap& gradients_;
   AdaptiveSampling* const adaptive_;
+  const Replay* const replay_;
   const std::atomic<bool>& stop_;
   Frame* const frame_;
   const uint32_t first_sample_;

@@ -42,6 +42,8 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_VARIANCE,              "Variance",              3, PassKind::Derived,  kNone},
     {GRADUS_PASS_FALLBACK,              "Fallback",              1, PassKind::Derived,  kNone},
     {GRADUS_PASS_ERROR,                 "Error",                 1, PassKind::Solved,   kNone},
+    {GRADUS_PASS_GRADIENT_T,            "Gradient T",            3, PassKind::Sequence, kNone},
+    {GRADUS_PASS_GRADIENT_T_LINK,       "Gradient T Link",       3, PassKind::Sequence, kNone},
 };
 // clang-format on
 
@@ -53,7 +55,9 @@ constexpr bool is_in_order() {
 }
 static_assert(is_in_order(), "one row per GradusPass, in order");
 
-bool is_stored(PassKind kind) { return kind != PassKind::Image && kind != PassKind::Derived && kind != PassKind::Solved; }
+bool is_stored(PassKind kind) {
+  return kind != PassKind::Image && kind != PassKind::Derived && kind != PassKind::Solved && kind != PassKind::Sequence;
+}
 
 }  // namespace
 

@@ -14,6 +14,7 @@ enum class PassKind : uint8_t {
   Image,     // Combined, Noisy Image
   Derived,   // gradients, variance, counts: from the frame's own planes
   Solved,    // error: comes with Combined (render/combine.h)
+  Sequence,  // differences to the next frame: come with the delivery of a sequence (render/sequence), 0 elsewhere
   Radiance,  // sum of radiance; the film's exposure applies
   Light,     // sum of radiance, divided by its colour pass when read (contract 6.5)
   Color,     // sum of albedos

@@ -1,5 +1,6 @@
 #include "temporal/frame_window.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gradus {
@@ -31,11 +32,15 @@ void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const 
   const size_t width = size_t(size().width), channels = size_t(size().channels), first = size_t(y) * width;
   const float* base = plane_of(frame.base.*part, kind).data();
   if (!is_temporal(kind)) {
-    const float* replay = frame.is_first() ? base : plane_of(frame.replay.*part, kind).data();
+    const float* replay = plane_of(frame.replay.*part, kind).data();
     for (size_t i = first; i < first + width; ++i) {
-      const float share = frame.is_first() ? 0.0f : frame.replay_share[i];
+      const float share = frame.replay_share[i];
       for (size_t k = i * channels; k < (i + 1) * channels; ++k) *out++ = mixed(base[k], replay[k], share);
     }
+    return;
+  }
+  if (frames_[size_t(t) + 1]->repeats) {
+    std::fill_n(out, width * channels, 0.0f);
     return;
   }
   const float* next = plane_of(frames_[size_t(t) + 1]->replay.*part, kind).data();

@@ -1,7 +1,9 @@
 // What a space-time reconstruction needs of a frame: its samples, and those that replay the frame before (contract 4.2).
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "frame/frame.h"
 #include "frame/links.h"
@@ -17,12 +19,17 @@ HalvedImages read_halved(const Frame& frame);
 
 struct TemporalFrame {
   HalvedImages base;
-  HalvedImages replay;              // of the random numbers of the frame before; empty in the first of a sequence
+  HalvedImages replay;              // of the random numbers of the frame before
   std::vector<float> replay_share;  // of the samples of each pixel
   std::vector<int32_t> links;       // by pixels: that of the next frame, as y·width + x, or kNoLink; empty in the last
-  bool is_first() const { return replay.values.primal.empty(); }
+  bool repeats = false;             // it has the samples of the frame before, for nothing has changed
 };
-// replay: nullptr in the first frame of a sequence.
-TemporalFrame make_temporal_frame(const Frame& base, const Frame* replay);
+// Without links.
+TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay);
+
+// Frames in order, with their links: those that the replay of each next one has followed. base, replay: the parts of a frame, by its place;
+// held no longer than the frame is made.
+using LoadPart = std::function<std::shared_ptr<const Frame>(int place)>;
+std::vector<std::shared_ptr<const TemporalFrame>> make_temporal_frames(int count, const LoadPart& base, const LoadPart& replay);
 
 }  // namespace gradus

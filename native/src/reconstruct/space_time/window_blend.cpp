@@ -11,7 +11,7 @@ void WindowBlend::add(int window, int frame, std::vector<float> image) {
     for (size_t i = 0; i < image.size(); ++i) image[i] += begun->second[i];
     begun_.erase(begun);
   }
-  const bool more = window < grid_.last() && grid_.frames(window + 1).contains(frame);
+  const bool more = window < grid_.last_with(frame);
   if (more) {
     begun_.emplace(frame, std::move(image));
   } else {

@@ -1,0 +1,179 @@
+#include "render/sequence/frame_delivery.h"
+
+#include <algorithm>
+
+#include "base/bill.h"
+#include "base/error.h"
+#include "frame/features.h"
+#include "render/combine.h"
+#include "render/denoise_combined.h"
+#include "render/pass_read.h"
+#include "render/resume.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
+#include "temporal/frame_window.h"
+
+namespace gradus {
+namespace {
+
+// Of a frame that was sampled by another process, or in another session.
+Plan plan_of(const Frame& frame) {
+  Plan plan;
+  plan.integrator = frame.settings.integrator;
+  plan.reconstruction = frame.settings.reconstruction;
+  plan.gradients = plan.solves = true;
+  plan.adaptive = frame.settings.noise_threshold > 0.0f;
+  plan.unbiased = !plan.adaptive && !(frame.settings.clamp_direct > 0.0f) && !(frame.settings.clamp_indirect > 0.0f);
+  plan.channels = frame.channels;
+  plan.passes = frame.settings.passes;
+  plan.sampled = frame.region;
+  return plan;
+}
+
+}  // namespace
+
+FrameDelivery::FrameDelivery(std::shared_ptr<Sequence> sequence, int32_t frame, const GradusSettings* settings)
+    : sequence_(std::move(sequence)), number_(frame), changed_(settings ? std::optional(*settings) : std::nullopt) {}
+
+void FrameDelivery::render() {
+  std::shared_ptr<Frame> frame;
+  const uint32_t threads = threads_of(changed_.value_or(GradusSettings{}), sequence_->device_.get());
+  tbb::task_arena arena(arena_size(threads));
+  arena.execute([&] { frame = load(); });
+  {
+    const std::lock_guard lock(mutex_);
+    frame_ = std::move(frame);
+    phase_ = GRADUS_PHASE_RECONSTRUCTING;
+  }
+  arena.execute([&] { reconstruct(); });
+  if (frame_->settings.denoiser != GRADUS_DENOISER_NONE) denoise();
+  stop_if_asked();
+  sequence_->forget_before(sequence_->needs(number_).first);
+  const std::lock_guard lock(mutex_);
+  record_.stats.total_seconds += seconds();
+  record_.stats.process_cpu += process_cpu_seconds();
+}
+
+std::shared_ptr<Frame> FrameDelivery::load() {
+  const SequenceFolder& folder = sequence_->folder_;
+  const auto base = folder.load(number_, FramePart::kBase), offset = folder.load(number_, FramePart::kOffset);
+  if (base->count[0].size() != offset->count[0].size() || base->channels != offset->channels ||
+      base->passes.size() != offset->passes.size() || sampling_key(base->settings) != sampling_key(offset->settings)) {
+    throw invalid_argument("stored frame " + folder.path(number_, FramePart::kBase) + " and its offset do not belong together");
+  }
+  auto frame = std::make_shared<Frame>(*base);
+  add_sums(frame.get(), *offset);
+  frame->frame_number = number_;
+  frame->settings.frame = number_;
+  frame->settings.samples += offset->settings.samples;
+  frame->shared = {};
+  if (changed_) {
+    frame->settings.reconstruction = changed_->reconstruction;
+    frame->settings.reconstruction_alpha = changed_->reconstruction_alpha;
+    frame->settings.denoiser = changed_->denoiser;
+    frame->settings.film_exposure = changed_->film_exposure;
+  }
+  const auto record = sequence_->records_.find(number_);
+  if (record != sequence_->records_.end()) record_ = record->second;
+  if (record == sequence_->records_.end()) {
+    record_.plan = plan_of(*frame);
+    record_.stats.stopped = "stored";
+  }
+  record_.plan.delivered = delivered_region(*frame);
+  record_.stats.offset_samples = mean_samples(*offset);
+  read_differences_over_time(*base);
+  return frame;
+}
+
+void FrameDelivery::reconstruct() {
+  const Bill bill(&record_.stats.seconds.reconstruct, &record_.stats.cpu_seconds.reconstruct);
+  const CancelTest cancel = [this] { return is_stopped(); };
+  const GradusSettings& settings = frame_->settings;
+  SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha});
+  const std::vector<float> image = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
+  stop_if_asked();
+  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, image, delivered());
+  const std::lock_guard lock(mutex_);
+  combined_ = std::move(rgba);
+}
+
+void FrameDelivery::denoise() {
+  RenderStats& stats = record_.stats;
+  const Bill bill(&stats.seconds.denoise, &stats.cpu_seconds.denoise);
+  const CancelTest cancel = [this] { return is_stopped(); };
+  std::string failure;
+  const auto library = choose_denoiser(frame_->settings.denoiser, sequence_->device_.get(), &failure);
+  if (!library) return;
+  const uint32_t threads = threads_of(frame_->settings, sequence_->device_.get());
+  std::vector<float> rgba =
+      denoise_combined(*library, *frame_, frame_->settings.reconstruction, delivered(), threads, cancel, combined_, &failure);
+  if (rgba.empty()) {
+    stats.warnings.push_back(failure);
+    return;
+  }
+  stats.denoiser = library->name();
+  const std::lock_guard lock(mutex_);
+  combined_ = std::move(rgba);
+}
+
+void FrameDelivery::read_differences_over_time(const Frame& base) {
+  const Region region = delivered();
+  difference_.assign(3 * size_t(region.area()), 0.0f);
+  link_ = difference_;
+  const int place = sequence_->place_of(number_) + 1;
+  const int32_t next = sequence_->frame_at(place);
+  const bool wanted = wants(base.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(base.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
+  if (!wanted || next > sequence_->needs(number_).last || !sequence_->folder_.holds(next)) return;
+  const std::unique_ptr<WindowSource> window = sequence_->open_window({place - 1, place});
+  const int width = base.region.width(), channels = base.channels;
+  std::vector<float> differences(size_t(width) * size_t(channels));
+  std::vector<int32_t> links(static_cast<size_t>(width));
+  size_t out = 0;
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    const int row = y - base.region.y0;
+    window->read_row(RowKind::kDt, 0, row, differences.data());
+    window->read_links(0, row, links.data());
+    for (int32_t x = region.x0; x < region.x1; ++x, out += 3) {
+      const auto i = size_t(x - base.region.x0);
+      if (links[i] == kNoLink || !is_finite(differences[i * size_t(channels)])) continue;
+      for (size_t c = 0; c < 3; ++c) difference_[out + c] = base.settings.film_exposure * differences[i * size_t(channels) + c];
+      link_[out] = float(links[i] % width - int32_t(i));
+      link_[out + 1] = float(links[i] / width - row);
+      link_[out + 2] = 1.0f;
+    }
+  }
+}
+
+void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
+  const std::lock_guard lock(mutex_);
+  require_end("its passes come");
+  if (!frame_) throw invalid_operation("the frame was not delivered: " + text_);
+  const std::vector<float>* made = pass == GRADUS_PASS_COMBINED          ? &combined_
+                                   : pass == GRADUS_PASS_ERROR           ? &error_
+                                   : pass == GRADUS_PASS_GRADIENT_T      ? &difference_
+                                   : pass == GRADUS_PASS_GRADIENT_T_LINK ? &link_
+                                                                         : nullptr;
+  if (made != nullptr && !made->empty()) {
+    std::copy(made->begin(), made->end(), pixels);
+    return;
+  }
+  read_frame_pass(*frame_, pass, delivered(), pixels);
+}
+
+std::string FrameDelivery::stats() const {
+  const std::lock_guard lock(mutex_);
+  require_end("its stats come");
+  if (!frame_) throw invalid_operation("the frame was not delivered: " + text_);
+  return stats_json(record_.stats, record_.plan, *frame_);
+}
+
+std::shared_ptr<const Frame> FrameDelivery::frame() const {
+  const std::lock_guard lock(mutex_);
+  require_end("its frame comes");
+  if (!frame_) throw invalid_operation("the frame was not delivered: " + text_);
+  return frame_;
+}
+
+uint64_t FrameDelivery::memory_bytes() const { return (frame_ ? frame_->memory_bytes() : 0) + combined_.size() * sizeof(float); }
+
+}  // namespace gradus

@@ -1,0 +1,40 @@
+// Delivers a frame of a sequence: its picture from the windows that hold it, and its passes from all of its samples.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/sequence/sequence.h"
+
+namespace gradus {
+
+class FrameDelivery final : public RenderTask {
+ public:
+  FrameDelivery(std::shared_ptr<Sequence> sequence, int32_t frame, const GradusSettings* settings);
+
+  const Region& delivered() const override { return record_.plan.delivered; }
+  void read_pass(uint32_t pass, float* pixels) const override;
+  std::string stats() const override;
+  std::shared_ptr<const Frame> frame() const override;
+
+ private:
+  void render() override;
+  uint64_t memory_bytes() const override;
+
+  std::shared_ptr<Frame> load();
+  void reconstruct();
+  void denoise();
+  // Passes Gradient T and Gradient T Link.
+  void read_differences_over_time(const Frame& base);
+
+  const std::shared_ptr<Sequence> sequence_;
+  const int32_t number_;
+  const std::optional<GradusSettings> changed_;
+  FrameRecord record_;
+  std::shared_ptr<Frame> frame_;
+  std::vector<float> combined_, error_;   // of the region: RGBA, and pass Error where it is asked for
+  std::vector<float> difference_, link_;  // to the next frame; three values per pixel of the region
+};
+
+}  // namespace gradus

@@ -1,0 +1,50 @@
+// Samples a frame of a sequence: its own half, and the one that replays the frame before.
+#pragma once
+
+#include <memory>
+
+#include "render/loop.h"
+#include "render/sequence/sequence.h"
+
+namespace gradus {
+
+class FrameSampling final : public RenderTask {
+ public:
+  FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input);
+
+  void cancel() override;
+  GradusProgress progress() const override;
+  const Region& delivered() const override { return base_.delivered(); }
+  // Of its own half.
+  void read_pass(uint32_t pass, float* pixels) const override { base_.read_pass(pass, pixels); }
+  std::string stats() const override;
+  std::shared_ptr<const Frame> frame() const override;
+
+ private:
+  void render() override;
+  uint64_t memory_bytes() const override { return 0; }
+
+  // What the folder has of the frame, if it fits.
+  std::shared_ptr<const Frame> stored(FramePart part) const;
+  bool is_enough(const Frame& frame, uint32_t samples) const;
+  bool repeats_before() const;
+  void repeat_before();
+  void sample_parts();
+  void sample_offset(const Frame& base);
+  void run(RenderLoop* loop);
+  void save(const Frame& frame, FramePart part) const;
+  std::shared_ptr<const Replay> follow(const Frame& base) const;
+  LoopInput base_input() const;
+  // From here on it is the frame before.
+  void finish(const std::shared_ptr<const Frame>& base);
+
+  const std::shared_ptr<Sequence> sequence_;
+  const LoopInput input_;
+  const std::shared_ptr<const Frame> stored_base_;
+  RenderLoop base_;
+  std::unique_ptr<RenderLoop> offset_;
+  std::shared_ptr<const Frame> frame_;
+  FrameRecord record_;
+};
+
+}  // namespace gradus

@@ -1,0 +1,112 @@
+#include "render/sequence/sequence.h"
+
+#include "base/error.h"
+#include "render/sequence/frame_delivery.h"
+#include "render/sequence/frame_sampling.h"
+#include "temporal/frame_window.h"
+
+namespace gradus {
+
+bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
+  const uint32_t r = settings.reconstruction;
+  const bool solves = r == GRADUS_RECONSTRUCTION_L2 || r == GRADUS_RECONSTRUCTION_L1 || r == GRADUS_RECONSTRUCTION_WEIGHTED;
+  *why_not = settings.integrator == GRADUS_INTEGRATOR_PATH ? "the integrator is path"
+             : !solves                                     ? "the reconstruction does not take differences over time"
+             : settings.samples < 2                        ? "there is one sample per pixel"
+                                                           : "";
+  return why_not->empty();
+}
+
+Sequence::Sequence(std::shared_ptr<Device> device, const SequenceSettings& settings, IntegratorFactory factory)
+    : device_(std::move(device)), settings_(settings), factory_(std::move(factory)), folder_(settings.folder), last_(settings.last) {
+  if (settings.step < 1) throw invalid_argument("a sequence has a step of at least 1");
+  WindowGrid(places(), settings.windows);  // which looks at them
+}
+
+int Sequence::place_of(int32_t frame) const {
+  const int64_t from_first = int64_t(frame) - settings_.first, step = settings_.step;
+  if (from_first % step != 0) throw invalid_argument("frame " + std::to_string(frame) + " is none of the sequence");
+  const int64_t first = settings_.first;
+  return int(from_first / step + (first >= 0 ? first / step : -((step - 1 - first) / step)));
+}
+
+int32_t Sequence::frame_at(int place) const {
+  return int32_t(settings_.first + (int64_t(place) - place_of(settings_.first)) * int64_t(settings_.step));
+}
+
+FrameRange Sequence::places() const {
+  if (settings_.last < settings_.first) throw invalid_argument("a sequence ends before it begins");
+  FrameRange range{place_of(settings_.first), 0};
+  range.last = range.first + int((int64_t(settings_.last) - settings_.first) / settings_.step);
+  if (folder_.is_temporary()) return range;
+  const int most = settings_.windows.frames;  // more have no share
+  for (int i = 0; i < most && folder_.holds(frame_at(range.first - 1)); ++i) --range.first;
+  for (int i = 0; i < most && folder_.holds(frame_at(range.last + 1)); ++i) ++range.last;
+  return range;
+}
+
+FrameRange Sequence::needs(int32_t frame) const {
+  WindowGrid grid(places(), settings_.windows);
+  const int place = place_of(frame);
+  const FrameRange places{grid.frames(grid.first_with(place)).first, grid.frames(grid.last_with(place)).last};
+  return {std::max(frame_at(places.first), settings_.first), std::min(frame_at(places.last), last_)};
+}
+
+void Sequence::end_at(int32_t frame) {
+  last_ = std::min(last_, frame);
+  if (pictures_) pictures_->end_at(place_of(last_));
+}
+
+std::unique_ptr<RenderTask> Sequence::sample(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
+  std::string why_not;
+  if (!sequence_applies(settings, &why_not)) throw invalid_argument("no differences over time: " + why_not);
+  place_of(settings.frame);  // looks at it
+  LoopInput input;
+  input.device = device_;
+  input.snapshot = std::move(snapshot);
+  input.settings = settings;
+  input.settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  input.threads = threads_of(settings, device_.get());
+  input.factory = factory_;
+  input.samples_only = true;
+  return std::make_unique<FrameSampling>(shared_from_this(), std::move(input));
+}
+
+void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
+  auto before = std::make_unique<FrameBefore>();
+  before->snapshot = std::move(snapshot);
+  before->settings = settings;
+  before->settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  before->stream_frame = settings.frame;
+  before->is_sampled = false;
+  before_ = std::move(before);
+}
+
+std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSettings* settings) {
+  return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
+}
+
+std::unique_ptr<WindowSource> Sequence::open_window(const FrameRange& places) const {
+  const auto part = [&](FramePart which) {
+    return [this, &places, which](int i) { return folder_.load(frame_at(places.first + i), which); };
+  };
+  return std::make_unique<FrameWindow>(make_temporal_frames(places.count(), part(FramePart::kBase), part(FramePart::kOffset)));
+}
+
+SequencePictures* Sequence::pictures(const SequenceMethod& method) {
+  if (!pictures_ || !(pictures_->method() == method)) {
+    pictures_ = std::make_unique<SequencePictures>(
+        places(), settings_.windows, [this](const FrameRange& window) { return open_window(window); }, method);
+    if (last_ < settings_.last) pictures_->end_at(place_of(last_));
+  }
+  return pictures_.get();
+}
+
+void Sequence::forget_before(int32_t frame) {
+  while (!records_.empty() && records_.begin()->first < frame) {
+    folder_.forget(records_.begin()->first);
+    records_.erase(records_.begin());
+  }
+}
+
+}  // namespace gradus

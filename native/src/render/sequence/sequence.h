@@ -1,0 +1,73 @@
+// Frames of an animation, sampled one after the other and reconstructed together (contract 4; Manzi et al. 2016, "Temporal gradient-domain
+// path tracing"). Each frame is sampled twice, with half of its samples each time: with its own random numbers, and with those of the frame
+// before, moved along to where the same surfaces are seen now. Differences between the two have little noise.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "reconstruct/space_time/sequence_pictures.h"
+#include "render/loop_input.h"
+#include "render/render_task.h"
+#include "render/sequence/frame_record.h"
+#include "render/sequence/sequence_folder.h"
+
+namespace gradus {
+
+struct SequenceSettings {
+  int32_t first = 0, last = 0;  // frames that are rendered: first, first + step … not beyond last
+  uint32_t step = 1;
+  WindowShape windows;
+  std::string folder;  // where raw frames are kept and found again; empty: nowhere
+};
+
+// Whether frames with these settings have differences over time, and why not.
+bool sequence_applies(const GradusSettings& settings, std::string* why_not);
+
+class Sequence : public std::enable_shared_from_this<Sequence> {
+ public:
+  // Throws invalid_argument for settings that make no sense, invalid_operation where the folder cannot be made.
+  Sequence(std::shared_ptr<Device> device, const SequenceSettings& settings, IntegratorFactory factory = make_integrator);
+
+  // Frames of the range that must have been sampled before `frame` can be delivered.
+  FrameRange needs(int32_t frame) const;
+  // Frames beyond this one do not come after all.
+  void end_at(int32_t frame);
+
+  // Tasks to be run, one at a time: the next is asked for when the one before has ended.
+  //
+  // Samples settings.frame, unless the folder holds it, or nothing has changed since the frame before.
+  std::unique_ptr<RenderTask> sample(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
+  // The snapshot shows settings.frame, which is not sampled here: the next frame follows it.
+  void pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
+  // Reconstructs and delivers a frame. settings: what it is made of otherwise than it was sampled for (reconstruction, alpha, denoiser,
+  // exposure); nullptr: nothing. Frames in order.
+  std::unique_ptr<RenderTask> deliver(int32_t frame, const GradusSettings* settings);
+
+ private:
+  friend class FrameSampling;
+  friend class FrameDelivery;
+
+  // Frames are counted in steps, so that those of one grid are next to each other whatever part of a job they are rendered in.
+  int place_of(int32_t frame) const;
+  int32_t frame_at(int place) const;
+  // The frames that windows may take: those that are rendered, and those beside them that the folder holds.
+  FrameRange places() const;
+  std::unique_ptr<WindowSource> open_window(const FrameRange& places) const;
+  SequencePictures* pictures(const SequenceMethod& method);
+  // Those that no picture to come needs.
+  void forget_before(int32_t frame);
+
+  const std::shared_ptr<Device> device_;
+  const SequenceSettings settings_;
+  const IntegratorFactory factory_;
+  const SequenceFolder folder_;
+  int32_t last_;
+  std::unique_ptr<const FrameBefore> before_;
+  std::map<int32_t, FrameRecord> records_;
+  std::unique_ptr<SequencePictures> pictures_;
+};
+
+}  // namespace gradus

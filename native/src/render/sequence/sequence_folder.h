@@ -1,0 +1,39 @@
+// Where the raw frames of a sequence lie: f<number>.base.exr and f<number>.offset.exr in one folder (contract 7.2).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// What a frame of a sequence is sampled in: with random numbers of its own, and with those of the frame before.
+enum class FramePart { kBase, kOffset };
+
+class SequenceFolder {
+ public:
+  // path: made if it is not there; empty: a folder for temporary files, which goes when this does.
+  explicit SequenceFolder(const std::string& path);
+  ~SequenceFolder();
+  SequenceFolder(const SequenceFolder&) = delete;
+  SequenceFolder& operator=(const SequenceFolder&) = delete;
+
+  bool is_temporary() const { return is_temporary_; }
+  std::string path(int32_t frame, FramePart part) const;
+  // Whether both parts of a frame are there.
+  bool holds(int32_t frame) const;
+  // Throws invalid_argument with path and cause. By the threads of the caller's arena; so does save().
+  std::shared_ptr<const Frame> load(int32_t frame, FramePart part) const;
+  void save(const Frame& content, int32_t frame, FramePart part) const;
+  // Frame `to` gets the files of frame `from`.
+  void repeat(int32_t from, int32_t to) const;
+  // Of a temporary folder: the frame is not needed any more.
+  void forget(int32_t frame) const;
+
+ private:
+  std::string path_;
+  bool is_temporary_;
+};
+
+}  // namespace gradus

@@ -1,0 +1,308 @@
+// Frames of an animation, sampled in halves and reconstructed together (contract 4).
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "render/sequence/sequence.h"
+#include "support/path_scene.h"
+
+namespace gradus::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint32_t kSide = 32;
+
+GradusSettings settings_of(int32_t frame, uint32_t samples = 8) {
+  GradusSettings settings = test_settings(kSide, kSide);
+  settings.frame = frame;
+  settings.samples = samples;
+  settings.independent_sampler = 0;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  settings.filter_width = 0.01f;  // edges would be wrong by their coverage, all of them alike
+  return settings;
+}
+
+// A folder that goes with the test.
+class Folder {
+ public:
+  Folder() : path_((fs::temp_directory_path() / "gradus-test-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  }
+  ~Folder() { fs::remove_all(path_); }
+  const std::string& path() const { return path_; }
+  void remove(int32_t frame) const {
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      if (entry.path().filename().string().find(std::to_string(frame).append(".")) != std::string::npos) fs::remove(entry.path());
+    }
+  }
+
+ private:
+  std::string path_;
+};
+
+// A camera that goes aside by some pixels from frame to frame.
+class Pan {
+ public:
+  explicit Pan(float pixels, Scenario scenario = Scenario::DiffuseArea) : pixels_(pixels) { build(scenario, &scene_); }
+
+  std::shared_ptr<const Snapshot> at(int32_t frame) {
+    const float x = pixels_ * 1.8f * 3.2f / (2.0f * kSide) * float(frame);
+    scene_.camera(Vec3(x, 0, 3.2f), Vec3(x, 0, 0), 0.9f);
+    return scene_.context(settings_of(frame)).snapshot;
+  }
+  std::shared_ptr<const Snapshot> turned(float angle) {
+    scene_.camera(Vec3(0, 0, 3.2f), Vec3(std::sin(angle), 0, 3.2f - std::cos(angle)), 0.9f);
+    return scene_.context(settings_of(0)).snapshot;
+  }
+
+ private:
+  PathScene scene_;
+  float pixels_;
+};
+
+struct Delivered {
+  std::vector<float> combined, noisy, difference, link;
+  nlohmann::json stats;
+};
+
+void run(RenderTask* task) {
+  task->run();
+  std::string text;
+  ASSERT_EQ(task->outcome(&text), GRADUS_OK) << text;
+}
+
+std::vector<float> read(const RenderTask& task, uint32_t pass, size_t channels) {
+  std::vector<float> pixels(size_t(task.delivered().area()) * channels);
+  task.read_pass(pass, pixels.data());
+  return pixels;
+}
+
+Delivered deliver(Sequence* sequence, int32_t frame) {
+  const auto task = sequence->deliver(frame, nullptr);
+  run(task.get());
+  return {read(*task, GRADUS_PASS_COMBINED, 4), read(*task, GRADUS_PASS_NOISY_IMAGE, 4), read(*task, GRADUS_PASS_GRADIENT_T, 3),
+          read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3), nlohmann::json::parse(task->stats())};
+}
+
+std::shared_ptr<Device> two_threads() {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  settings.threads = 2;
+  return std::make_shared<Device>(settings);
+}
+
+std::shared_ptr<Sequence> make_sequence(int32_t first, int32_t last, const std::string& folder = "") {
+  return std::make_shared<Sequence>(two_threads(), SequenceSettings{first, last, 1, {}, folder});
+}
+
+GradusSettings with_passes(GradusSettings settings) {
+  settings.passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_T | uint64_t{1} << GRADUS_PASS_GRADIENT_T_LINK;
+  return settings;
+}
+
+void sample(Sequence* sequence, const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
+  run(sequence->sample(snapshot, with_passes(settings)).get());
+}
+
+std::vector<Delivered> render(Pan* pan, Sequence* sequence, int32_t first, int32_t last, uint32_t samples = 8) {
+  std::vector<Delivered> frames;
+  int32_t sampled = first;
+  for (int32_t frame = first; frame <= last; ++frame) {
+    for (; sampled <= sequence->needs(frame).last; ++sampled) sample(sequence, pan->at(sampled), settings_of(sampled, samples));
+    frames.push_back(deliver(sequence, frame));
+  }
+  return frames;
+}
+
+double distance(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - b[i], 2);
+  return sum / double(a.size());
+}
+
+TEST(C3_Sequence, DeliversEveryFrameFromFirstToLast) {
+  Pan pan(1.3f);
+  const auto sequence = make_sequence(3, 15);
+  const std::vector<Delivered> frames = render(&pan, sequence.get(), 3, 15);
+  ASSERT_EQ(frames.size(), 13u);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].stats["frame"], 3 + int(i));
+    EXPECT_EQ(frames[i].stats["spp_base"], 4.0);
+    EXPECT_EQ(frames[i].stats["spp_offset"], 4.0);
+    EXPECT_EQ(frames[i].stats["samples"], 8.0);
+    EXPECT_GT(frames[i].combined[4 * (kSide * kSide / 2)], 0.0f);
+  }
+}
+
+// That is what it is for: from frame to frame the error changes less than that of what was sampled, and it is smaller.
+TEST(C4_Sequence, FlickersLessThanItsSamples) {
+  Pan pan(0.35f, Scenario::World);
+  const std::vector<Delivered> truth = render(&pan, make_sequence(0, 9).get(), 0, 9, 256);
+  const std::vector<Delivered> frames = render(&pan, make_sequence(0, 9).get(), 0, 9, 8);
+  // Energy of errors, and of their changes, of one pass.
+  const auto energies = [&](std::vector<float> Delivered::*pass) {
+    double error = 0.0, flicker = 0.0;
+    std::vector<float> before;
+    for (size_t t = 0; t < frames.size(); ++t) {
+      std::vector<float> now = frames[t].*pass;
+      for (size_t i = 0; i < now.size(); ++i) now[i] -= truth[t].noisy[i];
+      error += distance(now, std::vector<float>(now.size(), 0.0f));
+      if (t > 0) flicker += distance(now, before);
+      before = std::move(now);
+    }
+    return std::pair(error, flicker);
+  };
+  const auto [error_of_samples, flicker_of_samples] = energies(&Delivered::noisy);
+  const auto [error, flicker] = energies(&Delivered::combined);
+  EXPECT_LT(error, 0.3 * error_of_samples);
+  EXPECT_LT(flicker, 0.25 * flicker_of_samples);
+  std::printf("  error %.3f, flicker %.3f of the samples'\n", error / error_of_samples, flicker / flicker_of_samples);
+}
+
+TEST(I8_Sequence, WhatDoesNotChangeIsSampledOnce) {
+  Pan pan(0.0f);
+  const auto sequence = make_sequence(1, 6);
+  const std::vector<Delivered> frames = render(&pan, sequence.get(), 1, 6);
+  for (size_t i = 1; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].stats["stopped"], "unchanged");
+    EXPECT_EQ(frames[i].stats["cpu_seconds"]["sample"], 0.0);
+    EXPECT_EQ(frames[i].noisy, frames[0].noisy);
+    EXPECT_LT(distance(frames[i].combined, frames[0].combined), 1e-8);
+    for (size_t k = 0; k < frames[i].difference.size(); ++k) EXPECT_EQ(frames[i].difference[k], 0.0f);
+  }
+}
+
+TEST(C7_Sequence, GoesOnWhereItEndedWithTheSameBits) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const std::vector<Delivered> whole = render(&pan, make_sequence(1, 8, folder.path()).get(), 1, 8);
+  for (const int32_t frame : {4, 5, 6, 7, 8}) folder.remove(frame);
+  const std::vector<Delivered> again = render(&pan, make_sequence(1, 8, folder.path()).get(), 1, 8);
+  for (size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(again[i].stats["stopped"], i < 3 ? "stored" : "samples");
+    EXPECT_EQ(whole[i].noisy, again[i].noisy);
+    EXPECT_EQ(whole[i].combined, again[i].combined);
+  }
+}
+
+// Parts of a job that share a folder: each passes the frame before its first one by, and the frames are those of one job.
+TEST(C7_Sequence, PartsOfAJobMakeTheFramesOfTheWhole) {
+  Pan pan(1.3f);
+  const Folder at_once, in_parts;
+  render(&pan, make_sequence(1, 8, at_once.path()).get(), 1, 8);
+  const auto second = make_sequence(5, 8, in_parts.path());
+  second->pass_by(pan.at(4), with_passes(settings_of(4)));
+  render(&pan, second.get(), 5, 8);
+  render(&pan, make_sequence(1, 4, in_parts.path()).get(), 1, 4);
+  const std::vector<Delivered> a = render(&pan, make_sequence(1, 8, at_once.path()).get(), 1, 8);
+  const std::vector<Delivered> b = render(&pan, make_sequence(1, 8, in_parts.path()).get(), 1, 8);
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(b[i].stats["stopped"], "stored");
+    EXPECT_EQ(a[i].combined, b[i].combined) << i;
+  }
+}
+
+TEST(C7_Sequence, MoreSamplesAreAddedToStoredFrames) {
+  Pan pan(1.3f);
+  const Folder folder, fresh;
+  render(&pan, make_sequence(1, 3, folder.path()).get(), 1, 3, 4);
+  const std::vector<Delivered> more = render(&pan, make_sequence(1, 3, folder.path()).get(), 1, 3, 12);
+  const std::vector<Delivered> whole = render(&pan, make_sequence(1, 3, fresh.path()).get(), 1, 3, 12);
+  for (size_t i = 0; i < more.size(); ++i) {
+    EXPECT_EQ(more[i].noisy, whole[i].noisy);
+    EXPECT_EQ(more[i].combined, whole[i].combined);
+  }
+}
+
+TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
+  Pan pan(1.3f);
+  const Folder folder;
+  render(&pan, make_sequence(1, 2, folder.path()).get(), 1, 2);
+  const auto text_of = [&](const std::shared_ptr<const Snapshot>& snapshot, GradusSettings settings) -> std::string {
+    try {
+      const auto sequence = make_sequence(1, 2, folder.path());
+      sequence->sample(snapshot, settings);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  GradusSettings settings = with_passes(settings_of(1));
+  EXPECT_EQ(text_of(pan.at(1), settings), "");
+  EXPECT_NE(text_of(pan.at(2), settings).find("shows another scene"), std::string::npos);
+  settings.max_bounces = 1;
+  EXPECT_NE(text_of(pan.at(1), settings).find("f+0000001.base.exr was sampled with other settings"), std::string::npos);
+}
+
+TEST(C8_Sequence, ACutSeparatesWhatLiesBeforeAndAfter) {
+  Pan pan(0.0f);
+  const auto sequence = make_sequence(0, 3);
+  const float quarter = 0.25f * kPi;
+  for (int32_t t = 0; t < 4; ++t) sample(sequence.get(), pan.turned((t < 2 ? 0.0f : quarter) + 0.01f * float(t)), settings_of(t));
+  for (int32_t t = 0; t < 3; ++t) {
+    const Delivered frame = deliver(sequence.get(), t);
+    size_t linked = 0;
+    for (size_t i = 2; i < frame.link.size(); i += 3) linked += frame.link[i] > 0.0f;
+    if (t == 1) {
+      EXPECT_EQ(linked, 0u);
+    } else {
+      EXPECT_GT(linked, frame.link.size() / 3 / 2);
+    }
+  }
+}
+
+// Gradient T is I(φ(i), t + 1) − I(i, t), and 0 in the last frame (contract 4.3).
+TEST(Sequence, GradientTLeadsToTheNextFrame) {
+  Pan pan(3.0f);
+  const auto sequence = make_sequence(0, 2);
+  const std::vector<Delivered> frames = render(&pan, sequence.get(), 0, 2, 64);
+  size_t linked = 0;
+  double difference = 0.0, noise = 0.0;
+  for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
+    if (frames[0].link[3 * i + 2] == 0.0f) continue;
+    ++linked;
+    const auto aside = int(frames[0].link[3 * i]);  // what is nearer goes further
+    EXPECT_LE(aside, -2);
+    EXPECT_GE(aside, -7);
+    EXPECT_EQ(frames[0].link[3 * i + 1], 0.0f);
+    const double seen = double(frames[1].noisy[4 * size_t(int(i) + aside)]) - frames[0].noisy[4 * i];
+    difference += std::pow(seen - frames[0].difference[3 * i], 2);
+    noise += std::pow(seen, 2);
+  }
+  EXPECT_GT(linked, size_t(kSide) * kSide / 2);
+  EXPECT_LT(difference, noise * 2.0);
+  for (const float value : frames[2].link) EXPECT_EQ(value, 0.0f);
+}
+
+TEST(K1_Sequence, CanBeCancelledAndLeavesNothingInTheFolder) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto sequence = make_sequence(1, 4, folder.path());
+  const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
+  task->cancel();
+  task->run();
+  std::string text;
+  EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_CANCELLED);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+// A frame that failed: those before it are delivered without it (I2).
+TEST(I2_Sequence, FramesBeforeAFaultAreDelivered) {
+  Pan pan(1.3f);
+  const auto sequence = make_sequence(1, 10);
+  for (int32_t t = 1; t <= 4; ++t) sample(sequence.get(), pan.at(t), settings_of(t));
+  EXPECT_EQ(sequence->needs(1).last, 9);
+  sequence->end_at(4);
+  EXPECT_EQ(sequence->needs(1).last, 4);
+  for (int32_t t = 1; t <= 4; ++t) EXPECT_GT(deliver(sequence.get(), t).combined.size(), 0u);
+}
+
+}  // namespace
+}  // namespace gradus::test
