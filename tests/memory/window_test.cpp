@@ -6,7 +6,9 @@
 
 #include "base/clock.h"
 #include "memory/allocations.h"
+#include "reconstruct/feature_frame.h"
 #include "reconstruct/space_time/reconstruct_sequence.h"
+#include "reconstruct/space_time/regularized_windows.h"
 #include "reconstruct/space_time/window.h"
 #include "support/statistics.h"
 
@@ -16,7 +18,7 @@ namespace {
 constexpr auto kNever = [] { return false; };
 
 // Rows that are made when they are read: a flat picture with the noise of few samples. Few bright pixels, and differences with heavy tails.
-class NoisySource final : public WindowSource {
+class NoisySource final : public HalvedWindowSource {
  public:
   NoisySource(const WindowSize& size, test::Motion motion) : size_(size) {
     test::Window window(size.width, size.height, 0, size.frames);
@@ -35,6 +37,7 @@ class NoisySource final : public WindowSource {
     uint32_t state = seed(kind, t, y) + 1;
     for (int x = 0; x < size_.width; ++x) out[x] = (kind == RowKind::kPrimal ? 1.5f : 0.03f) * uniform(&state);
   }
+  void read_half_differences(RowKind kind, int t, int y, float* out) const override { read_row(kind, t + 1, y, out); }
   void read_links(int t, int y, int32_t* out) const override {
     std::copy_n(links_[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
   }
@@ -78,6 +81,30 @@ TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
       EXPECT_FALSE(report.hit_cap);
     }
   }
+}
+
+// A frame's samples among it: it is opened when its turn comes.
+TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
+  const WindowSize size = test::full_run() ? full_window() : small_window();
+  test::FeatureFrame description = test::room(size.width, size.height);
+  description.gradients = true;
+  const auto open = [&](int) { return std::make_shared<Frame>(test::make_feature_frame(description)); };
+  const NoisySource source(size, test::Motion::kPan);
+  const int64_t before = live_bytes();
+  forget_peak();
+  const uint64_t start = process_cpu_nanoseconds();
+  uint64_t opening = 0;
+  SolveReport report;
+  RegularizedWindows windows([&](int frame) {
+    const uint64_t begin = process_cpu_nanoseconds();
+    auto opened = open(frame);
+    opening += process_cpu_nanoseconds() - begin;
+    return opened;
+  });
+  windows.reconstruct({0, size.frames - 1}, source, kNever, &report, [](int, const Reconstructed&) {});
+  const double pixels = double(size.width) * size.height * size.frames, bytes = double(peak_bytes() - before) / pixels;
+  std::printf("  %.1f bytes, %.2f µs per pixel and frame\n", bytes, 1e-3 * double(process_cpu_nanoseconds() - start - opening) / pixels);
+  EXPECT_LE(bytes, 160.0);
 }
 
 // What is kept does not grow with the length of a sequence.

@@ -34,6 +34,9 @@ constexpr int kShareRadius = 4, kShareLightRadius = 2;
 // Side of squares that share a bound on outliers.
 constexpr int kSquare = 16;
 
+// Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
+constexpr float kMost = 1e12f;
+
 // Of pixels: their weights in windows, and 1/variance.
 struct PixelWeights {
   Field in_windows, own;
@@ -164,6 +167,12 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
 }
 
 }  // namespace
+
+void normalise(float scale, HalvedImage* image) {
+  for (Field* field : {&image->mean, &image->half_difference}) {
+    for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMost, kMost); });
+  }
+}
 
 FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel) {
   PixelWeights weights = weigh_pixels(image);

@@ -14,6 +14,9 @@ struct HalvedImage {
   Field half_difference;  // (A − B)/2; a guess where a half has no samples
 };
 
+// Brings what was read into that scale, within bounds.
+void normalise(float scale, HalvedImage* image);
+
 class FeatureRegression {
  public:
   FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel);

@@ -23,8 +23,6 @@ constexpr float kSharedDifference = 1.0f;
 constexpr float kLeastError = 1e-12f;
 // How often dark pixels are held more firmly.
 constexpr int kHolds = 2;
-// Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
-constexpr float kMost = 1e12f;
 
 // Where a half has no samples nothing is known of the noise. What differs from the pixels around stands for it: too much where there is
 // detail, and hardly too little elsewhere.
@@ -73,11 +71,6 @@ float typical_noise(const HalvedImage& image) {
     return sum;
   });
   return float(sums[0] / (double(w) * h));
-}
-
-// Into units of the median luminance, within bounds.
-void normalise(float scale, Field* field) {
-  for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMost, kMost); });
 }
 
 // Of colours; alpha is a share, whatever the light.
@@ -156,12 +149,15 @@ Field fuse(const GradientImages& images, float scale, float unknown, Field regre
 }  // namespace
 
 Reconstructed regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
+  return regularize(frame, component, filter_features(read_features(frame)), cancel, report);
+}
+
+Reconstructed regularize(const Frame& frame, int component, const Features& features, const CancelTest& cancel, SolveReport* report) {
   const int w = frame.region.width(), h = frame.region.height();
   HalvedImage image = read_halves(frame, component);
   const float scale = robust_scale(image.mean);
-  normalise(scale, &image.mean);
-  normalise(scale, &image.half_difference);
-  const FeatureRegression regression(filter_features(read_features(frame)), image, cancel);
+  normalise(scale, &image);
+  const FeatureRegression regression(features, image, cancel);
   Field solution = regress(frame, component, regression, cancel);
   if (frame.gradients) {
     GradientImages images = read_images(frame, component);

@@ -54,10 +54,14 @@ void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const 
 
 void FrameWindow::read_row(RowKind kind, int t, int y, float* out) const { read(kind, t, y, &HalvedImages::values, out); }
 
+void FrameWindow::read_half_differences(RowKind kind, int t, int y, float* out) const {
+  read(kind, t, y, &HalvedImages::half_differences, out);
+}
+
 void FrameWindow::read_deviations(RowKind kind, int t, int y, float* out) const {
   const size_t channels = size_t(size().channels);
   std::vector<float> halves(size_t(size().width) * channels);
-  read(kind, t, y, &HalvedImages::half_differences, halves.data());
+  read_half_differences(kind, t, y, halves.data());
   for (size_t x = 0; x < size_t(size().width); ++x) {
     const float* d = halves.data() + x * channels;
     out[x] = std::sqrt((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / 3.0f);

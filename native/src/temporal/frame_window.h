@@ -10,7 +10,7 @@
 
 namespace gradus {
 
-class FrameWindow final : public WindowSource {
+class FrameWindow final : public HalvedWindowSource {
  public:
   // In order, of one size.
   explicit FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frames) : frames_(std::move(frames)) {}
@@ -18,6 +18,7 @@ class FrameWindow final : public WindowSource {
   WindowSize size() const override;
   void read_row(RowKind kind, int t, int y, float* out) const override;
   void read_deviations(RowKind kind, int t, int y, float* out) const override;
+  void read_half_differences(RowKind kind, int t, int y, float* out) const override;
   void read_links(int t, int y, int32_t* out) const override;
 
  private:

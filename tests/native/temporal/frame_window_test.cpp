@@ -35,6 +35,11 @@ class TwoFrames : public testing::Test {
     FrameWindow(frames_).read_row(kind, t, 0, out.data());
     return {out[0], out[3], out[6]};
   }
+  std::vector<float> half_differences(RowKind kind, int t) const {
+    std::vector<float> out(9);
+    FrameWindow(frames_).read_half_differences(kind, t, 0, out.data());
+    return {out[0], out[3], out[6]};
+  }
   std::vector<float> deviations(RowKind kind, int t) const {
     std::vector<float> out(3);
     FrameWindow(frames_).read_deviations(kind, t, 0, out.data());
@@ -63,6 +68,11 @@ TEST_F(TwoFrames, DeviationsAreThoseOfTheRows) {
   EXPECT_NEAR(deviations(RowKind::kPrimal, 1)[0], 0.55f, 1e-6f);
   EXPECT_NEAR(deviations(RowKind::kDt, 0)[0], 0.7f, 1e-6f);
   EXPECT_NEAR(deviations(RowKind::kDxDt, 0)[0], 7.0f, 1e-5f);
+}
+
+TEST_F(TwoFrames, HalfDifferencesAreThoseOfTheRows) {
+  EXPECT_NEAR(half_differences(RowKind::kDt, 0)[1], 0.9f - 0.2f, 1e-6f);
+  EXPECT_TRUE(std::isnan(half_differences(RowKind::kDt, 0)[2]));
 }
 
 }  // namespace

@@ -22,4 +22,16 @@ void Links::set_row(int y, const int32_t* targets, std::vector<bool>* taken) {
   }
 }
 
+Links read_links(const WindowSource& source, int t) {
+  const WindowSize size = source.size();
+  Links links(size.width, size.height);
+  std::vector<int32_t> row(static_cast<size_t>(size.width));
+  std::vector<bool> taken(size_t(size.width) * size_t(size.height), false);
+  for (int y = 0; y < size.height; ++y) {
+    source.read_links(t, y, row.data());
+    links.set_row(y, row.data(), &taken);
+  }
+  return links;
+}
+
 }  // namespace gradus

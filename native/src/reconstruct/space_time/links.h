@@ -8,6 +8,8 @@
 
 namespace gradus {
 
+class WindowSource;
+
 class Links {
  public:
   // Where a pixel goes, relative to itself. Equal for neighbours that stay neighbours.
@@ -39,5 +41,8 @@ class Links {
   int width_, height_;
   std::vector<Shift> shifts_;  // dy and dx, 16 bits each
 };
+
+// From frame t of a window to the next.
+Links read_links(const WindowSource& source, int t);
 
 }  // namespace gradus

@@ -7,17 +7,8 @@ namespace gradus {
 namespace {
 
 std::vector<Links> read_all_links(const WindowSource& source) {
-  const WindowSize size = source.size();
   std::vector<Links> result;
-  std::vector<int32_t> row(static_cast<size_t>(size.width));
-  for (int t = 0; t + 1 < size.frames; ++t) {
-    Links& links = result.emplace_back(size.width, size.height);
-    std::vector<bool> taken(size_t(size.width) * size_t(size.height), false);
-    for (int y = 0; y < size.height; ++y) {
-      source.read_links(t, y, row.data());
-      links.set_row(y, row.data(), &taken);
-    }
-  }
+  for (int t = 0; t + 1 < source.size().frames; ++t) result.push_back(read_links(source, t));
   return result;
 }
 

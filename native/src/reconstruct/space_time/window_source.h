@@ -33,4 +33,11 @@ class WindowSource {
   virtual void read_links(int t, int y, int32_t* out) const = 0;
 };
 
+// With the noise of every channel.
+class HalvedWindowSource : public WindowSource {
+ public:
+  // (A − B)/2 of the two halves of what read_row() gives.
+  virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
+};
+
 }  // namespace gradus

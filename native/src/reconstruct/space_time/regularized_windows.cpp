@@ -1,0 +1,92 @@
+#include "reconstruct/space_time/regularized_windows.h"
+
+#include <utility>
+
+#include "base/error.h"
+#include "reconstruct/feature_filter.h"
+#include "reconstruct/field_values.h"
+#include "reconstruct/regularized.h"
+#include "reconstruct/solver_planes.h"
+#include "reconstruct/space_time/solve_tracks.h"
+
+namespace gradus {
+namespace {
+
+// Squared error of what shows none, in median luminances.
+constexpr float kLeastError = 1e-6f;
+
+// The picture, and its error in one more channel.
+Field to_field(const Frame& frame, const Reconstructed& picture) {
+  const size_t w = size_t(frame.region.width()), channels = size_t(frame.channels);
+  Field field(frame.region.width(), frame.region.height(), frame.channels + 1);
+  for_values(&field, [&](float& value, int x, int y, int c) {
+    const size_t i = size_t(y) * w + size_t(x);
+    value = c < frame.channels ? picture.image[i * channels + size_t(c)] : picture.error[i];
+  });
+  return field;
+}
+
+// Median luminance.
+float scale_of(const Field& picture) {
+  Field colours(picture.width(), picture.height(), 3);
+  for_values(&colours, [&](float& value, int x, int y, int c) { value = picture.row(y, c)[x]; });
+  return robust_scale(colours);
+}
+
+void check_size(const Frame& frame, const WindowSize& size) {
+  const bool same = frame.region.width() == size.width && frame.region.height() == size.height && frame.channels == size.channels;
+  if (!same) throw invalid_argument("a frame has another size than its window");
+}
+
+Reconstructed to_picture(const Field& field) {
+  const size_t pixels = size_t(field.width()) * size_t(field.height()), channels = size_t(field.channels() - 1);
+  Reconstructed picture{std::vector<float>(pixels * channels), std::vector<float>(pixels)};
+  for (size_t c = 0; c < channels; ++c) store_channel(field, int(c), channels, picture.image.data() + c);
+  store_channel(field, int(channels), 1, picture.error.data());
+  return picture;
+}
+
+}  // namespace
+
+void RegularizedWindows::reconstruct(const FrameRange& frames, const HalvedWindowSource& source, const CancelTest& cancel,
+                                     SolveReport* report, const Take& take) {
+  estimates_.erase(estimates_.begin(), estimates_.lower_bound(frames.first));
+  std::vector<Field> pictures, weights;
+  for (int frame = frames.first; frame <= frames.last && !cancel(); ++frame) {
+    const Estimate& estimate = estimated(frame, frame < frames.last, source, frame - frames.first, cancel, report);
+    pictures.push_back(estimate.picture);
+    weights.push_back(estimate.weight);
+  }
+  if (cancel()) return;
+  std::vector<TrackStep> steps;
+  for (int frame = frames.first; frame < frames.last; ++frame) {
+    const Change& change = *estimates_.at(frame).change;
+    steps.push_back({change.links, change.difference, change.weight});
+  }
+  solve_tracks(steps, &pictures, &weights);
+  for (int t = 0; t < frames.count(); ++t) take(t, to_picture(std::exchange(pictures[size_t(t)], {})));
+}
+
+const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const HalvedWindowSource& source, int t,
+                                                                  const CancelTest& cancel, SolveReport* report) {
+  const auto known = estimates_.find(frame);
+  if (known != estimates_.end() && (known->second.change || !changes)) return known->second;
+  const std::shared_ptr<const Frame> samples = open_(frame);
+  check_size(*samples, source.size());
+  const Features features = filter_features(read_features(*samples));
+  Estimate estimate = known != estimates_.end() ? std::move(known->second) : still(*samples, features, cancel, report);
+  if (changes) estimate.change = regress_change(source, t, features, scale_of(estimate.picture), cancel);
+  return estimates_[frame] = std::move(estimate);
+}
+
+RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, const Features& features, const CancelTest& cancel,
+                                                       SolveReport* report) {
+  Estimate estimate;
+  estimate.picture = to_field(samples, regularize(samples, 0, features, cancel, report));
+  const float scale = scale_of(estimate.picture), least = kLeastError * scale * scale;
+  estimate.weight = make_field(samples.region.width(), samples.region.height(),
+                               [&](int x, int y) { return 1.0f / (estimate.picture.row(y, samples.channels)[x] + least); });
+  return estimate;
+}
+
+}  // namespace gradus

@@ -1,0 +1,44 @@
+// REGULARIZED over time. The picture of each frame by itself is the data, and what linked pixels change by from frame to frame, by
+// regression too, joins them along their tracks; each counts by its estimated error. What changes was sampled: it shows at once.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "frame/frame.h"
+#include "reconstruct/reconstructed.h"
+#include "reconstruct/space_time/regress_change.h"
+#include "reconstruct/space_time/window_grid.h"
+
+namespace gradus {
+
+class RegularizedWindows {
+ public:
+  // All samples of a frame, replays too, with features. Asked for once by most frames, twice where a window ended, and not kept.
+  using OpenFrame = std::function<std::shared_ptr<const Frame>(int frame)>;
+  explicit RegularizedWindows(OpenFrame open) : open_(std::move(open)) {}
+
+  // Takes the pictures of a window's frames, in order, t counted from its first. source: their rows in time. Windows come in order: what
+  // two of them share is computed once. Nothing is taken when cancelled.
+  using Take = std::function<void(int t, Reconstructed picture)>;
+  void reconstruct(const FrameRange& frames, const HalvedWindowSource& source, const CancelTest& cancel, SolveReport* report,
+                   const Take& take);
+
+ private:
+  struct Estimate {
+    Field picture;                 // and its error in one more channel
+    Field weight;                  // 1/error
+    std::optional<Change> change;  // to the next frame, where that is in the same window
+  };
+  // changes: the next frame is in the window, too.
+  const Estimate& estimated(int frame, bool changes, const HalvedWindowSource& source, int t, const CancelTest& cancel,
+                            SolveReport* report);
+  static Estimate still(const Frame& samples, const Features& features, const CancelTest& cancel, SolveReport* report);
+
+  OpenFrame open_;
+  std::map<int, Estimate> estimates_;  // by frame
+};
+
+}  // namespace gradus

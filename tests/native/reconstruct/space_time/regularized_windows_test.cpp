@@ -1,0 +1,269 @@
+// REGULARIZED over time: still pictures joined along the tracks of their pixels.
+#include "reconstruct/space_time/regularized_windows.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <numeric>
+
+#include "base/error.h"
+#include "reconstruct/feature_frame.h"
+#include "reconstruct/regularized.h"
+#include "reconstruct/space_time/sequences.h"
+#include "reconstruct/space_time/solve_tracks.h"
+#include "render/resume.h"
+#include "support/threads.h"
+#include "temporal/frame_window.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr int kWidth = 72, kHeight = 50;
+
+// A room that is sampled as temporal frames are: a frame's own random numbers, and those of the frame before. The camera rests; the light
+// is light(t) times as bright.
+struct Shot {
+  int frames = 6, channels = 3;
+  std::function<float(int t)> light = [](int) { return 1.0f; };
+  std::function<bool(int pixel)> linked = [](int) { return true; };
+  bool gradients = false;
+  float replay_sigma = 0.02f;  // how far replays are from having the noise of what they replay
+
+  FeatureFrame description(int t) const {
+    FeatureFrame room = test::room(kWidth, kHeight);
+    for (float& v : room.truth) v *= light(t);
+    room.gradients = gradients;
+    room.sigma = [](size_t) { return 0.0f; };
+    return room;
+  }
+  // The samples of frame t whose random numbers are those of frame `stream`.
+  Frame sampled(int t, int stream) const {
+    Frame frame = make_feature_frame(description(t), channels);
+    std::mt19937 random(unsigned(stream) + 11), other(unsigned(1000 + t));
+    std::normal_distribution<float> noise(0.0f, 0.4f), apart(0.0f, replay_sigma);
+    for (auto& half : frame.components[0].primal) {
+      for (Radiance& pixel : half) {
+        for (int c = 0; c < 3; ++c) pixel[c] += light(t) * noise(random) + (t != stream ? apart(other) : 0.0f);
+        if (channels == 4) pixel[3] = pixel[0] / 8.0f;
+      }
+    }
+    return frame;
+  }
+  std::shared_ptr<const Frame> merged(int t) const {
+    auto frame = std::make_shared<Frame>(sampled(t, t));
+    if (t > 0) merge_frames(frame.get(), sampled(t, t - 1));
+    return frame;
+  }
+  FrameWindow window(const FrameRange& range) const {
+    std::vector<std::shared_ptr<const TemporalFrame>> window;
+    for (int t = range.first; t <= range.last; ++t) {
+      const Frame replay = sampled(t, std::max(t - 1, 0));
+      auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), t > 0 ? &replay : nullptr));
+      frame->links.resize(size_t(kWidth) * kHeight);
+      for (int i = 0; i < kWidth * kHeight; ++i) frame->links[size_t(i)] = linked(i) ? i : kNoLink;
+      window.push_back(std::move(frame));
+    }
+    return FrameWindow(std::move(window));
+  }
+  RegularizedWindows::OpenFrame open() const {
+    return [this](int t) { return merged(t); };
+  }
+  FrameRange all() const { return {0, frames - 1}; }
+};
+
+std::vector<Reconstructed> solve(RegularizedWindows* windows, const Shot& shot, const FrameRange& range) {
+  SolveReport report;
+  std::vector<Reconstructed> pictures;
+  windows->reconstruct(range, shot.window(range), never, &report, [&](int t, Reconstructed picture) {
+    EXPECT_EQ(t, int(pictures.size()));
+    pictures.push_back(std::move(picture));
+  });
+  return pictures;
+}
+std::vector<Reconstructed> solve(const Shot& shot) {
+  RegularizedWindows windows(shot.open());
+  return solve(&windows, shot, shot.all());
+}
+std::vector<Reconstructed> solve_each(const Shot& shot) {
+  SolveReport report;
+  std::vector<Reconstructed> pictures;
+  for (int t = 0; t < shot.frames; ++t) pictures.push_back(regularize(*shot.merged(t), 0, never, &report));
+  return pictures;
+}
+
+double error_of(const Shot& shot, const std::vector<Reconstructed>& pictures) {
+  double squares = 0.0;
+  for (int t = 0; t < shot.frames; ++t) squares += std::pow(rms_difference(pictures[size_t(t)].image, shot.description(t).truth), 2);
+  return squares / shot.frames;
+}
+double flicker_of(const std::vector<Reconstructed>& pictures) {
+  double squares = 0.0;
+  for (size_t t = 1; t < pictures.size(); ++t) squares += std::pow(rms_difference(pictures[t].image, pictures[t - 1].image), 2);
+  return squares / double(pictures.size() - 1);
+}
+
+TEST(B2_Tracks, EqualTheDenseSolution) {
+  constexpr int w = 7, h = 5, frames = 4, pixels = w * h, unknowns = pixels * frames;
+  for (const Motion motion : kMotions) {
+    Window window(w, h, 2, frames);
+    link(&window, motion);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(0.01f, 2.0f);
+    const auto random_fields = [&](int count, int channels) {
+      std::vector<Field> fields(size_t(count), Field(w, h, channels));
+      for (Field& field : fields) {
+        for (int y = 0; y < h; ++y)
+          for (int c = 0; c < channels; ++c)
+            for (int x = 0; x < w; ++x) field.row(y, c)[x] = uniform(random);
+      }
+      return fields;
+    };
+    std::vector<Field> values = random_fields(frames, 2), weights = random_fields(frames, 1);
+    const std::vector<Field> differences = random_fields(frames - 1, 1), couplings = random_fields(frames - 1, 1);
+    std::vector<Links> links;
+    for (int t = 0; t + 1 < frames; ++t) links.push_back(read_links(window, t));
+    for (const int channel : {0, 1}) {  // of the second one there are no differences: they are 0
+      Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
+      Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+      for (int i = 0; i < unknowns; ++i) {
+        const int t = i / pixels, y = i % pixels / w, x = i % w;
+        const double weight = weights[size_t(t)].row(y)[x];
+        matrix(i, i) += weight;
+        right[i] += weight * values[size_t(t)].row(y, channel)[x];
+        const int there = window.links[size_t(t)][size_t(i % pixels)];
+        if (t + 1 == frames || there == kNoLink) continue;
+        const int j = (t + 1) * pixels + there;
+        const double c = couplings[size_t(t)].row(y)[x], d = channel == 0 ? differences[size_t(t)].row(y)[x] : 0.0;
+        matrix(i, i) += c;
+        matrix(j, j) += c;
+        matrix(i, j) -= c;
+        matrix(j, i) -= c;
+        right[i] -= c * d;
+        right[j] += c * d;
+      }
+      const Eigen::VectorXd expected = matrix.ldlt().solve(right);
+      std::vector<Field> x = values, used = weights;
+      std::vector<TrackStep> steps;
+      for (size_t t = 0; t + 1 < frames; ++t) steps.push_back({links[t], differences[t], couplings[t]});
+      solve_tracks(steps, &x, &used);
+      for (int i = 0; i < unknowns; ++i) {
+        ASSERT_NEAR(x[size_t(i / pixels)].row(i % pixels / w, channel)[i % w], expected[i], 1e-4) << i << ", motion " << int(motion);
+      }
+    }
+  }
+}
+
+TEST(B2_RegularizedWindow, HasLessErrorAndFarLessFlickerThanItsFrames) {
+  for (const bool gradients : {false, true}) {
+    Shot shot;
+    shot.gradients = gradients;
+    const std::vector<Reconstructed> joined = solve(shot), each = solve_each(shot);
+    EXPECT_LT(error_of(shot, joined), 0.6 * error_of(shot, each));
+    EXPECT_LT(flicker_of(joined), 0.1 * flicker_of(each));
+  }
+}
+
+// A still scene whose replays have the same noise is the same picture in all frames.
+TEST(B2_RegularizedWindow, OfAStillSceneDoesNotFlicker) {
+  Shot shot;
+  shot.replay_sigma = 0.0f;
+  const std::vector<Reconstructed> pictures = solve(shot);
+  EXPECT_LT(std::sqrt(flicker_of(pictures)), 2e-3);
+}
+
+TEST(B2_RegularizedWindow, WithoutLinksPixelsKeepTheirStillPicture) {
+  Shot shot;
+  shot.frames = 3;
+  shot.linked = [](int pixel) { return pixel % kWidth >= kWidth / 2; };
+  const std::vector<Reconstructed> joined = solve(shot), each = solve_each(shot);
+  for (size_t t = 0; t < joined.size(); ++t) {
+    int changed = 0;
+    for (size_t i = 0; i < each[t].image.size(); ++i) {
+      const bool linked = shot.linked(int(i / 3));
+      if (linked) {
+        changed += joined[t].image[i] != each[t].image[i];
+        continue;
+      }
+      ASSERT_EQ(joined[t].image[i], each[t].image[i]);
+      ASSERT_EQ(joined[t].error[i / 3], each[t].error[i / 3]);
+    }
+    EXPECT_GT(changed, kWidth * kHeight);
+  }
+}
+
+// No lag and no ghost: what the light does was sampled.
+TEST(C5_RegularizedWindow, ALampThatIsSwitchedShowsAtOnce) {
+  for (const auto& [before, after] : {std::pair(1.0f, 0.1f), std::pair(0.1f, 1.0f)}) {
+    Shot shot;
+    shot.light = [before = before, after = after](int t) { return t < 3 ? before : after; };
+    const std::vector<Reconstructed> pictures = solve(shot), each = solve_each(shot);
+    for (int t = 0; t < shot.frames; ++t) {
+      const std::vector<float> truth = shot.description(t).truth;
+      EXPECT_NEAR(mean(pictures[size_t(t)].image) / mean(truth), 1.0, 0.02) << t;
+      EXPECT_LT(rms_difference(pictures[size_t(t)].image, truth), 1.2 * rms_difference(each[size_t(t)].image, truth)) << t;
+    }
+  }
+}
+
+// Alpha, which is an eighth of red in these frames, goes through the weights of the colours.
+TEST(B2_RegularizedWindow, AlphaGoesThroughTheSameWeights) {
+  Shot shot;
+  shot.channels = 4;
+  shot.frames = 3;
+  shot.light = [](int t) { return 1.0f + 0.2f * float(t); };
+  for (const Reconstructed& picture : solve(shot)) {
+    for (size_t i = 0; i < picture.image.size(); i += 4) ASSERT_NEAR(8.0f * picture.image[i + 3], picture.image[i], 4e-3f) << i / 4;
+  }
+}
+
+// Frames that two windows share are reconstructed once; the second one only reads the features of the frame where the first ended. What
+// comes of it is what a window by itself has.
+TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
+  Shot shot;
+  shot.frames = 8;
+  std::map<int, int> opened;
+  RegularizedWindows both([&](int t) {
+    ++opened[t];
+    return shot.merged(t);
+  });
+  solve(&both, shot, {0, 4});
+  const std::vector<Reconstructed> second = solve(&both, shot, {3, 7});
+  EXPECT_EQ(opened, (std::map<int, int>{{0, 1}, {1, 1}, {2, 1}, {3, 1}, {4, 2}, {5, 1}, {6, 1}, {7, 1}}));
+  RegularizedWindows alone(shot.open());
+  const std::vector<Reconstructed> expected = solve(&alone, shot, {3, 7});
+  ASSERT_EQ(second.size(), expected.size());
+  for (size_t t = 0; t < expected.size(); ++t) {
+    EXPECT_EQ(second[t].image, expected[t].image) << t;
+    EXPECT_EQ(second[t].error, expected[t].error) << t;
+  }
+}
+
+TEST(B2_RegularizedWindow, HasTheSameBitsForAnyNumberOfThreads) {
+  Shot shot;
+  shot.frames = 3;
+  expect_same_bits_for_any_number_of_threads([&] { return solve(shot).back().image; });
+}
+
+TEST(B2_RegularizedWindow, TakesNothingWhenCancelled) {
+  Shot shot;
+  shot.frames = 2;
+  SolveReport report;
+  RegularizedWindows windows(shot.open());
+  windows.reconstruct(
+      shot.all(), shot.window(shot.all()), [] { return true; }, &report, [](int, const Reconstructed&) { ADD_FAILURE(); });
+}
+
+TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
+  Shot shot;
+  shot.frames = 2;
+  Shot other = shot;
+  other.channels = 4;
+  SolveReport report;
+  RegularizedWindows windows(other.open());
+  EXPECT_THROW(windows.reconstruct(shot.all(), shot.window(shot.all()), never, &report, [](int, const Reconstructed&) {}), Error);
+}
+
+}  // namespace
+}  // namespace gradus
