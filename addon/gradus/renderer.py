@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import time
 from ctypes import byref
 from typing import Any
 
 import bpy
 
-from . import compat, cycles_settings, frame_store, native, options, output, passes, pixels, settings, stats, store
+from . import compat, cycles_settings, frame_store, native, options, output, passes, pixels, settings, simulation, stats, store
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
@@ -118,7 +119,32 @@ class Job:
             limit_preview(self.settings, host_value("preview_samples", self.scene, self.overrides))
         self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
         self.warn(cycles_settings.warnings(self.scene, {name for name, _ in self.overrides.native}))
+        self.show_simulations()
         self.export(self.views[0])
+
+    def show_simulations(self) -> None:
+        """Those that are not baked, in an animation: Blender's own way to a frame does not compute them."""
+        if self.is_preview or not self.engine.is_animation:
+            return
+        simulations = simulation.of_scene(self.depsgraph.scene)
+        if simulations is None:
+            return
+        if not bpy.app.background:
+            # The interface draws what the scene's own depsgraph has: it must not be stepped under it.
+            names = simulations.names
+            self.warn(
+                [f"{len(names)} simulations are not baked and may stand still, the first is '{names[0]}': bake them before rendering"]
+            )
+            return
+        frame = self.scene.frame_current
+        with self.clock.phase("export"):
+            simulations.show(frame, self.frames_beyond())
+            self.engine.frame_set(frame, subframe=0.0)
+
+    def frames_beyond(self) -> int:
+        """How far an export looks beyond its frame."""
+        shutter = shutter_of(self.scene, self.layer)
+        return max(int(self.wants_vectors()), math.ceil(shutter.close) if shutter is not None else 0)
 
     def export(self, view: str) -> None:
         if view:

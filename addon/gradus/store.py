@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from . import color, compat, native
+from . import color, compat, native, simulation
 from .export import Exporter
 
 FINAL, PREVIEW, VIEWPORT = "FINAL", "PREVIEW", "VIEWPORT"
@@ -165,12 +165,14 @@ def clear() -> None:
 @bpy.app.handlers.persistent
 def _after_render(scene: Any, *_: Any) -> None:
     """An animation keeps its scene between frames, also without persistent data; after its end the memory goes back."""
+    simulation.clear()
     if scene is None or not scene.render.use_persistent_data:
         release_kind(FINAL)
 
 
 @bpy.app.handlers.persistent
 def _before_load(*_: Any) -> None:
+    simulation.forget()
     release_kind(FINAL)
     summaries.clear()
 

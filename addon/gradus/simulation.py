@@ -1,0 +1,145 @@
+"""Simulations that are not baked: right in a frame only when the scene has passed the frames before, one by one.
+
+What was found in 3.4, 4.5 and 5.0, and is relied on here:
+- Rigid bodies and simulation zones are computed by the scene's own depsgraph alone (`scene.frame_set`), from the frame before; that of
+  the engine (`engine.frame_set`) reads what is cached. An animated render never moves the scene's own depsgraph.
+- Cloth, soft bodies and particles are computed by both, into one cache. A visit to their first frame makes Blender forget that the cache
+  is exact, and the next read drops what lies behind; a cache that counts as baked is left alone. So it does, except while we step.
+- The depsgraph of a render that begins later has put its own guess into the cache of a cloth before we are asked: a tag drops it.
+- Blender reads what is not evaluated (the exposure of saved pictures, the file name) from the scene after the render: it must be at the
+  frame again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import bpy
+
+_DEFORMING = frozenset({"CLOTH", "SOFT_BODY"})
+
+
+class Simulations:
+    """The simulations of a scene, which this steps; several view layers and views share it."""
+
+    def __init__(self, scene: Any) -> None:
+        self.scene = scene
+        self.names: list[str] = []
+        self._first = scene.frame_start
+        self._caches: list[Any] = []  # those that count as baked between steps
+        self._guessed: list[Any] = []  # objects whose caches may hold a guess
+        self._computed: int | None = None  # last frame up to which all are computed
+        self._find()
+
+    def _find(self) -> None:
+        world = self.scene.rigidbody_world
+        if world is not None and world.enabled and world.collection is not None and not _is_kept(world.point_cache):
+            self._add("Rigid Body World", world.point_cache.frame_start)
+        for obj in self.scene.objects:
+            for modifier in obj.modifiers:
+                if modifier.show_render:
+                    self._find_in(obj, modifier)
+
+    def _find_in(self, obj: Any, modifier: Any) -> None:
+        name = f"{obj.name}, {modifier.name}"
+        for cache in _point_caches(modifier):
+            if not _is_kept(cache):
+                self._add(name, cache.frame_start)
+                if modifier.type in _DEFORMING or modifier.type == "PARTICLE_SYSTEM":
+                    self._caches.append(cache)
+                if modifier.type in _DEFORMING:
+                    self._guessed.append(obj)
+        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" and modifier.domain_settings.cache_type == "REPLAY":
+            self._add(name, modifier.domain_settings.cache_frame_start)
+        # Blender does not tell which zones are baked; to step those costs time alone.
+        if modifier.type == "NODES" and _has_zone(modifier.node_group, set()):
+            self._add(name, self.scene.frame_start)
+
+    def _add(self, name: str, first: int) -> None:
+        self.names.append(name)
+        self._first = min(self._first, first)
+
+    def show(self, frame: int, beyond: int = 0) -> None:
+        """Moves the scene to a frame, with the simulations computed `beyond` it: an export that visits the frames around reads those."""
+        self._compute(frame + max(beyond, 1))  # the second frame of a simulation is what puts the first into the cache
+        if self.scene.frame_current != frame:
+            self.scene.frame_set(frame)
+
+    def _compute(self, last: int) -> None:
+        if self._computed is not None and last <= self._computed:
+            return
+        self._count_as_baked(False)
+        if self._computed is None:
+            for obj in self._guessed:
+                obj.update_tag(refresh={"OBJECT"})
+            self._computed = self._first
+        # Also where the scene seems to be there: the caches have been read at other frames meanwhile.
+        self.scene.frame_set(self._computed)
+        for frame in range(self._computed + 1, last + 1):
+            self.scene.frame_set(frame)
+            self._computed = frame
+        self._count_as_baked(True)
+
+    def _count_as_baked(self, wanted: bool) -> None:
+        operator = bpy.ops.ptcache.bake_from_cache if wanted else bpy.ops.ptcache.free_bake
+        for cache in self._caches:
+            if cache.is_baked != wanted:
+                with bpy.context.temp_override(point_cache=cache):
+                    operator()
+
+    def free(self) -> None:
+        """The caches are the user's again."""
+        if self._computed is not None:
+            self._count_as_baked(False)
+
+
+def _is_kept(cache: Any) -> bool:
+    """Whether it is read from somewhere, whatever the depsgraph."""
+    return cache.is_baked or cache.use_disk_cache or cache.use_external
+
+
+def _point_caches(modifier: Any) -> Iterator[Any]:
+    if modifier.type in _DEFORMING:
+        yield modifier.point_cache
+    elif modifier.type == "PARTICLE_SYSTEM":
+        system = modifier.particle_system
+        if system.settings.type == "EMITTER" or system.use_hair_dynamics:
+            yield system.point_cache
+    elif modifier.type == "DYNAMIC_PAINT" and modifier.canvas_settings is not None:
+        yield from (surface.point_cache for surface in modifier.canvas_settings.canvas_surfaces)
+
+
+def _has_zone(group: Any, seen: set[int]) -> bool:
+    """Whether a node group, or one inside it, simulates. From 3.6 on."""
+    if group is None or group.as_pointer() in seen:
+        return False
+    seen.add(group.as_pointer())
+    return any(
+        node.bl_idname == "GeometryNodeSimulationOutput" or (node.type == "GROUP" and _has_zone(node.node_tree, seen))
+        for node in group.nodes
+    )
+
+
+# ------------------------------------------------------------------------------------------------ of the running job
+
+_found: dict[str, Simulations] = {}
+
+
+def of_scene(scene: Any) -> Simulations | None:
+    """The simulations of a scene that are not baked, looked for once in a job; None if there are none."""
+    if scene.name_full not in _found:
+        _found[scene.name_full] = Simulations(scene)
+    found = _found[scene.name_full]
+    return found if found.names else None
+
+
+def clear() -> None:
+    """The job has ended."""
+    while _found:
+        _found.popitem()[1].free()
+
+
+def forget() -> None:
+    """A file is loaded: there is nothing to give back."""
+    _found.clear()

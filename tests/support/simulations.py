@@ -1,0 +1,95 @@
+"""Small scenes with one simulation each that is not baked, and where things are in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+Places = dict[str, tuple[float, ...]]
+
+
+def _new(name: str, mesh: bpy.types.Mesh, at: tuple[float, float, float]) -> bpy.types.Object:
+    obj = bpy.data.objects.new(name, mesh)
+    obj.location = at
+    bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    return obj
+
+
+def _grid(cuts: int) -> bpy.types.Mesh:
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=cuts, y_subdivisions=cuts, size=2.0)
+    obj = bpy.context.object
+    mesh = obj.data
+    bpy.data.objects.remove(obj)
+    return mesh
+
+
+def rigid_body() -> None:
+    _new("Falling", _grid(1), (0.0, 0.0, 5.0))
+    bpy.ops.rigidbody.object_add()
+
+
+def cloth() -> None:
+    obj = _new("Cloth", _grid(6), (0.0, 0.0, 5.0))
+    obj.vertex_groups.new(name="Pinned").add([0, 1], 1.0, "ADD")
+    obj.modifiers.new("Cloth", "CLOTH").settings.vertex_group_mass = "Pinned"
+
+
+def soft_body() -> None:
+    _new("Soft", _grid(4), (0.0, 0.0, 5.0)).modifiers.new("Softbody", "SOFT_BODY").settings.use_goal = False
+
+
+def particles() -> None:
+    emitter = _new("Emitter", _grid(1), (0.0, 0.0, 2.0))
+    settings = emitter.modifiers.new("Particles", "PARTICLE_SYSTEM").particle_system.settings
+    settings.count, settings.frame_start, settings.frame_end, settings.lifetime = 4, 1.0, 1.0, 100.0
+    settings.render_type, settings.particle_size = "OBJECT", 0.2
+    settings.instance_object = _new("Particle", _grid(1), (50.0, 0.0, 0.0))
+
+
+def simulation_zone() -> None:
+    group = bpy.data.node_groups.new("Rising", "GeometryNodeTree")
+    for kind in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=kind, socket_type="NodeSocketGeometry")
+    names = ("NodeGroupInput", "GeometryNodeSimulationInput", "GeometryNodeSetPosition", "GeometryNodeSimulationOutput", "NodeGroupOutput")
+    nodes = [group.nodes.new(name) for name in names]
+    nodes[1].pair_with_output(nodes[3])
+    nodes[2].inputs["Offset"].default_value = (0.0, 0.0, 0.1)
+    for first, second in zip(nodes, nodes[1:], strict=False):
+        group.links.new(first.outputs["Geometry"], second.inputs["Geometry"])
+    _new("Rising", _grid(1), (0.0, 0.0, 0.0)).modifiers.new("Nodes", "NODES").node_group = group
+
+
+KINDS: dict[str, Callable[[], None]] = {
+    "rigid body": rigid_body,
+    "cloth": cloth,
+    "soft body": soft_body,
+    "particles": particles,
+    "simulation zone": simulation_zone,
+}
+
+
+def exists(kind: str) -> bool:
+    return kind != "simulation zone" or bpy.app.version >= (4, 1, 0)  # the interface of node groups, of which we make one
+
+
+def places(depsgraph: Any) -> Places:
+    """Where every instance is, and where its vertices are on average."""
+    found = {}
+    for item in depsgraph.object_instances:
+        if item.object.type == "MESH":
+            vertices = item.object.data.vertices
+            middle = [sum(vertex.co[axis] for vertex in vertices) / len(vertices) for axis in range(3)]
+            found[f"{item.object.name} {list(item.persistent_id)[:1]}"] = (*item.matrix_world.translation, *middle)
+    return found
+
+
+def in_order(scene: bpy.types.Scene, first: int, last: int) -> dict[int, Places]:
+    """What the frames show when the scene is stepped through all of them."""
+    found = {}
+    for frame in range(first, last + 1):
+        scene.frame_set(frame)
+        found[frame] = places(bpy.context.evaluated_depsgraph_get())
+    return found
