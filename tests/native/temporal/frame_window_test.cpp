@@ -24,6 +24,8 @@ class TwoFrames : public testing::Test {
   TwoFrames() {
     auto first = std::make_shared<TemporalFrame>(), second = std::make_shared<TemporalFrame>();
     first->base = {row_of({1, 2, 3}, {10, 20, 0}), row_of({0.1f, 0.2f, 0.3f}, {1, 2, 0})};
+    first->replay = first->base;  // of the first frame: a stream of its own
+    first->replay_share = {0.5f, 0.5f, 0.5f};
     first->links = {1, 2, kNoLink};  // the picture moves to the right by a pixel
     second->base = {row_of({4, 5, 6}, {40, kAbsentPair, 0}), row_of({0.4f, 0.5f, 0.6f}, {4, 5, 0})};
     second->replay = {row_of({7, 8, 9}, {70, 80, 0}), row_of({0.7f, 0.8f, 0.9f}, {7, 8, 0})};

@@ -53,14 +53,13 @@ struct Shot {
   }
   std::shared_ptr<const Frame> merged(int t) const {
     auto frame = std::make_shared<Frame>(sampled(t, t));
-    if (t > 0) merge_frames(frame.get(), sampled(t, t - 1));
+    add_sums(frame.get(), sampled(t, t - 1));
     return frame;
   }
   FrameWindow window(const FrameRange& range) const {
     std::vector<std::shared_ptr<const TemporalFrame>> window;
     for (int t = range.first; t <= range.last; ++t) {
-      const Frame replay = sampled(t, std::max(t - 1, 0));
-      auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), t > 0 ? &replay : nullptr));
+      auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
       frame->links.resize(size_t(kWidth) * kHeight);
       for (int i = 0; i < kWidth * kHeight; ++i) frame->links[size_t(i)] = linked(i) ? i : kNoLink;
       window.push_back(std::move(frame));
