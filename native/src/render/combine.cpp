@@ -11,17 +11,6 @@ namespace {
 
 constexpr double kMaxFloat = std::numeric_limits<float>::max();
 
-// Error of the region, as of what the film's exposure makes of the image.
-std::vector<float> crop_error(const Frame& frame, const std::vector<float>& error, const Region& region) {
-  const double scale = double(frame.settings.film_exposure) * frame.settings.film_exposure;
-  std::vector<float> result;
-  result.reserve(size_t(region.area()));
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x) result.push_back(float(std::min(kMaxFloat, scale * error[frame.index(x, y)])));
-  }
-  return result;
-}
-
 }  // namespace
 
 std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
@@ -51,6 +40,16 @@ std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, con
     }
   }
   return rgba;
+}
+
+std::vector<float> crop_error(const Frame& frame, const std::vector<float>& error, const Region& region) {
+  const double scale = double(frame.settings.film_exposure) * frame.settings.film_exposure;
+  std::vector<float> result;
+  result.reserve(size_t(region.area()));
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    for (int32_t x = region.x0; x < region.x1; ++x) result.push_back(float(std::min(kMaxFloat, scale * error[frame.index(x, y)])));
+  }
+  return result;
 }
 
 }  // namespace gradus

@@ -55,18 +55,8 @@ void FrameDelivery::render() {
 }
 
 std::shared_ptr<Frame> FrameDelivery::load() {
-  const SequenceFolder& folder = sequence_->folder_;
-  const auto base = folder.load(number_, FramePart::kBase), offset = folder.load(number_, FramePart::kOffset);
-  if (base->count[0].size() != offset->count[0].size() || base->channels != offset->channels ||
-      base->passes.size() != offset->passes.size() || sampling_key(base->settings) != sampling_key(offset->settings)) {
-    throw invalid_argument("stored frame " + folder.path(number_, FramePart::kBase) + " and its offset do not belong together");
-  }
-  auto frame = std::make_shared<Frame>(*base);
-  add_sums(frame.get(), *offset);
-  frame->frame_number = number_;
-  frame->settings.frame = number_;
-  frame->settings.samples += offset->settings.samples;
-  frame->shared = {};
+  double offset_samples = 0.0;
+  std::shared_ptr<Frame> frame = sequence_->open_frame(number_, &offset_samples);
   if (changed_) {
     frame->settings.reconstruction = changed_->reconstruction;
     frame->settings.reconstruction_alpha = changed_->reconstruction_alpha;
@@ -80,8 +70,8 @@ std::shared_ptr<Frame> FrameDelivery::load() {
     record_.stats.stopped = "stored";
   }
   record_.plan.delivered = delivered_region(*frame);
-  record_.stats.offset_samples = mean_samples(*offset);
-  read_differences_over_time(*base);
+  record_.stats.offset_samples = offset_samples;
+  read_differences_over_time(*frame);
   return frame;
 }
 
@@ -90,11 +80,13 @@ void FrameDelivery::reconstruct() {
   const CancelTest cancel = [this] { return is_stopped(); };
   const GradusSettings& settings = frame_->settings;
   SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha});
-  const std::vector<float> image = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
+  const Reconstructed picture = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
   stop_if_asked();
-  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, image, delivered());
+  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, picture.image, delivered()), error;
+  if (wants(settings.passes, GRADUS_PASS_ERROR) && !picture.error.empty()) error = crop_error(*frame_, picture.error, delivered());
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
+  error_ = std::move(error);
 }
 
 void FrameDelivery::denoise() {
@@ -116,27 +108,27 @@ void FrameDelivery::denoise() {
   combined_ = std::move(rgba);
 }
 
-void FrameDelivery::read_differences_over_time(const Frame& base) {
+void FrameDelivery::read_differences_over_time(const Frame& frame) {
   const Region region = delivered();
   difference_.assign(3 * size_t(region.area()), 0.0f);
   link_ = difference_;
   const int place = sequence_->place_of(number_) + 1;
   const int32_t next = sequence_->frame_at(place);
-  const bool wanted = wants(base.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(base.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
+  const bool wanted = wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
   if (!wanted || next > sequence_->needs(number_).last || !sequence_->folder_.holds(next)) return;
   const std::unique_ptr<WindowSource> window = sequence_->open_window({place - 1, place});
-  const int width = base.region.width(), channels = base.channels;
+  const int width = frame.region.width(), channels = frame.channels;
   std::vector<float> differences(size_t(width) * size_t(channels));
   std::vector<int32_t> links(static_cast<size_t>(width));
   size_t out = 0;
   for (int32_t y = region.y0; y < region.y1; ++y) {
-    const int row = y - base.region.y0;
+    const int row = y - frame.region.y0;
     window->read_row(RowKind::kDt, 0, row, differences.data());
     window->read_links(0, row, links.data());
     for (int32_t x = region.x0; x < region.x1; ++x, out += 3) {
-      const auto i = size_t(x - base.region.x0);
+      const auto i = size_t(x - frame.region.x0);
       if (links[i] == kNoLink || !is_finite(differences[i * size_t(channels)])) continue;
-      for (size_t c = 0; c < 3; ++c) difference_[out + c] = base.settings.film_exposure * differences[i * size_t(channels) + c];
+      for (size_t c = 0; c < 3; ++c) difference_[out + c] = frame.settings.film_exposure * differences[i * size_t(channels) + c];
       link_[out] = float(links[i] % width - int32_t(i));
       link_[out + 1] = float(links[i] / width - row);
       link_[out + 2] = 1.0f;

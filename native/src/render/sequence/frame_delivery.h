@@ -26,7 +26,7 @@ class FrameDelivery final : public RenderTask {
   void reconstruct();
   void denoise();
   // Passes Gradient T and Gradient T Link.
-  void read_differences_over_time(const Frame& base);
+  void read_differences_over_time(const Frame& frame);
 
   const std::shared_ptr<Sequence> sequence_;
   const int32_t number_;

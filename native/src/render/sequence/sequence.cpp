@@ -1,15 +1,18 @@
 #include "render/sequence/sequence.h"
 
 #include "base/error.h"
+#include "render/resume.h"
 #include "render/sequence/frame_delivery.h"
 #include "render/sequence/frame_sampling.h"
+#include "settings/options.h"
 #include "temporal/frame_window.h"
 
 namespace gradus {
 
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   const uint32_t r = settings.reconstruction;
-  const bool solves = r == GRADUS_RECONSTRUCTION_L2 || r == GRADUS_RECONSTRUCTION_L1 || r == GRADUS_RECONSTRUCTION_WEIGHTED;
+  const bool solves = r == GRADUS_RECONSTRUCTION_L2 || r == GRADUS_RECONSTRUCTION_L1 || r == GRADUS_RECONSTRUCTION_WEIGHTED ||
+                      r == GRADUS_RECONSTRUCTION_REGULARIZED;
   *why_not = settings.integrator == GRADUS_INTEGRATOR_PATH ? "the integrator is path"
              : !solves                                     ? "the reconstruction does not take differences over time"
              : settings.samples < 2                        ? "there is one sample per pixel"
@@ -86,17 +89,35 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
   return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
 }
 
-std::unique_ptr<WindowSource> Sequence::open_window(const FrameRange& places) const {
+std::unique_ptr<HalvedWindowSource> Sequence::open_window(const FrameRange& places) const {
   const auto part = [&](FramePart which) {
     return [this, &places, which](int i) { return folder_.load(frame_at(places.first + i), which); };
   };
   return std::make_unique<FrameWindow>(make_temporal_frames(places.count(), part(FramePart::kBase), part(FramePart::kOffset)));
 }
 
+std::shared_ptr<Frame> Sequence::open_frame(int32_t frame, double* offset_samples) const {
+  const auto base = folder_.load(frame, FramePart::kBase), offset = folder_.load(frame, FramePart::kOffset);
+  if (base->count[0].size() != offset->count[0].size() || base->channels != offset->channels ||
+      base->passes.size() != offset->passes.size() || sampling_key(base->settings) != sampling_key(offset->settings)) {
+    throw invalid_argument("stored frame " + folder_.path(frame, FramePart::kBase) + " and its offset do not belong together");
+  }
+  if (offset_samples != nullptr) *offset_samples = mean_samples(*offset);
+  auto merged = std::make_shared<Frame>(*base);
+  add_sums(merged.get(), *offset);
+  merged->frame_number = frame;
+  merged->settings.frame = frame;
+  merged->settings.samples += offset->settings.samples;
+  merged->shared = {};
+  return merged;
+}
+
 SequencePictures* Sequence::pictures(const SequenceMethod& method) {
   if (!pictures_ || !(pictures_->method() == method)) {
-    pictures_ = std::make_unique<SequencePictures>(
-        places(), settings_.windows, [this](const FrameRange& window) { return open_window(window); }, method);
+    pictures_ = std::make_unique<SequencePictures>(places(), settings_.windows,
+                                                   SequenceInput{[this](const FrameRange& window) { return open_window(window); },
+                                                                 [this](int place) { return open_frame(frame_at(place)); }},
+                                                   method);
     if (last_ < settings_.last) pictures_->end_at(place_of(last_));
   }
   return pictures_.get();

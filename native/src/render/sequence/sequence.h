@@ -55,7 +55,9 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int32_t frame_at(int place) const;
   // The frames that windows may take: those that are rendered, and those beside them that the folder holds.
   FrameRange places() const;
-  std::unique_ptr<WindowSource> open_window(const FrameRange& places) const;
+  std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places) const;
+  // All samples of a stored frame: its own and the replays, of which `offset_samples` is told how many a pixel has.
+  std::shared_ptr<Frame> open_frame(int32_t frame, double* offset_samples = nullptr) const;
   SequencePictures* pictures(const SequenceMethod& method);
   // Those that no picture to come needs.
   void forget_before(int32_t frame);

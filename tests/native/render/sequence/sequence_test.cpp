@@ -111,11 +111,16 @@ void sample(Sequence* sequence, const std::shared_ptr<const Snapshot>& snapshot,
   run(sequence->sample(snapshot, with_passes(settings)).get());
 }
 
-std::vector<Delivered> render(Pan* pan, Sequence* sequence, int32_t first, int32_t last, uint32_t samples = 8) {
+std::vector<Delivered> render(Pan* pan, Sequence* sequence, int32_t first, int32_t last, uint32_t samples = 8,
+                              uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   std::vector<Delivered> frames;
   int32_t sampled = first;
   for (int32_t frame = first; frame <= last; ++frame) {
-    for (; sampled <= sequence->needs(frame).last; ++sampled) sample(sequence, pan->at(sampled), settings_of(sampled, samples));
+    for (; sampled <= sequence->needs(frame).last; ++sampled) {
+      GradusSettings settings = settings_of(sampled, samples);
+      settings.reconstruction = reconstruction;
+      sample(sequence, pan->at(sampled), settings);
+    }
     frames.push_back(deliver(sequence, frame));
   }
   return frames;
@@ -145,7 +150,7 @@ TEST(C3_Sequence, DeliversEveryFrameFromFirstToLast) {
 TEST(C4_Sequence, FlickersLessThanItsSamples) {
   Pan pan(0.35f, Scenario::World);
   const std::vector<Delivered> truth = render(&pan, make_sequence(0, 9).get(), 0, 9, 256);
-  const std::vector<Delivered> frames = render(&pan, make_sequence(0, 9).get(), 0, 9, 8);
+  std::vector<Delivered> frames;
   // Energy of errors, and of their changes, of one pass.
   const auto energies = [&](std::vector<float> Delivered::*pass) {
     double error = 0.0, flicker = 0.0;
@@ -159,11 +164,15 @@ TEST(C4_Sequence, FlickersLessThanItsSamples) {
     }
     return std::pair(error, flicker);
   };
-  const auto [error_of_samples, flicker_of_samples] = energies(&Delivered::noisy);
-  const auto [error, flicker] = energies(&Delivered::combined);
-  EXPECT_LT(error, 0.3 * error_of_samples);
-  EXPECT_LT(flicker, 0.25 * flicker_of_samples);
-  std::printf("  error %.3f, flicker %.3f of the samples'\n", error / error_of_samples, flicker / flicker_of_samples);
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+    frames = render(&pan, make_sequence(0, 9).get(), 0, 9, 8, reconstruction);
+    const auto [error_of_samples, flicker_of_samples] = energies(&Delivered::noisy);
+    const auto [error, flicker] = energies(&Delivered::combined);
+    EXPECT_LT(error, 0.3 * error_of_samples);
+    EXPECT_LT(flicker, 0.25 * flicker_of_samples);
+    std::printf("  reconstruction %u: error %.3f, flicker %.3f of the samples'\n", reconstruction, error / error_of_samples,
+                flicker / flicker_of_samples);
+  }
 }
 
 TEST(I8_Sequence, WhatDoesNotChangeIsSampledOnce) {
@@ -291,6 +300,30 @@ TEST(K1_Sequence, CanBeCancelledAndLeavesNothingInTheFolder) {
   std::string text;
   EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_CANCELLED);
   EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+// Of the picture that is delivered; exposed as that is.
+TEST(E_Sequence, RegularizedDeliversItsErrorWhereItIsAskedFor) {
+  Pan pan(0.35f);
+  const auto sequence = make_sequence(0, 2);
+  GradusSettings settings = settings_of(0);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+  for (settings.frame = 0; settings.frame <= 2; ++settings.frame) sample(sequence.get(), pan.at(settings.frame), settings);
+  const auto error_of = [&](int32_t frame, float exposure) {
+    settings.film_exposure = exposure;
+    const auto task = sequence->deliver(frame, &settings);
+    run(task.get());
+    double sum = 0.0;
+    for (const float value : read(*task, GRADUS_PASS_ERROR, 1)) {
+      EXPECT_GE(value, 0.0f);
+      sum += value;
+    }
+    return sum / (kSide * kSide);
+  };
+  const double first = error_of(0, 1.0f), second = error_of(1, 10.0f);
+  EXPECT_GT(first, 0.0);
+  EXPECT_NEAR(second / first, 100.0, 50.0);
 }
 
 // A frame that failed: those before it are delivered without it (I2).
