@@ -1,0 +1,214 @@
+// B3, C4 to C6: pictures of sequences against plain path tracing of the same frames.
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "base/device.h"
+#include "render/sequence/sequence.h"
+#include "support/path_scene.h"
+#include "support/statistics.h"
+
+namespace gradus {
+namespace {
+
+using test::Moments;
+using test::PathScene;
+using test::Scenario;
+
+constexpr uint32_t kSide = 32;
+constexpr int kSeeds = 24;
+
+using Snapshots = std::vector<std::shared_ptr<const Snapshot>>;
+
+GradusSettings settings_of(int32_t frame, uint32_t seed, uint32_t samples) {
+  GradusSettings settings = test::test_settings(kSide, kSide);
+  settings.frame = frame;
+  settings.seed = seed;
+  settings.samples = samples;
+  settings.max_bounces = 4;
+  settings.filter_width = 0.01f;  // pixels of a cell share their jitter: along an edge their errors would be one
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  return settings;
+}
+
+Snapshots frames_of(int count, const std::function<void(int frame, PathScene* scene)>& make) {
+  Snapshots frames;
+  for (int t = 0; t < count; ++t) {
+    PathScene scene;
+    make(t, &scene);
+    frames.push_back(scene.context(settings_of(t, 0, 1)).snapshot);
+  }
+  return frames;
+}
+
+// A camera that moves aside by 1.3 pixels from frame to frame.
+Snapshots pan(Scenario scenario, int count) {
+  return frames_of(count, [scenario](int t, PathScene* scene) {
+    build(scenario, scene);
+    const float x = 1.3f * 1.8f * 3.2f / (2.0f * float(kSide)) * float(t);
+    scene->camera(Vec3(x, 0, 3.2f), Vec3(x, 0, 0), 0.9f);
+  });
+}
+
+std::vector<float> gray(const std::vector<float>& rgba) {
+  std::vector<float> result(rgba.size() / 4);
+  for (size_t i = 0; i < result.size(); ++i) result[i] = (rgba[4 * i] + rgba[4 * i + 1] + rgba[4 * i + 2]) / 3.0f;
+  return result;
+}
+
+std::vector<float> run(RenderTask* task) {
+  task->run();
+  std::string text;
+  if (task->outcome(&text) != GRADUS_OK) throw std::runtime_error(text);
+  std::vector<float> rgba(size_t(task->delivered().area()) * 4);
+  task->read_pass(GRADUS_PASS_COMBINED, rgba.data());
+  return gray(rgba);
+}
+
+// Pictures of all frames.
+std::vector<std::vector<float>> sequence_pictures(const Snapshots& frames, uint32_t seed, uint32_t samples) {
+  const auto sequence = std::make_shared<Sequence>(test::test_device(), SequenceSettings{0, int32_t(frames.size()) - 1, 1, {}, ""});
+  for (size_t t = 0; t < frames.size(); ++t) run(sequence->sample(frames[t], settings_of(int32_t(t), seed, samples)).get());
+  std::vector<std::vector<float>> pictures;
+  for (size_t t = 0; t < frames.size(); ++t) pictures.push_back(run(sequence->deliver(int32_t(t), nullptr).get()));
+  return pictures;
+}
+
+std::vector<float> plain_picture(const std::shared_ptr<const Snapshot>& frame, int t, uint32_t seed, uint32_t samples) {
+  GradusSettings settings = settings_of(t, seed, samples);
+  const IntegratorContext context{frame, Camera(frame->camera, kSide, kSide), settings};
+  Frame sampled = test::make_test_frame(settings, false);
+  test::sample_frame(*make_path_integrator(context), 0, samples, &sampled);
+  const std::vector<float> rgb = read_images(sampled, 0).primal;
+  std::vector<float> result(rgb.size() / 3);
+  for (size_t i = 0; i < result.size(); ++i) result[i] = (rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2]) / 3.0f;
+  return result;
+}
+
+// By frames: moments of pictures over seeds, of a sequence's and of plain path tracing.
+struct Compared {
+  std::vector<Moments> sequence, plain;
+};
+
+Compared compare(const Snapshots& frames, const std::function<std::vector<float>(const std::vector<float>&)>& read, uint32_t samples = 4) {
+  std::vector<std::vector<std::vector<float>>> of_sequence(kSeeds), of_plain(kSeeds);
+  tbb::parallel_for(0, kSeeds, [&](int k) {
+    for (const auto& picture : sequence_pictures(frames, uint32_t(k), samples)) of_sequence[size_t(k)].push_back(read(picture));
+    for (size_t t = 0; t < frames.size(); ++t) {
+      of_plain[size_t(k)].push_back(read(plain_picture(frames[t], int(t), uint32_t(1000 + k), 2 * samples)));
+    }
+  });
+  Compared result;
+  result.sequence.resize(frames.size());
+  result.plain.resize(frames.size());
+  for (int k = 0; k < kSeeds; ++k) {
+    for (size_t t = 0; t < frames.size(); ++t) {
+      result.sequence[t].add(of_sequence[size_t(k)][t]);
+      result.plain[t].add(of_plain[size_t(k)][t]);
+    }
+  }
+  return result;
+}
+
+std::vector<float> blocks(const std::vector<float>& image) {
+  constexpr uint32_t kBlock = 8;
+  std::vector<float> means((kSide / kBlock) * (kSide / kBlock));
+  for (uint32_t y = 0; y < kSide; ++y) {
+    for (uint32_t x = 0; x < kSide; ++x) means[y / kBlock * (kSide / kBlock) + x / kBlock] += image[y * kSide + x] / (kBlock * kBlock);
+  }
+  return means;
+}
+
+// Unbiased wherever φ leads: no link, right or wrong, moves the mean of L2.
+TEST(B3_SequenceL2, HasTheMeanOfPlainPathsInEveryFrame) {
+  for (const Scenario scenario : {Scenario::DiffuseArea, Scenario::World, Scenario::Glass}) {
+    const Compared c = compare(pan(scenario, 4), blocks);
+    const size_t tests = c.plain.size() * c.plain[0].size();
+    for (size_t t = 0; t < c.plain.size(); ++t) {
+      for (size_t i = 0; i < c.plain[t].size(); ++i) {
+        EXPECT_GT(test::welch_p(c.sequence[t], c.plain[t], i), test::sidak(3 * tests))
+            << name_of(scenario) << " frame " << t << " block " << i << ": " << c.sequence[t].mean(i) << " " << c.plain[t].mean(i);
+      }
+    }
+  }
+}
+
+std::vector<float> whole(const std::vector<float>& image) {
+  return {std::accumulate(image.begin(), image.end(), 0.0f) / float(image.size())};
+}
+
+// A lamp that goes off: its light is gone in that very frame (impulse lag 0).
+TEST(C5_Sequence, ALampThatGoesOffLeavesNoLight) {
+  const Snapshots frames = frames_of(6, [](int t, PathScene* scene) {
+    add_box(scene, test::matte(Rgb(0.5f)));
+    add_ceiling_light(scene, t < 3 ? 20.0f : 0.2f, 0.5f);
+    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
+  });
+  const Compared c = compare(frames, whole);
+  for (size_t t = 0; t < frames.size(); ++t) {
+    EXPECT_NEAR(c.sequence[t].mean(0) / c.plain[t].mean(0), 1.0, 0.05) << "frame " << t;
+  }
+}
+
+// An object that is there in some frames only, and one whose triangles are others in every frame.
+TEST(C6_Sequence, ObjectsThatComeAndGoLeaveNoGhost) {
+  const Snapshots frames = frames_of(9, [](int t, PathScene* scene) {
+    add_box(scene, test::matte(Rgb(0.5f)));
+    add_ceiling_light(scene, 10.0f, 0.5f);
+    const uint64_t red = scene->material(test::matte(Rgb(0.8f, 0.1f, 0.1f)));
+    if (t < 3 || t == 7) scene->ball(Vec3(0.0f, -0.2f, 0.3f), 0.5f, red);
+    scene->ball(Vec3(-0.6f, -0.7f, 0.0f), 0.25f, red, 4 + t);
+    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
+  });
+  const auto middle = [](const std::vector<float>& image) {
+    double sum = 0.0;
+    for (uint32_t y = 11; y < 21; ++y) {
+      for (uint32_t x = 11; x < 21; ++x) sum += image[y * kSide + x];
+    }
+    return std::vector<float>{float(sum / 100.0)};
+  };
+  const Compared c = compare(frames, middle);
+  for (size_t t = 0; t < frames.size(); ++t) {
+    const double noise = std::sqrt(c.sequence[t].variance_of_mean(0) + c.plain[t].variance_of_mean(0));
+    EXPECT_NEAR(c.sequence[t].mean(0), c.plain[t].mean(0), 0.02 * c.plain[t].mean(0) + 3.0 * noise) << "frame " << t;
+    EXPECT_LT(noise, 0.03 * c.plain[t].mean(0)) << "frame " << t << ": the test says something";
+  }
+}
+
+// Over 32 frames of a camera at rest, under a light that changes: what is left of the error in their mean is noise.
+TEST(C4_Sequence, TheMeanOverTimeHasNoBias) {
+  const Snapshots frames = frames_of(32, [](int t, PathScene* scene) {
+    add_box(scene, test::matte(Rgb(0.5f)));
+    add_ceiling_light(scene, 10.0f + 0.05f * float(t), 0.5f);
+    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
+  });
+  Moments sequence, plain;
+  std::vector<std::vector<float>> of_sequence(12), of_plain(12);
+  tbb::parallel_for(0, 12, [&](int k) {
+    const auto mean_over_time = [](const std::vector<std::vector<float>>& pictures) {
+      std::vector<float> sum(16);
+      for (const auto& picture : pictures) {
+        const std::vector<float> means = blocks(picture);
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] += means[i] / float(pictures.size());
+      }
+      return sum;
+    };
+    of_sequence[size_t(k)] = mean_over_time(sequence_pictures(frames, uint32_t(k), 4));
+    std::vector<std::vector<float>> pictures;
+    for (size_t t = 0; t < frames.size(); ++t) pictures.push_back(plain_picture(frames[t], int(t), uint32_t(1000 + k), 8));
+    of_plain[size_t(k)] = mean_over_time(pictures);
+  });
+  for (int k = 0; k < 12; ++k) {
+    sequence.add(of_sequence[size_t(k)]);
+    plain.add(of_plain[size_t(k)]);
+  }
+  for (size_t i = 0; i < 16; ++i) {
+    EXPECT_GT(test::welch_p(sequence, plain, i), test::sidak(16)) << i << ": " << sequence.mean(i) << " " << plain.mean(i);
+  }
+}
+
+}  // namespace
+}  // namespace gradus
