@@ -7,9 +7,9 @@
 #include "base/clock.h"
 #include "memory/allocations.h"
 #include "reconstruct/feature_frame.h"
-#include "reconstruct/space_time/reconstruct_sequence.h"
-#include "reconstruct/space_time/regularized_windows.h"
+#include "reconstruct/space_time/sequence_pictures.h"
 #include "reconstruct/space_time/window.h"
+#include "reconstruct/space_time/window_solver.h"
 #include "support/statistics.h"
 
 namespace gradus::memory {
@@ -114,13 +114,15 @@ TEST(J1_Window, SequencesOfAnyLengthNeedTheMemoryOfOneWindow) {
     forget_peak();
     SolveReport report;
     int delivered = 0;
-    reconstruct_sequence(
-        {0, frames - 1},
-        [](const FrameRange& range) {
-          return std::make_unique<NoisySource>(WindowSize{96, 64, 3, range.count()}, test::Motion::kStatic);
-        },
-        GRADUS_RECONSTRUCTION_L2, 0.0f, kNever, &report, [&](int, const std::vector<float>&) { ++delivered; });
-    EXPECT_EQ(delivered, frames);
+    {
+      SequencePictures pictures({0, frames - 1}, {},
+                                {[](const FrameRange& range) {
+                                   return std::make_unique<NoisySource>(WindowSize{96, 64, 3, range.count()}, test::Motion::kStatic);
+                                 },
+                                 {}},
+                                {GRADUS_RECONSTRUCTION_L2, 0.0f, false});
+      for (; delivered < frames; ++delivered) pictures.take(delivered, kNever, &report);
+    }
     EXPECT_EQ(live_bytes(), before);
     return peak_bytes() - before;
   };

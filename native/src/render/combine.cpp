@@ -13,6 +13,16 @@ constexpr double kMaxFloat = std::numeric_limits<float>::max();
 
 }  // namespace
 
+std::vector<float> crop_error(const Frame& frame, const std::vector<float>& error, const Region& region) {
+  const double scale = double(frame.settings.film_exposure) * frame.settings.film_exposure;
+  std::vector<float> result;
+  result.reserve(size_t(region.area()));
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    for (int32_t x = region.x0; x < region.x1; ++x) result.push_back(float(std::min(kMaxFloat, scale * error[frame.index(x, y)])));
+  }
+  return result;
+}
+
 std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
                            SolveReport* report, std::vector<float>* error) {
   std::vector<float> rgba(size_t(region.area()) * 4);
@@ -40,16 +50,6 @@ std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, con
     }
   }
   return rgba;
-}
-
-std::vector<float> crop_error(const Frame& frame, const std::vector<float>& error, const Region& region) {
-  const double scale = double(frame.settings.film_exposure) * frame.settings.film_exposure;
-  std::vector<float> result;
-  result.reserve(size_t(region.area()));
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x) result.push_back(float(std::min(kMaxFloat, scale * error[frame.index(x, y)])));
-  }
-  return result;
 }
 
 }  // namespace gradus

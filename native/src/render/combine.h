@@ -15,7 +15,7 @@ std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float al
 
 // RGBA of `region` from what a reconstruction has made of the frame's region, channels interleaved.
 std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region);
-// Its error, likewise.
+// Error of `region`, as of what the film's exposure makes of the image. error: of the frame's region.
 std::vector<float> crop_error(const Frame& frame, const std::vector<float>& error, const Region& region);
 
 }  // namespace gradus

@@ -1,21 +1,33 @@
 #include "reconstruct/space_time/window_blend.h"
 
 namespace gradus {
+namespace {
 
-void WindowBlend::add(int window, int frame, std::vector<float> image) {
+void scale(std::vector<float>* values, float factor) {
+  for (float& value : *values) value *= factor;
+}
+
+void add(const std::vector<float>& from, std::vector<float>* to) {
+  for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
+}
+
+}  // namespace
+
+void WindowBlend::add(int window, int frame, Reconstructed picture) {
   const float share = grid_.share(window, frame);
   if (share < 1.0f) {
-    for (float& value : image) value *= share;
+    scale(&picture.image, share);
+    scale(&picture.error, share);
   }
   if (const auto begun = begun_.find(frame); begun != begun_.end()) {
-    for (size_t i = 0; i < image.size(); ++i) image[i] += begun->second[i];
+    gradus::add(begun->second.image, &picture.image);
+    gradus::add(begun->second.error, &picture.error);
     begun_.erase(begun);
   }
-  const bool more = window < grid_.last_with(frame);
-  if (more) {
-    begun_.emplace(frame, std::move(image));
+  if (window < grid_.last_with(frame)) {
+    begun_.emplace(frame, std::move(picture));
   } else {
-    take_(frame, std::move(image));
+    take_(frame, std::move(picture));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "reconstruct/reconstructed.h"
 #include "reconstruct/space_time/window_grid.h"
 
 namespace gradus {
@@ -12,16 +13,16 @@ namespace gradus {
 class WindowBlend {
  public:
   // Takes a frame's picture when all windows have added to it; frames come in order.
-  using Take = std::function<void(int frame, std::vector<float> image)>;
+  using Take = std::function<void(int frame, Reconstructed picture)>;
   WindowBlend(const WindowGrid& grid, Take take) : grid_(grid), take_(std::move(take)) {}
 
-  // Windows in order, and their frames in order.
-  void add(int window, int frame, std::vector<float> image);
+  // Windows in order, and their frames in order. The error of two that are blended is taken as that of their blend: it is no larger.
+  void add(int window, int frame, Reconstructed picture);
 
  private:
   WindowGrid grid_;
   Take take_;
-  std::map<int, std::vector<float>> begun_;  // sums, by frame
+  std::map<int, Reconstructed> begun_;  // sums, by frame
 };
 
 }  // namespace gradus

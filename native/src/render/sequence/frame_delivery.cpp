@@ -8,7 +8,6 @@
 #include "render/combine.h"
 #include "render/denoise_combined.h"
 #include "render/pass_read.h"
-#include "render/resume.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
 #include "temporal/frame_window.h"
@@ -21,7 +20,8 @@ Plan plan_of(const Frame& frame) {
   Plan plan;
   plan.integrator = frame.settings.integrator;
   plan.reconstruction = frame.settings.reconstruction;
-  plan.gradients = plan.solves = true;
+  plan.gradients = frame.gradients;
+  plan.solves = true;
   plan.adaptive = frame.settings.noise_threshold > 0.0f;
   plan.unbiased = !plan.adaptive && !(frame.settings.clamp_direct > 0.0f) && !(frame.settings.clamp_indirect > 0.0f);
   plan.channels = frame.channels;
@@ -56,7 +56,7 @@ void FrameDelivery::render() {
 
 std::shared_ptr<Frame> FrameDelivery::load() {
   double offset_samples = 0.0;
-  std::shared_ptr<Frame> frame = sequence_->open_frame(number_, &offset_samples);
+  const std::shared_ptr<Frame> frame = sequence_->open_frame(number_, &offset_samples);
   if (changed_) {
     frame->settings.reconstruction = changed_->reconstruction;
     frame->settings.reconstruction_alpha = changed_->reconstruction_alpha;
@@ -79,11 +79,13 @@ void FrameDelivery::reconstruct() {
   const Bill bill(&record_.stats.seconds.reconstruct, &record_.stats.cpu_seconds.reconstruct);
   const CancelTest cancel = [this] { return is_stopped(); };
   const GradusSettings& settings = frame_->settings;
-  SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha});
+  const bool with_error = wants(settings.passes, GRADUS_PASS_ERROR);
+  SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha, with_error});
   const Reconstructed picture = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
   stop_if_asked();
-  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, picture.image, delivered()), error;
-  if (wants(settings.passes, GRADUS_PASS_ERROR) && !picture.error.empty()) error = crop_error(*frame_, picture.error, delivered());
+  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, picture.image, delivered());
+  std::vector<float> error;
+  if (with_error) error = crop_error(*frame_, picture.error, delivered());
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
   error_ = std::move(error);
@@ -106,6 +108,7 @@ void FrameDelivery::denoise() {
   stats.denoiser = library->name();
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
+  for (float& value : error_) value *= denoised_error(frame_->settings.reconstruction);
 }
 
 void FrameDelivery::read_differences_over_time(const Frame& frame) {

@@ -9,12 +9,21 @@
 
 namespace gradus {
 
+namespace {
+
+// No pilot: what it found in a frame would not hold for the next. Without gradients the features and differences over time are left.
+uint32_t integrator_of(const GradusSettings& settings) {
+  const uint32_t r = settings.reconstruction;
+  const bool by_features = r == GRADUS_RECONSTRUCTION_AUTO || r == GRADUS_RECONSTRUCTION_REGULARIZED;
+  return by_features ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
+}
+
+}  // namespace
+
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   const uint32_t r = settings.reconstruction;
-  const bool solves = r == GRADUS_RECONSTRUCTION_L2 || r == GRADUS_RECONSTRUCTION_L1 || r == GRADUS_RECONSTRUCTION_WEIGHTED ||
-                      r == GRADUS_RECONSTRUCTION_REGULARIZED;
   *why_not = settings.integrator == GRADUS_INTEGRATOR_PATH ? "the integrator is path"
-             : !solves                                     ? "the reconstruction does not take differences over time"
+             : r == GRADUS_RECONSTRUCTION_NONE             ? "reconstruction is none"
              : settings.samples < 2                        ? "there is one sample per pixel"
                                                            : "";
   return why_not->empty();
@@ -68,7 +77,7 @@ std::unique_ptr<RenderTask> Sequence::sample(std::shared_ptr<const Snapshot> sna
   input.device = device_;
   input.snapshot = std::move(snapshot);
   input.settings = settings;
-  input.settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  input.settings.integrator = integrator_of(settings);
   input.threads = threads_of(settings, device_.get());
   input.factory = factory_;
   input.samples_only = true;
@@ -79,7 +88,7 @@ void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSet
   auto before = std::make_unique<FrameBefore>();
   before->snapshot = std::move(snapshot);
   before->settings = settings;
-  before->settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  before->settings.integrator = integrator_of(settings);
   before->stream_frame = settings.frame;
   before->is_sampled = false;
   before_ = std::move(before);
@@ -96,28 +105,27 @@ std::unique_ptr<HalvedWindowSource> Sequence::open_window(const FrameRange& plac
   return std::make_unique<FrameWindow>(make_temporal_frames(places.count(), part(FramePart::kBase), part(FramePart::kOffset)));
 }
 
-std::shared_ptr<Frame> Sequence::open_frame(int32_t frame, double* offset_samples) const {
-  const auto base = folder_.load(frame, FramePart::kBase), offset = folder_.load(frame, FramePart::kOffset);
-  if (base->count[0].size() != offset->count[0].size() || base->channels != offset->channels ||
+std::shared_ptr<Frame> Sequence::open_frame(int32_t number, double* offset_samples) const {
+  const auto base = folder_.load(number, FramePart::kBase), offset = folder_.load(number, FramePart::kOffset);
+  if (base->count[0].size() != offset->count[0].size() || base->channels != offset->channels || base->gradients != offset->gradients ||
       base->passes.size() != offset->passes.size() || sampling_key(base->settings) != sampling_key(offset->settings)) {
-    throw invalid_argument("stored frame " + folder_.path(frame, FramePart::kBase) + " and its offset do not belong together");
+    throw invalid_argument("stored frame " + folder_.path(number, FramePart::kBase) + " and its offset do not belong together");
   }
+  auto frame = std::make_shared<Frame>(*base);
+  add_sums(frame.get(), *offset);
+  frame->frame_number = number;
+  frame->settings.frame = number;
+  frame->settings.samples += offset->settings.samples;
+  frame->shared = {};
   if (offset_samples != nullptr) *offset_samples = mean_samples(*offset);
-  auto merged = std::make_shared<Frame>(*base);
-  add_sums(merged.get(), *offset);
-  merged->frame_number = frame;
-  merged->settings.frame = frame;
-  merged->settings.samples += offset->settings.samples;
-  merged->shared = {};
-  return merged;
+  return frame;
 }
 
 SequencePictures* Sequence::pictures(const SequenceMethod& method) {
   if (!pictures_ || !(pictures_->method() == method)) {
-    pictures_ = std::make_unique<SequencePictures>(places(), settings_.windows,
-                                                   SequenceInput{[this](const FrameRange& window) { return open_window(window); },
-                                                                 [this](int place) { return open_frame(frame_at(place)); }},
-                                                   method);
+    SequenceSource source{[this](const FrameRange& window) { return open_window(window); },
+                          [this](int place) { return open_frame(frame_at(place)); }};
+    pictures_ = std::make_unique<SequencePictures>(places(), settings_.windows, std::move(source), method);
     if (last_ < settings_.last) pictures_->end_at(place_of(last_));
   }
   return pictures_.get();

@@ -56,8 +56,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // The frames that windows may take: those that are rendered, and those beside them that the folder holds.
   FrameRange places() const;
   std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places) const;
-  // All samples of a stored frame: its own and the replays, of which `offset_samples` is told how many a pixel has.
-  std::shared_ptr<Frame> open_frame(int32_t frame, double* offset_samples = nullptr) const;
+  // All samples of a frame; offset: if given, those of its second part.
+  std::shared_ptr<Frame> open_frame(int32_t frame, double* offset = nullptr) const;
   SequencePictures* pictures(const SequenceMethod& method);
   // Those that no picture to come needs.
   void forget_before(int32_t frame);

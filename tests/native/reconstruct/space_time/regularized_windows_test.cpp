@@ -53,7 +53,7 @@ struct Shot {
   }
   std::shared_ptr<const Frame> merged(int t) const {
     auto frame = std::make_shared<Frame>(sampled(t, t));
-    add_sums(frame.get(), sampled(t, t - 1));
+    merge_frames(frame.get(), sampled(t, t - 1));
     return frame;
   }
   FrameWindow window(const FrameRange& range) const {

@@ -1,8 +1,11 @@
 // Sequences of any length, window by window.
 #include <gtest/gtest.h>
 
-#include "reconstruct/space_time/reconstruct_sequence.h"
+#include "base/error.h"
+
+#include "reconstruct/space_time/sequence_pictures.h"
 #include "reconstruct/space_time/sequences.h"
+#include "reconstruct/space_time/window_solver.h"
 
 namespace gradus {
 namespace {
@@ -65,21 +68,57 @@ std::unique_ptr<Window> open_static(const FrameRange& frames) {
   return window;
 }
 
+SequencePictures static_sequence(const FrameRange& range, bool with_error = false) {
+  return SequencePictures(range, {}, {open_static, {}}, {GRADUS_RECONSTRUCTION_L2, 0.0f, with_error});
+}
+
 TEST(B2_Windows, EveryFrameIsDeliveredOnceAndInOrder) {
   for (const FrameRange range : {FrameRange{0, 9}, {2, 2}, {-3, 31}}) {
-    int next = range.first;
+    SequencePictures pictures = static_sequence(range);
     SolveReport report;
-    reconstruct_sequence(
-        range, [](const FrameRange& frames) { return open_static(frames); }, GRADUS_RECONSTRUCTION_L2, 0.0f, never, &report,
-        [&](int frame, std::vector<float> image) {
-          EXPECT_EQ(frame, next++);
-          ASSERT_EQ(image.size(), 16u * 12u);
-          for (int y = 0; y < 12; ++y) {
-            for (int x = 0; x < 16; ++x) EXPECT_NEAR(image[size_t(16 * y + x)], value_of(frame, x, y), 0.25f);
-          }
-        });
-    EXPECT_EQ(next, range.last + 1);
+    for (int frame = range.first; frame <= range.last; ++frame) {
+      const std::vector<float> image = pictures.take(frame, never, &report).image;
+      ASSERT_EQ(image.size(), 16u * 12u);
+      for (int y = 0; y < 12; ++y) {
+        for (int x = 0; x < 16; ++x) EXPECT_NEAR(image[size_t(16 * y + x)], value_of(frame, x, y), 0.25f);
+      }
+    }
+    EXPECT_THROW(pictures.take(range.last, never, &report), Error);
   }
+}
+
+// A job that begins in the middle of a sequence, and one whose end comes early.
+TEST(B2_Windows, PicturesDoNotDependOnWhereAJobBegins) {
+  SolveReport report;
+  SequencePictures whole = static_sequence({0, 24}), part = static_sequence({0, 24});
+  for (int frame = 0; frame < 12; ++frame) whole.take(frame, never, &report);
+  for (int frame = 12; frame < 25; ++frame) EXPECT_EQ(whole.take(frame, never, &report).image, part.take(frame, never, &report).image);
+}
+
+TEST(B2_Windows, ASequenceThatEndsEarlyIsWholeUpToThere) {
+  SolveReport report;
+  SequencePictures pictures = static_sequence({0, 24});
+  pictures.take(0, never, &report);
+  pictures.end_at(11);
+  for (int frame = 1; frame <= 11; ++frame) {
+    const std::vector<float> image = pictures.take(frame, never, &report).image;
+    for (int x = 0; x < 16; ++x) EXPECT_NEAR(image[size_t(x)], value_of(frame, x, 0), 0.25f) << frame;
+  }
+}
+
+TEST(B2_Windows, HaveTheGridOfTheirSettings) {
+  for (const WindowShape shape : {WindowShape{6, 3}, {8, 2}, {4, 0}, {1, 0}}) {
+    const WindowGrid grid({-7, 30}, shape);
+    for (int frame = -7; frame <= 30; ++frame) {
+      float sum = 0.0f;
+      for (int window = grid.first(); window <= grid.last(); ++window) {
+        sum += grid.share(window, frame);
+        EXPECT_EQ(grid.frames(window).contains(frame), window >= grid.first_with(frame) && window <= grid.last_with(frame));
+      }
+      EXPECT_NEAR(sum, 1.0f, 1e-6f) << frame;
+    }
+  }
+  EXPECT_THROW(WindowGrid({0, 9}, {4, 3}), Error);
 }
 
 // A frame in the middle of its window and of the next: half of each.
@@ -90,28 +129,51 @@ TEST(B2_Windows, OverlapsAreBlended) {
   };
   const std::vector<float> before = solve({0, 9}), after = solve({5, 14});
   const WindowGrid grid({0, 14});
-  reconstruct_sequence(
-      {0, 14}, [](const FrameRange& frames) { return open_static(frames); }, GRADUS_RECONSTRUCTION_L2, 0.0f, never, &report,
-      [&](int frame, const std::vector<float>& image) {
-        const float share = grid.share(0, frame);
-        EXPECT_EQ(share, frame < 5 ? 1.0f : frame > 9 ? 0.0f : share);
-        for (size_t i = 0; i < image.size(); ++i) {
-          const float a = frame <= 9 ? before[size_t(frame) * image.size() + i] : 0.0f;
-          const float b = frame >= 5 ? after[size_t(frame - 5) * image.size() + i] : 0.0f;
-          EXPECT_NEAR(image[i], share * a + (1.0f - share) * b, 1e-5f);
-        }
-      });
+  SequencePictures pictures = static_sequence({0, 14});
+  for (int frame = 0; frame <= 14; ++frame) {
+    const std::vector<float> image = pictures.take(frame, never, &report).image;
+    const float share = grid.share(0, frame);
+    EXPECT_EQ(share, frame < 5 ? 1.0f : frame > 9 ? 0.0f : share);
+    for (size_t i = 0; i < image.size(); ++i) {
+      const float a = frame <= 9 ? before[size_t(frame) * image.size() + i] : 0.0f;
+      const float b = frame >= 5 ? after[size_t(frame - 5) * image.size() + i] : 0.0f;
+      EXPECT_NEAR(image[i], share * a + (1.0f - share) * b, 1e-5f);
+    }
+  }
   EXPECT_NEAR(grid.share(0, 7), 0.5f, 1e-6f);
   EXPECT_NEAR(grid.share(1, 7), 0.5f, 1e-6f);
 }
 
 TEST(K2_Cancel, SequencesDeliverNothingHalfDone) {
-  int frames = 0;
   SolveReport report;
-  reconstruct_sequence(
-      {0, 14}, [](const FrameRange& range) { return open_static(range); }, GRADUS_RECONSTRUCTION_L2, 0.0f, [] { return true; }, &report,
-      [&](int, const std::vector<float>&) { ++frames; });
-  EXPECT_EQ(frames, 0);
+  EXPECT_TRUE(static_sequence({0, 14})
+                  .take(
+                      0, [] { return true; }, &report)
+                  .image.empty());
+}
+
+// The error that is told is that of the pictures, on average over noise.
+TEST(B2_Windows, TellTheErrorOfTheirPictures) {
+  double told = 0.0, found = 0.0;
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const auto noisy = [&](const FrameRange& frames) {
+      auto window = std::make_unique<Window>(16, 12, 3, frames.count());
+      link(window.get(), Motion::kStatic);
+      for (int t = 0; t < frames.count(); ++t) {
+        add_noise(&window->plane(RowKind::kPrimal, t), 0.2f, 9000 + 20 * seed + unsigned(t));
+        add_noise(&window->halves[size_t(RowKind::kPrimal)][size_t(t)], 0.2f, 7000 + 20 * seed + unsigned(t));
+      }
+      return window;
+    };
+    SequencePictures pictures({0, 5}, {}, {noisy, {}}, {GRADUS_RECONSTRUCTION_L2, 0.0f, true});
+    SolveReport report;
+    for (int frame = 0; frame <= 5; ++frame) {
+      const Reconstructed picture = pictures.take(frame, never, &report);
+      for (const float error : picture.error) told += error;
+      for (const float value : picture.image) found += std::pow(value, 2.0) / 3.0;  // it is black
+    }
+  }
+  EXPECT_NEAR(told / found, 1.0, 0.15);
 }
 
 }  // namespace

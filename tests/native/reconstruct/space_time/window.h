@@ -12,10 +12,11 @@
 namespace gradus::test {
 
 // All planes in memory: [kind][t], interleaved; links[t] by pixel.
-struct Window final : WindowSource {
+struct Window final : HalvedWindowSource {
   Window(int width, int height, int channels, int frames) : size_{width, height, channels, frames} {
     const size_t pixels = size_t(width) * size_t(height);
     for (auto& kind : planes) kind.assign(size_t(frames), std::vector<float>(pixels * size_t(channels), 0.0f));
+    for (auto& kind : halves) kind.assign(size_t(frames), std::vector<float>(pixels * size_t(channels), 0.0f));
     for (auto& kind : deviations) kind.assign(size_t(frames), std::vector<float>(pixels, std::numeric_limits<float>::quiet_NaN()));
     links.assign(size_t(frames), std::vector<int32_t>(pixels, kNoLink));
   }
@@ -26,6 +27,10 @@ struct Window final : WindowSource {
   }
   void read_deviations(RowKind kind, int t, int y, float* out) const override {
     std::copy_n(deviations[size_t(kind)][size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
+  }
+  void read_half_differences(RowKind kind, int t, int y, float* out) const override {
+    const size_t row = size_t(size_.width) * size_t(size_.channels);
+    std::copy_n(halves[size_t(kind)][size_t(t)].begin() + ptrdiff_t(size_t(y) * row), row, out);
   }
   void read_links(int t, int y, int32_t* out) const override {
     std::copy_n(links[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
@@ -53,7 +58,7 @@ struct Window final : WindowSource {
   }
 
   WindowSize size_;
-  std::vector<std::vector<float>> planes[6], deviations[6];
+  std::vector<std::vector<float>> planes[6], halves[6], deviations[6];
   std::vector<std::vector<int32_t>> links;
 };
 

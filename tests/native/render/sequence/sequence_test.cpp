@@ -1,4 +1,5 @@
 // Frames of an animation, sampled in halves and reconstructed together (contract 4).
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -288,6 +289,28 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
   EXPECT_GT(linked, size_t(kSide) * kSide / 2);
   EXPECT_LT(difference, noise * 2.0);
   for (const float value : frames[2].link) EXPECT_EQ(value, 0.0f);
+}
+
+// What AUTO makes of an animation: plain paths, joined over time by features; with the error of what is delivered.
+TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
+  Pan pan(0.35f);
+  const auto sequence = make_sequence(0, 5);
+  const auto automatic = [](int32_t frame) {
+    GradusSettings settings = settings_of(frame);
+    settings.reconstruction = GRADUS_RECONSTRUCTION_AUTO;
+    settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+    return settings;
+  };
+  for (int32_t t = 0; t <= 5; ++t) run(sequence->sample(pan.at(t), automatic(t)).get());
+  const auto task = sequence->deliver(0, nullptr);
+  run(task.get());
+  const nlohmann::json stats = nlohmann::json::parse(task->stats());
+  EXPECT_EQ(stats["integrator"], "path");
+  EXPECT_EQ(stats["reconstruction"], "regularized");
+  EXPECT_EQ(stats["spp_offset"], 4.0);
+  const std::vector<float> error = read(*task, GRADUS_PASS_ERROR, 1);
+  EXPECT_GT(*std::max_element(error.begin(), error.end()), 0.0f);
+  EXPECT_GT(read(*task, GRADUS_PASS_COMBINED, 4)[4 * (kSide * kSide / 2)], 0.0f);
 }
 
 TEST(K1_Sequence, CanBeCancelledAndLeavesNothingInTheFolder) {

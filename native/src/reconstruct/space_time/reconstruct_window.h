@@ -1,0 +1,16 @@
+// The pictures of a window by L2, L1 or WEIGHTED, and their errors.
+#pragma once
+
+#include <functional>
+
+#include "reconstruct/reconstructed.h"
+#include "reconstruct/space_time/window_solver.h"
+
+namespace gradus {
+
+// The pictures of a window's frames by W of all channels, interleaved; each is made when it is taken. with_error: theirs, too, as of still
+// frames (reconstruct/error_estimate.h): two more solves at most. Nothing is taken when cancelled.
+void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, bool with_error, const CancelTest& cancel,
+                        SolveReport* report, const std::function<void(int t, Reconstructed picture)>& take);
+
+}  // namespace gradus
