@@ -40,7 +40,7 @@ def test_every_temporal_mode_is_compared_with_itself_frame_by_frame() -> None:
     temporal = [mode for mode in animation_modes.MODES if animation_modes.is_temporal(mode)]
     assert len(temporal) == 4
     for mode in temporal:
-        twin = animation_modes.MODES[report.per_frame(mode)]
+        twin = animation_modes.MODES[animation_modes.per_frame(mode)]
         assert animation_modes.MODES[mode].settings == twin.settings | {"use_temporal": True}
 
 

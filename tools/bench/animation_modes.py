@@ -34,3 +34,8 @@ REFERENCES = {GRADUS: "path", CYCLES: "cycles"}  # each engine against its own c
 
 def is_temporal(name: str) -> bool:
     return bool(MODES[name].settings.get("use_temporal"))
+
+
+def per_frame(name: str) -> str:
+    """What a temporal mode is called frame by frame."""
+    return name.replace("temporal", "gradient")

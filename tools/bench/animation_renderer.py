@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from animation_modes import is_temporal, per_frame
 from animation_scenes import Animation
 from renderers import RefusedError, Worker
 
@@ -32,13 +33,18 @@ class AnimationRenderer:
         return self.render("path", samples, 1000, vectors=True)[0]
 
     def refusal(self, mode: str) -> str:
-        """Why a mode does not work here, or nothing. One frame of one sample, which also loads libraries, and is not counted."""
-        first = self.animation.frames[0]
+        """Why a mode does not work here, or nothing. Two frames of two samples, which also loads libraries, and is not counted."""
         try:
-            self.render(mode, 1, 999, frames=[first, first])
+            tried = self._try(mode)
+            if is_temporal(mode) and np.array_equal(tried, self._try(per_frame(mode))):
+                return "its frames are reconstructed one by one"
         except RefusedError as error:
             return str(error)
         return ""
+
+    def _try(self, mode: str) -> np.ndarray:
+        first = self.animation.frames[0]
+        return self.render(mode, 2, 999, frames=[first, first + 1])[0]
 
     def close(self) -> None:
         self._worker.close()

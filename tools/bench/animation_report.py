@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import animation_strips
 import numpy as np
 import temporal_metrics
-from animation_modes import MODES, is_temporal
+from animation_modes import MODES, is_temporal, per_frame
 from animation_scenes import ANIMATIONS, Animation
 from document import Block, HtmlOnly, Table, Text, number
 from results import FOLDER, Point, SceneResults
@@ -56,11 +56,6 @@ class Aim:
 
     def ratio(self, scene: AnimationResults, mode: str) -> float | None:
         return scene.ratio(mode, self.other(mode), self.measure)
-
-
-def per_frame(mode: str) -> str:
-    """What a temporal mode is called frame by frame."""
-    return mode.replace("temporal", "gradient")
 
 
 AIMS = (
