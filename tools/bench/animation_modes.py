@@ -12,15 +12,18 @@ PER_FRAME = ("path", "path-regularized", "gradient-l2", "gradient-weighted", "gr
 PEERS = ("cycles", "cycles-denoised")
 
 
-def _temporal(name: str) -> Mode:
-    """A mode of gradients, over windows of frames."""
-    mode = modes.MODES[name]
-    return replace(mode, label=mode.label.replace("G-PT", "T-GPT"), settings=mode.settings | TEMPORAL)
+def _temporal(label: str, name: str) -> Mode:
+    """A mode of stills, over windows of frames."""
+    return replace(modes.MODES[name], label=label, settings=modes.MODES[name].settings | TEMPORAL)
 
 
 MODES = {
     **{name: modes.MODES[name] for name in PER_FRAME},
-    **{name.replace("gradient", "temporal"): _temporal(name) for name in PER_FRAME if name.startswith("gradient")},
+    "temporal-l2": _temporal("Gradus T-GPT + L2", "gradient-l2"),
+    "temporal-weighted": _temporal("Gradus T-GPT + WEIGHTED", "gradient-weighted"),
+    "temporal-l1": _temporal("Gradus T-GPT + L1", "gradient-l1"),
+    "temporal-regularized": _temporal("Gradus T-GPT + REGULARIZED", "gradient-regularized"),
+    "temporal-auto": _temporal("Gradus AUTO over windows", "auto"),
     **{name: modes.MODES[name] for name in PEERS},
     # As in a new file: all frames have the same noise, which does not flicker where nothing moves.
     "cycles-denoised-still-seed": replace(
@@ -37,5 +40,5 @@ def is_temporal(name: str) -> bool:
 
 
 def per_frame(name: str) -> str:
-    """What a temporal mode is called frame by frame."""
-    return name.replace("temporal", "gradient")
+    """A temporal mode frame by frame. AUTO takes plain paths and REGULARIZED for stills."""
+    return "path-regularized" if name == "temporal-auto" else name.replace("temporal", "gradient")

@@ -14,7 +14,7 @@ from results import FOLDER
 FOLDER_NAME = "pictures"
 SAMPLES, SEED = 16, 0
 SHOWN = (
-    "path", "path-regularized", "gradient-l2", "gradient-l1", "temporal-l2", "temporal-weighted", "temporal-l1", "temporal-regularized",
+    "path", "path-regularized", "gradient-l2", "gradient-l1", "temporal-l2", "temporal-weighted", "temporal-l1", "temporal-auto",
     "cycles-denoised",
 )  # fmt: skip
 REFERENCE = "reference"
