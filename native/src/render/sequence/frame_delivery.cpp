@@ -58,9 +58,10 @@ std::shared_ptr<Frame> FrameDelivery::load() {
   double offset_samples = 0.0;
   const std::shared_ptr<Frame> frame = sequence_->open_frame(number_, &offset_samples);
   if (changed_) {
-    frame->settings.reconstruction = changed_->reconstruction;
+    // AUTO was resolved when the frame was sampled.
+    if (changed_->reconstruction != GRADUS_RECONSTRUCTION_AUTO) frame->settings.reconstruction = changed_->reconstruction;
     frame->settings.reconstruction_alpha = changed_->reconstruction_alpha;
-    frame->settings.denoiser = changed_->denoiser;
+    if (changed_->denoiser != GRADUS_DENOISER_AUTO) frame->settings.denoiser = changed_->denoiser;
     frame->settings.film_exposure = changed_->film_exposure;
   }
   const auto record = sequence_->records_.find(number_);
