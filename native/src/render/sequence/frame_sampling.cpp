@@ -42,6 +42,7 @@ void require_same(const Frame& stored, const std::string& path, const GradusSett
 FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input)
     : sequence_(std::move(sequence)), input_(std::move(input)), stored_base_(stored(FramePart::kBase)), base_(base_input()) {
   record_.plan = base_.plan();
+  record_.plan.chosen.emplace_back("differences over time", "frames of an animation: half of the samples repeat those of the frame before");
 }
 
 LoopInput FrameSampling::base_input() const {

@@ -315,6 +315,49 @@ TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
   EXPECT_GT(read(*task, GRADUS_PASS_COMBINED, 4)[4 * (kSide * kSide / 2)], 0.0f);
 }
 
+// Where pixels take samples by their noise, a replay takes as many as what it replays (contract 4.2).
+TEST(A8_Sequence, ReplaysTakeTheCountsOfWhatTheyReplay) {
+  Pan pan(1.3f, Scenario::World);
+  const Folder folder;
+  const auto sequence = make_sequence(0, 1, folder.path());
+  const auto adaptive = [](int32_t frame) {
+    GradusSettings settings = settings_of(frame, 160);
+    settings.noise_threshold = 0.01f;
+    return settings;
+  };
+  for (int32_t t = 0; t <= 1; ++t) sample(sequence.get(), pan.at(t), adaptive(t));
+  const SequenceFolder files(folder.path());
+  const auto base = files.load(0, FramePart::kBase), offset = files.load(1, FramePart::kOffset);
+  const auto samples_at = [](const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; };
+  uint32_t least = UINT32_MAX, most = 0;
+  for (size_t q = 0; q < offset->replayed.pixel.size(); ++q) {
+    const int32_t source = offset->replayed.pixel[q];
+    if (source == kNoLink) continue;
+    EXPECT_EQ(samples_at(*offset, q), samples_at(*base, size_t(source)));
+    least = std::min(least, samples_at(*offset, q));
+    most = std::max(most, samples_at(*offset, q));
+  }
+  EXPECT_LT(least, most) << "the test says something";
+  EXPECT_GT(deliver(sequence.get(), 0).stats["spp_offset"], 1.0);
+}
+
+TEST(K1_Sequence, ATimeLimitEndsBothHalves) {
+  Pan pan(1.3f);
+  const auto sequence = make_sequence(0, 1);
+  for (int32_t t = 0; t <= 1; ++t) {
+    GradusSettings settings = settings_of(t, 1u << 20);
+    settings.time_limit = 0.2f;
+    sample(sequence.get(), pan.at(t), settings);
+  }
+  for (int32_t t = 0; t <= 1; ++t) {
+    const Delivered frame = deliver(sequence.get(), t);
+    EXPECT_EQ(frame.stats["stopped"], "time");
+    EXPECT_GT(frame.stats["spp_base"], 1.0);
+    EXPECT_GT(frame.stats["spp_offset"], 1.0);
+    EXPECT_LT(frame.stats["samples"], 1e5);
+  }
+}
+
 TEST(K1_Sequence, CanBeCancelledAndLeavesNothingInTheFolder) {
   Pan pan(1.3f);
   const Folder folder;
