@@ -6,6 +6,7 @@
 #include "reconstruct/box_mean.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
+#include "reconstruct/space_time/solve_tracks.h"
 
 namespace gradus {
 namespace {
@@ -72,7 +73,7 @@ Change regress_change(const HalvedWindowSource& source, int t, const Features& f
   for_values(&change.difference,
              [&](float& value, int x, int y, int c) { value = c < 3 ? scale * regression.image().row(y, c)[x] : alpha.row(y)[x]; });
   for_values(&change.weight, [&](float& value, int x, int y, int) {
-    value = 1.0f / (scale * scale * (kTimesError * regression.error().row(y)[x] + kLeastError));
+    value = track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kLeastError));
   });
   return change;
 }

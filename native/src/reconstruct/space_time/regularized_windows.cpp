@@ -85,7 +85,7 @@ RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, con
   estimate.picture = to_field(samples, regularize(samples, 0, features, cancel, report));
   const float scale = scale_of(estimate.picture), least = kLeastError * scale * scale;
   estimate.weight = make_field(samples.region.width(), samples.region.height(),
-                               [&](int x, int y) { return 1.0f / (estimate.picture.row(y, samples.channels)[x] + least); });
+                               [&](int x, int y) { return track_weight(estimate.picture.row(y, samples.channels)[x] + least); });
   return estimate;
 }
 

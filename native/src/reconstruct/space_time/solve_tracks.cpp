@@ -17,7 +17,7 @@ void carry_forth(const TrackStep& step, const Field& values, const Field& weight
     step.links.for_runs(y, [&](int begin, int end, int dx, int dy) {
       const float *w = weights.row(y), *c = step.weight.row(y);
       float* total = next_weights->row(y + dy) + dx;
-      const auto carried = [&](int i) { return w[i] * c[i] / (w[i] + c[i]); };
+      const auto carried = [&](int i) { return w[i] * (c[i] / (w[i] + c[i])); };
       for (int channel = 0; channel < values.channels(); ++channel) {
         const float *v = values.row(y, channel), *d = differences(step, y, channel, zeros);
         float* to = next_values->row(y + dy, channel) + dx;

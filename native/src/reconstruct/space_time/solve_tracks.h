@@ -3,6 +3,7 @@
 // exactly, by elimination from the first frame to the last and back (Rauch, Tung, Striebel 1965).
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "reconstruct/space_time/links.h"
@@ -16,7 +17,10 @@ struct TrackStep {
   const Field& weight;      // c; one channel
 };
 
-// values: v, which become x. weights: w, one channel, above 0; they are used up.
+// Weight of what has this squared error, within bounds whose sums and quotients have room in float: light of any strength.
+inline float track_weight(float error) { return std::clamp(1.0f / error, 1e-30f, 1e30f); }
+
+// values: v, which become x. weights: w, one channel; they are used up.
 void solve_tracks(const std::vector<TrackStep>& steps, std::vector<Field>* values, std::vector<Field>* weights);
 
 }  // namespace gradus

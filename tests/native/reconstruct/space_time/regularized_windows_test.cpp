@@ -25,7 +25,7 @@ constexpr int kWidth = 72, kHeight = 50;
 // A room that is sampled as temporal frames are: a frame's own random numbers, and those of the frame before. The camera rests; the light
 // is light(t) times as bright.
 struct Shot {
-  int frames = 6, channels = 3;
+  int frames = 6, channels = 3, halves = kHalves;
   std::function<float(int t)> light = [](int) { return 1.0f; };
   std::function<bool(int pixel)> linked = [](int) { return true; };
   bool gradients = false;
@@ -49,7 +49,13 @@ struct Shot {
         if (channels == 4) pixel[3] = pixel[0] / 8.0f;
       }
     }
+    for (int half = halves; half < kHalves; ++half) remove(half, &frame);
     return frame;
+  }
+  static void remove(int half, Frame* frame) {
+    std::fill(frame->count[half].begin(), frame->count[half].end(), 0);
+    std::fill(frame->components[0].primal[half].begin(), frame->components[0].primal[half].end(), Radiance(0.0f));
+    for (PassPlane& pass : frame->passes) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
   }
   std::shared_ptr<const Frame> merged(int t) const {
     auto frame = std::make_shared<Frame>(sampled(t, t));
@@ -215,6 +221,36 @@ TEST(B2_RegularizedWindow, AlphaGoesThroughTheSameWeights) {
   for (const Reconstructed& picture : solve(shot)) {
     for (size_t i = 0; i < picture.image.size(); i += 4) ASSERT_NEAR(8.0f * picture.image[i + 3], picture.image[i], 4e-3f) << i / 4;
   }
+}
+
+// Lamps of any strength.
+TEST(B2_RegularizedWindow, ScalesWithTheLight) {
+  Shot shot;
+  shot.frames = 3;
+  const std::vector<Reconstructed> pictures = solve(shot);
+  for (const float strength : {1e-18f, 1e-10f, 1e10f, 1e18f}) {
+    shot.light = [strength](int) { return strength; };
+    shot.replay_sigma = 0.02f * strength;
+    const std::vector<Reconstructed> scaled = solve(shot);
+    for (size_t t = 0; t < pictures.size(); ++t) {
+      for (size_t i = 0; i < pictures[t].image.size(); ++i) {
+        const float value = scaled[t].image[i] / strength;
+        // Squares beyond the range of floats say no more which errors are larger.
+        ASSERT_NEAR(value, pictures[t].image[i], strength < 1e-15f || strength > 1e15f ? 0.5f : 0.01f) << strength;
+      }
+    }
+  }
+}
+
+// Of two samples one is a replay: nobody knows any noise.
+TEST(B2_RegularizedWindow, TakesFramesWithoutASecondHalf) {
+  Shot shot;
+  shot.halves = 1;
+  const std::vector<Reconstructed> pictures = solve(shot), each = solve_each(shot);
+  for (const Reconstructed& picture : pictures) {
+    for (const float value : picture.image) ASSERT_TRUE(std::isfinite(value));
+  }
+  EXPECT_LT(error_of(shot, pictures), error_of(shot, each));
 }
 
 // Frames that two windows share are reconstructed once; the second one only reads the features of the frame where the first ended. What
