@@ -18,9 +18,13 @@ def escape(name: str) -> str:
     return "".join(chr(byte) if chr(byte) in _SAFE else f"%{byte:02X}" for byte in name.encode("utf-8", "surrogateescape"))
 
 
-def frame_path(folder: str, scene: str, layer: str, view: str, frame: int) -> Path:
+def folder_of(folder: str, scene: str, layer: str, view: str) -> Path:
     last = f"{escape(layer)}.{escape(view)}" if view else escape(layer)
-    return Path(folder) / escape(scene) / last / f"f{frame:+08d}.base.exr"
+    return Path(folder) / escape(scene) / last
+
+
+def frame_path(folder: str, scene: str, layer: str, view: str, frame: int) -> Path:
+    return folder_of(folder, scene, layer, view) / f"f{frame:+08d}.base.exr"
 
 
 def save(library: native.Library, render: int, folder: str, scene: Any, layer: Any, view: str) -> None:

@@ -50,6 +50,7 @@ from .abi import (  # noqa: F401
     PixelFilter,
     Progress,
     Reconstruction,
+    SequenceSettings,
     Settings,
     Struct,
     Visibility,

@@ -40,7 +40,10 @@ class GradusViewLayerSettings(bpy.types.PropertyGroup):
     """Passes of the engine that Blender has no switch for."""
 
     use_pass_gradients: BoolProperty(
-        name="Gradients", description="Sampled differences to the right and the upper neighbour: Gradient X, Gradient Y", default=False
+        name="Gradients",
+        description="Sampled differences to the right and the upper neighbour: Gradient X, Gradient Y; in animations to the next frame, "
+        "Gradient T, and where the surface is there: Gradient T Link",
+        default=False,
     )
     use_pass_variance: BoolProperty(name="Variance", description="Estimated variance of the mean of Noisy Image", default=False)
     use_pass_error: BoolProperty(

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import ctypes
 import math
-import time
 from ctypes import byref
+from dataclasses import dataclass, field
 from typing import Any
 
 import bpy
 
-from . import compat, cycles_settings, frame_store, native, options, output, passes, pixels, settings, simulation, stats, store
+from . import animation, compat, cycles_settings, frame_store, native, options, output, passes, pixels, settings, simulation, stats, store
+from .animation import Animation
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
-from .native import Error, GradusError, Phase
-from .store import FINAL, POLL_SECONDS, PREVIEW, Cancelled, Key, Session
+from .progress import PictureDisplay, wait
+from .store import FINAL, PREVIEW, Cancelled, Key, Session
 
 VERSION = bpy.app.version
 _files = output.FrameFiles()
@@ -89,84 +90,131 @@ def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]
 # ------------------------------------------------------------------------------------------------ one view layer
 
 
+@dataclass
+class Shot:
+    """One view of one frame, as it is rendered."""
+
+    settings: native.Settings = field(default_factory=native.Settings)
+    clock: stats.Clock = field(default_factory=stats.Clock)
+    warnings: list[str] = field(default_factory=list)
+
+
 class Job:
     """What update() prepares and render() finishes, for one view layer of one frame."""
 
     def __init__(self, engine: Any, depsgraph: Any) -> None:
         self.engine = engine
         self.depsgraph = depsgraph
-        self.scene = depsgraph.scene_eval
-        self.layer = depsgraph.view_layer_eval
         self.is_preview = engine.is_preview
         self.overrides = options.Overrides() if self.is_preview else options.current()
-        self.clock = stats.Clock()
-        self.warnings: list[str] = []
         self.cancelled = False
         self.infos = active_passes(self.scene, self.layer, self.overrides)
         self.views = compat.view_names(self.scene.render)
         kind, space = (PREVIEW, id(self)) if self.is_preview else (FINAL, 0)
         self.key = Key(kind, self.scene.name_full, self.layer.name, space)
         self.session: Session | None = None
-        self.settings: native.Settings | None = None
+        self.shot: Shot | None = None
+        self.animation: Animation | None = None
+        self.frame_by_frame = ""  # why a frame of an animation is rendered on its own
         self.buffer = pixels.PassBuffer()
+
+    @property
+    def scene(self) -> Any:
+        """As evaluated; its layers have other addresses after each evaluation."""
+        return self.depsgraph.scene_eval
+
+    @property
+    def layer(self) -> Any:
+        return self.depsgraph.view_layer_eval
+
+    def host_value(self, name: str) -> Any:
+        return host_value(name, self.scene, self.overrides)
 
     def prepare(self) -> None:
         """Extraction, under Blender's draw lock: nobody edits meanwhile."""
-        library = native.load()
-        self.settings = native_settings(library, self.scene, self.layer, self.overrides)
-        self.settings.passes = passes.mask(self.infos)
-        if self.is_preview:
-            limit_preview(self.settings, host_value("preview_samples", self.scene, self.overrides))
+        self.begin_shot()
         self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
+        self.shot.settings = self.new_settings()
         self.warn(cycles_settings.warnings(self.scene, {name for name, _ in self.overrides.native}))
-        self.show_simulations()
-        self.export(self.views[0])
+        self.warn_of_simulations()
+        self.animation = animation.of_job(self)
+        if self.animation is None:
+            self.show_simulations()
+            self.export(self.views[0])
 
-    def show_simulations(self) -> None:
-        """Those that are not baked, in an animation: Blender's own way to a frame does not compute them."""
-        if self.is_preview or not self.engine.is_animation:
-            return
-        simulations = simulation.of_scene(self.depsgraph.scene)
-        if simulations is None:
-            return
-        if not bpy.app.background:
-            # The interface draws what the scene's own depsgraph has: it must not be stepped under it.
-            names = simulations.names
-            self.warn(
-                [f"{len(names)} simulations are not baked and may stand still, the first is '{names[0]}': bake them before rendering"]
-            )
-            return
-        frame = self.scene.frame_current
-        with self.clock.phase("export"):
-            simulations.show(frame, self.frames_beyond())
-            self.engine.frame_set(frame, subframe=0.0)
+    def begin_shot(self) -> None:
+        self.shot = Shot()
 
-    def frames_beyond(self) -> int:
-        """How far an export looks beyond its frame."""
-        shutter = shutter_of(self.scene, self.layer)
-        return max(int(self.wants_vectors()), math.ceil(shutter.close) if shutter is not None else 0)
+    def new_settings(self) -> native.Settings:
+        """Those of the frame that the depsgraph shows."""
+        settings = native_settings(native.load(), self.scene, self.layer, self.overrides)
+        settings.passes = passes.mask(self.infos)
+        if self.is_preview:
+            limit_preview(settings, self.host_value("preview_samples"))
+        return settings
 
     def export(self, view: str) -> None:
         if view:
             self.engine.active_view_set(view)
         vectors = self.wants_vectors()
-        with self.clock.phase("export"):
+        settings = self.shot.settings
+        with self.shot.clock.phase("export"):
             report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop, vectors)
-        self.settings.width, self.settings.height = report.width, report.height
+        settings.width, settings.height = report.width, report.height
+        settings.region[:] = region_of(self.scene.render, report.width, report.height)
         self.warn(report.warnings)
+
+    def build(self) -> None:
+        with self.shot.clock.phase("build"):
+            self.session.commit(self.stop)
+        if self.overrides.save_scene:
+            path = self.overrides.save_scene.replace("%f", str(self.scene.frame_current))
+            self.session.library.scene_save(self.session.scene, byref(self.shot.settings), native.text(path))
+
+    def read(self, handle: int, only: frozenset[passes.Pass] | None = None) -> None:
+        """Passes of a render into the buffer."""
+        self.buffer.fill(lambda plane, target, count: self.session.library.render_read_pass(handle, plane, target, count), only)
+
+    def show_simulations(self) -> None:
+        """Those that are not baked, in an animation: Blender's own way to a frame does not compute them."""
+        simulations = self.simulations() if bpy.app.background else None
+        if simulations is not None:
+            frame = self.scene.frame_current
+            with self.shot.clock.phase("export"):
+                simulations.compute(frame + self.frames_beyond(), self.stop)
+                simulations.show(frame)
+                self.engine.frame_set(frame, subframe=0.0)
+
+    def simulations(self) -> simulation.Simulations | None:
+        if self.is_preview or not self.engine.is_animation:
+            return None
+        return simulation.of_scene(self.depsgraph.scene)
+
+    def warn_of_simulations(self) -> None:
+        """The interface draws what the scene's own depsgraph has: it must not be stepped under it."""
+        if not bpy.app.background and (simulations := self.simulations()) is not None:
+            names = simulations.names
+            self.warn(
+                [f"{len(names)} simulations are not baked and may stand still, the first is '{names[0]}': bake them before rendering"]
+            )
+
+    def frames_beyond(self) -> int:
+        """How far an export looks beyond its frame; simulations must have been there."""
+        shutter = shutter_of(self.scene, self.layer)
+        return max(int(self.wants_vectors()), math.ceil(shutter.close) if shutter is not None else 0)
 
     def wants_vectors(self) -> bool:
         """Under motion blur they are 0 unless they are asked for, as in Cycles: whoever blurs by them would blur twice."""
         if not any(info.plane == passes.Pass.VECTOR for info in self.infos):
             return False
-        if shutter_of(self.scene, self.layer) is None or host_value("vector_with_motion_blur", self.scene, self.overrides):
+        if shutter_of(self.scene, self.layer) is None or self.host_value("vector_with_motion_blur"):
             return True
         self.warn(["Pass Vector is 0: the picture has motion blur (Motion Blur > Vector Pass gives it all the same)"])
         return False
 
     def warn(self, texts: list[str]) -> None:
         for text in self.session.take_new_warnings(texts):
-            self.warnings.append(text)
+            self.shot.warnings.append(text)
             if not self.is_preview:
                 self.engine.report({"WARNING"}, f"Gradus: {text}")
 
@@ -206,9 +254,10 @@ def render(engine: Any, depsgraph: Any) -> None:
     if job is None:
         raise Failure("render() without update()")
     try:
+        if job.animation is not None:
+            job.animation.look_ahead(job)
         for index, view in enumerate(job.views):
-            if index > 0 and not job.cancelled:
-                job.export(view)
+            _prepare_view(job, index, view)
             _render_view(job, view)
     except (Cancelled, ExportCancelled):
         job.cancelled = True
@@ -231,21 +280,30 @@ def _empty_result(job: Job) -> None:
         job.engine.end_result(result)
 
 
-def _render_view(job: Job, view: str) -> None:
+def _prepare_view(job: Job, index: int, view: str) -> None:
     if job.cancelled:
         raise Cancelled
-    engine = job.engine
-    engine.update_stats("", "Gradus: building the scene")
-    with job.clock.phase("build"):
-        job.session.commit(job.stop)
-    _save_scene(job)
-    result = engine.begin_result(0, 0, job.settings.width, job.settings.height, layer=job.layer.name, view=view)
+    if job.animation is not None:
+        job.shot = job.animation.take_shot(view, job.scene.frame_current)
+        return
+    if index > 0:
+        job.shot = Shot(job.shot.settings)  # with times of its own
+        job.export(view)
+    job.engine.update_stats("", "Gradus: building the scene")
+    job.build()
+
+
+def _render_view(job: Job, view: str) -> None:
+    engine, settings = job.engine, job.shot.settings
+    result = engine.begin_result(0, 0, settings.width, settings.height, layer=job.layer.name, view=view)
     if result is None:
         raise Failure("the render border leaves nothing to render")
     try:
         width, height = result.resolution_x, result.resolution_y
-        x0, y0, _, _ = region_of(job.scene.render, job.settings.width, job.settings.height)
-        job.settings.region[:] = [x0, y0, x0 + width, y0 + height]
+        x0, y0, x1, y1 = settings.region
+        if job.animation is not None and (width, height) != (x1 - x0, y1 - y0):
+            raise Failure("the size of the picture changes in the animation: switch Temporal off")
+        settings.region[:] = [x0, y0, x0 + width, y0 + height]
         job.buffer.prepare(result.layers[0].passes, passes.by_name(job.infos, VERSION), width, height)
         _sample(job, view, result)
     finally:
@@ -253,107 +311,40 @@ def _render_view(job: Job, view: str) -> None:
         engine.end_result(result)
 
 
-def _save_scene(job: Job) -> None:
-    if job.overrides.save_scene:
-        path = job.overrides.save_scene.replace("%f", str(job.scene.frame_current))
-        job.session.library.scene_save(job.session.scene, byref(job.settings), native.text(path))
-
-
 def _sample(job: Job, view: str, result: Any) -> None:
-    library = job.session.library
-    handle = ctypes.c_uint64()
-    library.render_start(job.session.scene, byref(job.settings), byref(handle))
+    handle = _start(job, view)
     try:
-        _wait(job, handle.value, result)
-        _deliver(job, view, handle.value, result)
+        wait(job, handle, PictureDisplay(job, handle, result))
+        _deliver(job, view, handle, result)
     finally:
-        library.render_release(handle.value)
+        job.session.library.render_release(handle)
 
 
-def _wait(job: Job, handle: int, result: Any) -> None:
-    """Until the library is done; a cancelled render ends well, too: what it has so far is delivered."""
-    library = job.session.library
-    progress = native.Progress()
-    display = _Display(job, handle, result)
-    running = True
-    while running:
-        try:
-            library.render_wait(handle, POLL_SECONDS)
-            running = False
-        except GradusError as error:
-            if error.code == Error.CANCELLED:
-                job.cancelled = True
-                running = False
-            elif error.code != Error.INVALID_OPERATION:
-                raise
-        if running and not job.cancelled and job.stop():
-            job.cancelled = True
-            library.render_cancel(handle)
-        library.render_poll(handle, byref(progress))
-        display.show(progress)
-
-
-class _Display:
-    """Progress text, bar and picture: often enough to be lively, seldom enough to cost nothing."""
-
-    TEXT_SECONDS = 1.0
-    FIRST_REFRESH, LONGEST_REFRESH = 0.5, 16.0  # s between pictures; each one waits longer than the one before
-
-    def __init__(self, job: Job, handle: int, result: Any) -> None:
-        self.job, self.handle, self.result = job, handle, result
-        self.start = time.monotonic()
-        self.next_text = self.start
-        self.refresh = self.FIRST_REFRESH
-        self.next_refresh = self.start + self.refresh
-        self.version = 0
-        self.is_watched = not bpy.app.background
-        if self.is_watched:
-            _read(job, handle, frozenset((passes.Pass.COMBINED,)))  # there is nothing yet, but the library knows then that somebody looks
-
-    def show(self, progress: native.Progress) -> None:
-        engine, now = self.job.engine, time.monotonic()
-        engine.update_progress(progress.fraction)
-        if now >= self.next_text:
-            self.next_text = now + self.TEXT_SECONDS
-            engine.update_stats("", self._text(progress))
-            engine.update_memory_stats(memory_used=progress.memory_bytes / 2**20, memory_peak=progress.peak_memory_bytes / 2**20)
-        if self.is_watched and progress.version != self.version and now >= self.next_refresh:
-            self.version = progress.version
-            self._picture()
-            self.next_refresh = time.monotonic() + self.refresh
-            if now - self.start > 5.0:
-                self.refresh = min(2.0 * self.refresh, self.LONGEST_REFRESH)
-
-    def _text(self, progress: native.Progress) -> str:
-        if progress.phase == Phase.RECONSTRUCTING:
-            return "Gradus: reconstructing"
-        return f"Gradus: sample {progress.samples_done}/{self.job.settings.samples}, {100.0 * progress.fraction:.0f} %"
-
-    def _picture(self) -> None:
-        _read(self.job, self.handle, frozenset((passes.Pass.COMBINED, passes.Pass.NOISY_IMAGE)))
-        self.job.buffer.upload(self.result.layers[0])
-        self.job.engine.update_result(self.result)
-
-
-def _read(job: Job, handle: int, only: frozenset[passes.Pass] | None = None) -> None:
-    job.buffer.fill(lambda plane, target, count: job.session.library.render_read_pass(handle, plane, target, count), only)
+def _start(job: Job, view: str) -> int:
+    if job.animation is not None:
+        return job.animation.deliver(view, job.scene.frame_current, job.shot.settings)
+    handle = ctypes.c_uint64()
+    job.session.library.render_start(job.session.scene, byref(job.shot.settings), byref(handle))
+    return handle.value
 
 
 def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
-    with job.clock.phase("upload"):
-        _read(job, handle)
+    with job.shot.clock.phase("upload"):
+        job.read(handle)
         job.buffer.upload(result.layers[0])
     if job.is_preview or job.cancelled:
         return
     library = job.session.library
     job.warn([])
-    folder = host_value("frame_store", job.scene, job.overrides)
-    if folder:
+    folder = job.host_value("frame_store")
+    if folder and job.animation is None:
         frame_store.save(library, handle, bpy.path.abspath(folder), job.scene, job.layer, view)
     text = ctypes.c_char_p()
     library.render_stats(handle, byref(text))
     host = {"frame": job.scene.frame_current, "layer": job.layer.name, "scene": job.scene.name, "view": view}
-    summary = stats.complete((text.value or b"").decode("utf-8", "replace"), host, job.clock, job.warnings)
+    summary = stats.complete((text.value or b"").decode("utf-8", "replace"), host, job.shot.clock, job.shot.warnings)
+    if job.frame_by_frame:
+        summary.setdefault("plan", {})["frame_by_frame"] = job.frame_by_frame
     store.summaries[(job.scene.name, job.layer.name)] = summary
     _stamp(job.engine, summary)
     if job.overrides.stats:

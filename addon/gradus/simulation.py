@@ -12,10 +12,12 @@ What was found in 3.4, 4.5 and 5.0, and is relied on here:
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import bpy
+
+from .export import Cancelled
 
 _DEFORMING = frozenset({"CLOTH", "SOFT_BODY"})
 
@@ -60,16 +62,22 @@ class Simulations:
         self.names.append(name)
         self._first = min(self._first, first)
 
-    def show(self, frame: int, beyond: int = 0) -> None:
-        """Moves the scene to a frame, with the simulations computed `beyond` it: an export that visits the frames around reads those."""
-        self._compute(frame + max(beyond, 1))  # the second frame of a simulation is what puts the first into the cache
+    def show(self, frame: int) -> None:
+        """Moves the scene to a frame that was computed."""
         if self.scene.frame_current != frame:
             self.scene.frame_set(frame)
 
-    def _compute(self, last: int) -> None:
-        if self._computed is not None and last <= self._computed:
+    def compute(self, last: int, stop: Callable[[], bool]) -> None:
+        """Up to the frame `last`, and one more: a simulation's second frame is what puts the first into the cache. Raises Cancelled."""
+        if self._computed is not None and last < self._computed:
             return
         self._count_as_baked(False)
+        try:
+            self._step(last + 1, stop)
+        finally:
+            self._count_as_baked(True)
+
+    def _step(self, last: int, stop: Callable[[], bool]) -> None:
         if self._computed is None:
             for obj in self._guessed:
                 obj.update_tag(refresh={"OBJECT"})
@@ -77,9 +85,10 @@ class Simulations:
         # Also where the scene seems to be there: the caches have been read at other frames meanwhile.
         self.scene.frame_set(self._computed)
         for frame in range(self._computed + 1, last + 1):
+            if stop():
+                raise Cancelled
             self.scene.frame_set(frame)
             self._computed = frame
-        self._count_as_baked(True)
 
     def _count_as_baked(self, wanted: bool) -> None:
         operator = bpy.ops.ptcache.bake_from_cache if wanted else bpy.ops.ptcache.free_bake

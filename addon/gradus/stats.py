@@ -18,6 +18,7 @@ class Clock:
         self.cpu: dict[str, float] = {}
         self._start = time.perf_counter()
         self._cpu_start = time.process_time()
+        self._stopped = (0.0, 0.0)
 
     @contextmanager
     def phase(self, name: str) -> Any:
@@ -27,6 +28,14 @@ class Clock:
         finally:
             self.wall[name] = self.wall.get(name, 0.0) + time.perf_counter() - wall
             self.cpu[name] = self.cpu.get(name, 0.0) + time.process_time() - cpu
+
+    def stop(self) -> None:
+        """What follows is the work of other frames, until go_on()."""
+        self._stopped = time.perf_counter(), time.process_time()
+
+    def go_on(self) -> None:
+        self._start += time.perf_counter() - self._stopped[0]
+        self._cpu_start += time.process_time() - self._stopped[1]
 
     def total(self) -> float:
         return time.perf_counter() - self._start

@@ -145,6 +145,7 @@ def release_kind(kind: str) -> None:
 
 def clear() -> None:
     """Frees all sessions and devices."""
+    _end_job()
     with _lock:
         keys = list(_sessions)
     for key in keys:
@@ -161,10 +162,19 @@ def clear() -> None:
 
 # ------------------------------------------------------------------------------------------------ handlers
 
+job_ends: list[Callable[[], None]] = []
+"""Called after the last frame of a render, whether it is finished, cancelled or gone with its file."""
+
+
+def _end_job() -> None:
+    for end in job_ends:
+        end()
+
 
 @bpy.app.handlers.persistent
 def _after_render(scene: Any, *_: Any) -> None:
     """An animation keeps its scene between frames, also without persistent data; after its end the memory goes back."""
+    _end_job()
     simulation.clear()
     if scene is None or not scene.render.use_persistent_data:
         release_kind(FINAL)
@@ -172,6 +182,7 @@ def _after_render(scene: Any, *_: Any) -> None:
 
 @bpy.app.handlers.persistent
 def _before_load(*_: Any) -> None:
+    _end_job()
     simulation.forget()
     release_kind(FINAL)
     summaries.clear()

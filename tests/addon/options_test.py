@@ -58,6 +58,8 @@ def test_passes() -> None:
         Pass.NOISY_IMAGE,
         Pass.GRADIENT_X,
         Pass.GRADIENT_Y,
+        Pass.GRADIENT_T,
+        Pass.GRADIENT_T_LINK,
     }
 
 

@@ -1,32 +1,18 @@
-"""Simulations that are not baked, in rendered animations: what is exported of a frame is what stepping the scene to it gives."""
+"""Simulations that are not baked, in rendered animations, frame by frame and ahead of their delivery: what is exported of a frame is what
+stepping the scene to it gives."""
 
 from __future__ import annotations
 
-from collections import defaultdict
 from pathlib import Path
-from typing import Any
 
 import bpy
 import pytest
-from gradus import simulation, store
+from gradus import simulation
 from support import images, recording, simulations
+from support.exports import Exports
 
 LAST = 8
 TOLERANCE = 2e-4  # particles go through caches of less precision
-
-
-class Exports:
-    """What was exported, by view layer, in order."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.of: dict[str, list[tuple[int, simulations.Places]]] = defaultdict(list)
-        sync = store.Session.sync
-
-        def note(session: store.Session, depsgraph: Any, *arguments: Any) -> Any:
-            self.of[depsgraph.view_layer.name].append((depsgraph.scene_eval.frame_current, simulations.places(depsgraph)))
-            return sync(session, depsgraph, *arguments)
-
-        monkeypatch.setattr(store.Session, "sync", note)
 
 
 @pytest.fixture
@@ -34,7 +20,7 @@ def exports(monkeypatch: pytest.MonkeyPatch) -> Exports:
     return Exports(monkeypatch)
 
 
-def new_scene(kind: str, first: int = 1, last: int = LAST) -> bpy.types.Scene:
+def new_scene(kind: str, first: int = 1, last: int = LAST, temporal: bool = False) -> bpy.types.Scene:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)
@@ -42,7 +28,8 @@ def new_scene(kind: str, first: int = 1, last: int = LAST) -> bpy.types.Scene:
     scene.frame_start, scene.frame_end = 1, 50  # caches take their range from the scene's
     simulations.KINDS[kind]()
     scene.frame_start, scene.frame_end = first, last
-    scene.gradus.samples, scene.gradus.reconstruction, scene.gradus.integrator = 1, "NONE", "PATH"
+    scene.render.resolution_x, scene.render.resolution_y = 16, 9
+    scene.gradus.samples, scene.gradus.reconstruction, scene.gradus.use_temporal = 2, "L2", temporal
     return scene
 
 
@@ -50,7 +37,7 @@ def check(kind: str, found: list[tuple[int, simulations.Places]], frames: range,
     truth = simulations.in_order(new_scene(kind, starts_at), starts_at, LAST)
     assert [frame for frame, _ in found] == list(frames), "each frame is exported once, in order"
     for frame, places in found:
-        assert set(places) == set(truth[frame])
+        assert set(places) == set(truth[frame]), frame
         for name, place in places.items():
             assert place == pytest.approx(truth[frame][name], abs=TOLERANCE), (frame, name)
     moving = {name for name in truth[LAST] if truth[LAST][name] != pytest.approx(truth[starts_at].get(name, ()), abs=TOLERANCE)}
@@ -69,20 +56,26 @@ def kind(request: pytest.FixtureRequest) -> str:
     return request.param
 
 
-def test_a_simulation_is_that_of_the_scene_stepped_in_order(kind: str, exports: Exports, tmp_path: Path) -> None:
-    render(new_scene(kind), tmp_path)
+@pytest.fixture(params=[False, True], ids=["frame by frame", "ahead"])
+def temporal(request: pytest.FixtureRequest) -> bool:
+    return request.param
+
+
+def test_c6_a_simulation_is_that_of_the_scene_stepped_in_order(kind: str, temporal: bool, exports: Exports, tmp_path: Path) -> None:
+    render(new_scene(kind, temporal=temporal), tmp_path)
     check(kind, exports.of["ViewLayer"], range(1, LAST + 1))
 
 
-def test_a_later_first_frame_and_persistent_data_change_nothing(kind: str, exports: Exports, tmp_path: Path) -> None:
-    scene = new_scene(kind, first=4)
+def test_c6_a_later_first_frame_and_persistent_data_change_nothing(kind: str, temporal: bool, exports: Exports, tmp_path: Path) -> None:
+    scene = new_scene(kind, first=4, temporal=temporal)
     scene.render.use_persistent_data = True
     render(scene, tmp_path)
     check(kind, exports.of["ViewLayer"], range(4, LAST + 1), starts_at=4 if kind == "simulation zone" else 1)
 
 
-def test_layers_and_frames_around_for_vectors_change_nothing(kind: str, exports: Exports, tmp_path: Path) -> None:
-    scene = new_scene(kind)
+def test_c6_layers_and_frames_around_for_vectors_change_nothing(kind: str, temporal: bool, exports: Exports, tmp_path: Path) -> None:
+    scene = new_scene(kind, temporal=temporal)
+    scene.gradus.window_size, scene.gradus.window_overlap = 4, 2  # so that frames are looked for ahead more than once
     scene.view_layers.new("Second")
     for layer in scene.view_layers:
         layer.use_pass_vector = True

@@ -64,6 +64,22 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
         layout.label(text=text, icon=icon)
 
 
+class GRADUS_RENDER_PT_temporal(RenderPanel, bpy.types.Panel):
+    bl_label = "Temporal"
+    bl_parent_id = "GRADUS_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw_header(self, context: Any) -> None:
+        self.layout.prop(context.scene.gradus, "use_temporal", text="")
+
+    def draw(self, context: Any) -> None:
+        layout, settings = self.columns(), context.scene.gradus
+        column = layout.column(align=True)
+        column.active = settings.use_temporal
+        column.prop(settings, "window_size")
+        column.prop(settings, "window_overlap")
+
+
 class GRADUS_RENDER_PT_denoise(RenderPanel, bpy.types.Panel):
     bl_label = "Denoise"
     bl_parent_id = "GRADUS_RENDER_PT_sampling"
@@ -187,6 +203,7 @@ CLASSES = (
     GRADUS_OT_copy_from_cycles,
     GRADUS_RENDER_PT_sampling,
     GRADUS_RENDER_PT_method,
+    GRADUS_RENDER_PT_temporal,
     GRADUS_RENDER_PT_denoise,
     GRADUS_RENDER_PT_advanced,
     GRADUS_RENDER_PT_light_paths,

@@ -1,0 +1,396 @@
+"""Animations whose frames are sampled ahead: what Blender gets of them, and what happens when something goes wrong on the way."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from gradus import animation, native, renderer, store
+from gradus.export import ExportError
+from support import application, images, recording, simulations
+from support.animation import key
+from support.exports import Exports
+
+WIDTH, HEIGHT = 32, 18
+
+
+@pytest.fixture
+def moving(scene: bpy.types.Scene) -> bpy.types.Scene:
+    """A square that moves before a grey world, ten frames long."""
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    key(recording.add(recording.grid(2), "Moving"), "location", {0: (-1.0, 0.0, 0.0), 20: (1.0, 0.0, 0.0)})
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (0.3, 0.3, 0.3)
+    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.frame_start, scene.frame_end = 1, 10
+    scene.gradus.reconstruction, scene.gradus.samples = "L2", 4
+    scene.view_layers[0].gradus.use_pass_gradients = True
+    return scene
+
+
+@pytest.fixture
+def exports(monkeypatch: pytest.MonkeyPatch) -> Exports:
+    return Exports(monkeypatch)
+
+
+@pytest.fixture
+def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
+    """lines(): the stats of all delivered frames, in order."""
+    path = tmp_path / "stats.jsonl"
+    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
+    yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def animate(scene: bpy.types.Scene, folder: Path) -> None:
+    images.use_exr(scene, folder / "f_####.exr")
+    bpy.ops.render.render(animation=True, scene=scene.name)
+
+
+def frames_in(folder: Path) -> list[int]:
+    return sorted(int(path.stem.removeprefix("f_")) for path in folder.glob("f_*.exr"))
+
+
+def combined(folder: Path, frame: int) -> np.ndarray:
+    return images.read(folder / f"f_{frame:04d}.exr")["Combined"]
+
+
+def require_nothing_kept() -> None:
+    assert animation._running == {}
+
+
+# ------------------------------------------------------------------------------------------------ every frame
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+def test_c3_every_frame_is_delivered_and_exported_once(
+    moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path, persistent: bool
+) -> None:
+    moving.frame_end = 17
+    moving.render.use_persistent_data = persistent
+    animate(moving, tmp_path)
+    assert frames_in(tmp_path) == exports.frames() == [line["frame"] for line in lines()] == list(range(1, 18))
+    pictures = [combined(tmp_path, frame) for frame in range(1, 18)]
+    assert all(np.isfinite(picture).all() for picture in pictures)
+    assert all(not np.array_equal(a, b) for a, b in zip(pictures, pictures[1:], strict=False))
+    places = [places["Moving [0]"][0] for _, places in exports.of["ViewLayer"]]
+    assert np.allclose(np.diff(places), 0.1, atol=1e-5), "each is the square where it is in its frame"
+    require_nothing_kept()
+
+
+@pytest.mark.parametrize(("first", "last", "step"), [(7, 16, 3), (7, 15, 3), (0, 4, 1), (9, 11, 2)])
+def test_c3_any_range_and_step(
+    moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path, first: int, last: int, step: int
+) -> None:
+    moving.frame_start, moving.frame_end, moving.frame_step = first, last, step
+    animate(moving, tmp_path)
+    assert frames_in(tmp_path) == exports.frames() == list(range(first, last + 1, step))
+    assert all(line["spp_offset"] == 2 for line in lines())
+
+
+def test_c2_a_job_of_one_frame_is_a_still(moving: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
+    still = render(moving, frame=5)["Combined"]
+    moving.frame_start = moving.frame_end = 5
+    animate(moving, tmp_path)
+    assert np.array_equal(combined(tmp_path, 5), still)
+
+
+def test_c2_without_temporal_all_frames_are_stills(moving: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
+    still = render(moving, frame=5)["Combined"]
+    moving.gradus.use_temporal = False
+    moving.frame_end = 6
+    animate(moving, tmp_path)
+    assert np.array_equal(combined(tmp_path, 5), still)
+    plan = store.summaries["Scene", "ViewLayer"]["plan"]
+    assert plan["frame_by_frame"] == "temporal is off"
+
+
+def test_differences_over_time_follow_the_surface(moving: bpy.types.Scene, tmp_path: Path) -> None:
+    moving.frame_end = 3
+    animate(moving, tmp_path)
+    passes = [images.read(tmp_path / f"f_{frame:04d}.exr") for frame in (1, 3)]
+    links = passes[0]["Gradient T Link"]
+    found = links[..., 2] == 1.0
+    moves = 0.1 * WIDTH / 4.0  # pixels in a frame: links are whole
+    assert found.mean() > 0.8
+    assert set(np.unique(links[found][:, 0])) <= {0.0, np.round(moves)}
+    assert (links[found][:, 0] == np.round(moves)).any()
+    assert not passes[1]["Gradient T"].any(), "the last frame has none after it"
+
+
+def test_samples_are_those_of_the_frames_own_settings(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
+    for frame, samples in ((4, 4), (5, 8)):
+        moving.gradus.samples = samples
+        moving.keyframe_insert("gradus.samples", frame=frame)
+    moving.frame_end = 6
+    animate(moving, tmp_path)
+    assert [line["samples"] for line in lines()] == [4, 4, 4, 4, 8, 8]
+
+
+def test_what_stands_still_is_sampled_once(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
+    bpy.data.objects["Moving"].animation_data_clear()
+    animate(moving, tmp_path)
+    assert [line["stopped"] for line in lines()] == ["samples", *["unchanged"] * 9]
+
+
+def test_layers_have_animations_of_their_own(moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path) -> None:
+    moving.view_layers.new("Second").samples = 2
+    moving.frame_end = 6
+    animate(moving, tmp_path)
+    for layer in ("ViewLayer", "Second"):
+        assert exports.frames(layer) == list(range(1, 7))
+    assert [(line["frame"], line["layer"], line["samples"]) for line in lines()] == [
+        (frame, layer, samples) for frame in range(1, 7) for layer, samples in (("ViewLayer", 4), ("Second", 2))
+    ]
+
+
+def test_views_have_sequences_of_their_own(moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path) -> None:
+    moving.render.use_multiview = True
+    moving.frame_end = 6
+    moving.camera.location.z = 5.0
+    animate(moving, tmp_path)
+    assert exports.frames() == [frame for frame in range(1, 7) for _ in range(2)]
+    assert [(line["frame"], line["view"]) for line in lines()] == [(frame, view) for frame in range(1, 7) for view in ("left", "right")]
+
+
+def test_motion_blur_returns_to_the_frame(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:
+    moving.render.use_motion_blur = True
+    moving.view_layers[0].use_pass_vector = True
+    moving.gradus.vector_with_motion_blur = True
+    moving.frame_end = 6
+    animate(moving, tmp_path)
+    assert exports.frames() == list(range(1, 7))
+    assert np.allclose([places["Moving [0]"][0] for _, places in exports.of["ViewLayer"]], [-0.9, -0.8, -0.7, -0.6, -0.5, -0.4], atol=1e-5)
+    vector = images.read(tmp_path / "f_0004.exr")["Vector"]
+    assert np.allclose(vector[HEIGHT // 2, int(WIDTH * 0.35), [0, 2]], -0.1 * WIDTH / 4.0, atol=0.01)
+
+
+def test_the_files_of_frames_are_saved_as_the_scene_is_in_them(moving: bpy.types.Scene, tmp_path: Path) -> None:
+    """Blender takes the exposure of pictures that it saves from the scene itself."""
+    simulations.rigid_body()  # for which the scene is stepped
+    for frame, exposure in ((1, 0.0), (6, -5.0)):
+        moving.view_settings.exposure = exposure
+        moving.keyframe_insert("view_settings.exposure", frame=frame)
+    moving.frame_end = 6
+    brightness = {}
+    for ahead in (True, False):
+        moving.gradus.use_temporal = ahead
+        moving.render.image_settings.file_format = "PNG"
+        moving.render.filepath = str(tmp_path / f"{ahead}_####")
+        bpy.ops.render.render(animation=True, scene=moving.name)
+        files = sorted(tmp_path.glob(f"{ahead}_*"))
+        brightness[ahead] = [images.oiio.ImageBuf(str(path)).getpixel(1, 1)[0] for path in files]
+    assert len(brightness[True]) == 6
+    assert np.allclose(brightness[True], brightness[False], atol=0.01)
+    assert brightness[True][0] > 2.0 * brightness[True][5]
+
+
+# ------------------------------------------------------------------------------------------------ parts of an animation
+
+
+def test_files_that_are_there_split_the_animation(moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path) -> None:
+    moving.render.use_overwrite = False
+    for frame in (4, 7, 8):
+        (tmp_path / f"f_{frame:04d}.exr").write_bytes(b"mine")
+    animate(moving, tmp_path)
+    assert exports.frames() == [1, 2, 3, 5, 6, 9, 10]
+    assert all(line["spp_offset"] == 2 for line in lines())
+    assert (tmp_path / "f_0004.exr").read_bytes() == b"mine"
+
+
+def test_frames_that_processes_share_by_placeholders_are_on_their_own(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
+    moving.render.use_overwrite, moving.render.use_placeholder = False, True
+    moving.frame_end = 3
+    animate(moving, tmp_path)
+    assert [line.get("spp_offset", 0) for line in lines()] == [0, 0, 0]
+
+
+def test_c7_parts_that_share_a_frame_store_are_the_whole(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:
+    whole, parts, again = (tmp_path / name for name in ("whole", "parts", "again"))
+    for folder in (whole, parts, again):
+        folder.mkdir()
+    moving.gradus.frame_store = str(tmp_path / "store of the whole")
+    animate(moving, whole)
+    assert exports.frames() == list(range(11)), "the frame before the first one is looked at"
+    moving.gradus.frame_store = str(tmp_path / "store")
+    for first, last in ((1, 5), (6, 10)):
+        moving.frame_start, moving.frame_end = first, last
+        animate(moving, parts)
+    for frame in range(6, 11):
+        assert np.array_equal(combined(parts, frame), combined(whole, frame))
+    # The first part has not seen the second; with all frames in the store it is the same, too.
+    moving.frame_start, moving.frame_end = 1, 5
+    animate(moving, again)
+    for frame in range(1, 6):
+        assert np.array_equal(combined(again, frame), combined(whole, frame))
+
+
+# ------------------------------------------------------------------------------------------------ faults
+
+
+def raise_in_export(frame: int, exports: Exports, _monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(number: int) -> None:
+        if number == frame:
+            raise ExportError("the camera is gone")
+
+    exports.before = fail
+
+
+def raise_in_library(frame: int, _exports: Exports, monkeypatch: pytest.MonkeyPatch) -> None:
+    library = native.load()
+    sample = library.sequence_sample
+
+    def fail(sequence: int, scene: int, settings: Any, render: Any) -> int:
+        if settings._obj.frame == frame:
+            raise native.GradusError(native.Error.UNKNOWN, "the camera is gone")
+        return sample(sequence, scene, settings, render)
+
+    monkeypatch.setattr(library, "sequence_sample", fail)
+
+
+@pytest.mark.parametrize("fault", [raise_in_export, raise_in_library])
+def test_i2_a_fault_waits_for_its_frame(
+    moving: bpy.types.Scene, exports: Exports, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, fault: Callable[..., None]
+) -> None:
+    with monkeypatch.context() as patched:
+        fault(5, exports, patched)
+        with pytest.raises(RuntimeError, match="the camera is gone"):
+            animate(moving, tmp_path)
+    assert frames_in(tmp_path) == [1, 2, 3, 4]
+    assert all(np.isfinite(combined(tmp_path, frame)).all() for frame in range(1, 5))
+    require_nothing_kept()
+    # Without the fault a rerun does the rest.
+    exports.before = lambda _frame: None
+    moving.render.use_overwrite = False
+    animate(moving, tmp_path)
+    assert frames_in(tmp_path) == list(range(1, 11))
+
+
+def test_i2_with_a_frame_store_the_rerun_gives_what_an_undisturbed_render_does(
+    moving: bpy.types.Scene, exports: Exports, tmp_path: Path
+) -> None:
+    whole, rest = tmp_path / "whole", tmp_path / "rest"
+    whole.mkdir()
+    rest.mkdir()
+    moving.gradus.frame_store = str(tmp_path / "undisturbed")
+    animate(moving, whole)
+    moving.gradus.frame_store = str(tmp_path / "disturbed")
+    raise_in_export(5, exports, None)
+    with pytest.raises(RuntimeError):
+        animate(moving, rest)
+    assert frames_in(rest) == [1, 2, 3, 4]
+    exports.before = lambda _frame: None
+    moving.render.use_overwrite = False
+    animate(moving, rest)
+    for frame in range(5, 11):
+        assert np.array_equal(combined(rest, frame), combined(whole, frame))
+
+
+@pytest.mark.parametrize(("frame", "samples"), [(1, 100000), (4, 2)])
+def test_escape_ends_the_frames_ahead(
+    moving: bpy.types.Scene, exports: Exports, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, frame: int, samples: int
+) -> None:
+    moving.gradus.samples = samples  # 100000 would take minutes
+    moving.frame_end = 6
+    delivered: list[int] = []
+    deliver = animation.Animation.deliver
+    monkeypatch.setattr(animation.Animation, "deliver", lambda *given: (delivered.append(given[2]), deliver(*given))[1])
+    monkeypatch.setattr(renderer, "stop_requested", lambda _engine: exports.frames()[-1:] == [frame])
+    begin = time.monotonic()
+    animate(moving, tmp_path)
+    assert time.monotonic() - begin < 30.0
+    assert 1 not in delivered, "it was in the frames ahead of the first one"
+    require_nothing_kept()
+
+
+# ------------------------------------------------------------------------------------------------ the command line
+
+
+def test_single_frames_are_told_from_the_command_line() -> None:
+    assert animation._asks_for_single_frames(["blender", "-b", "a.blend", "-f", "1"])
+    assert animation._asks_for_single_frames(["blender", "--render-frame", "1..5"])
+    assert not animation._asks_for_single_frames(["blender", "-s", "1", "-a"])
+    assert not animation._asks_for_single_frames(["blender", "-a", "--", "-f"])
+    assert not animation._asks_for_single_frames(["python3"])
+
+
+SETUP = """
+import bpy
+scene = bpy.context.scene
+scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 32, 18, 100
+scene.gradus.reconstruction, scene.gradus.samples = 'L2', {samples}
+cube = bpy.data.objects['Cube']
+for frame in (1, 20):
+    cube.location.x = 0.1 * frame
+    cube.keyframe_insert('location', frame=frame)
+print('SETUP DONE', flush=True)
+"""
+FAULT = """
+from gradus import store
+sync = store.Session.sync
+def fail(session, depsgraph, *arguments):
+    if depsgraph.scene_eval.frame_current == 5:
+        raise RuntimeError('a fault')
+    return sync(session, depsgraph, *arguments)
+store.Session.sync = fail
+"""
+
+
+def arguments(folder: Path, *more: str, samples: int = 2, script: str = "") -> list[str]:
+    expression = SETUP.format(samples=samples) + script
+    return ["--addons", "gradus", "-E", "GRADUS", "--python-expr", expression, "-o", f"{folder}/f_####", "-F", "PNG", *more]
+
+
+@pytest.mark.parametrize(
+    ("asked", "frames", "follows"),
+    [
+        (("-s", "2", "-e", "9", "-j", "3", "-a"), [2, 5, 8], True),
+        (("-s", "1", "-e", "9", "-f", "3"), [3], False),
+        (("-f", "4..5"), [4, 5], False),
+    ],
+)
+def test_c3_frames_of_the_command_line(
+    blender: Callable[..., application.Outcome], tmp_path: Path, asked: tuple[str, ...], frames: list[int], follows: bool
+) -> None:
+    stats = tmp_path / "stats.jsonl"
+    outcome = blender(*arguments(tmp_path, *asked), "--", "--gradus-stats", str(stats))
+    assert outcome.code == 0, outcome.output
+    assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [f"f_{frame:04d}.png" for frame in frames]
+    lines = [json.loads(line) for line in stats.read_text().splitlines()]
+    assert [line["frame"] for line in lines] == frames
+    assert all((line.get("spp_offset", 0) > 0) == follows for line in lines)
+
+
+def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
+    outcome = blender(*arguments(tmp_path, "-s", "1", "-e", "10", "-a", script=FAULT))
+    assert outcome.code == 1, outcome.output
+    assert "a fault" in outcome.output
+    assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [f"f_{frame:04d}.png" for frame in range(1, 5)]
+
+
+@pytest.mark.application
+@pytest.mark.parametrize("seconds", [0.1, 0.6, 1.5])
+def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds: float) -> None:
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    asked = arguments(tmp_path, "-s", "1", "-e", "20", "-a", samples=2000)
+    process = application.start(*asked, folder=tmp_path / "home", env={"TMPDIR": str(temporary)})
+    for line in process.stdout:
+        if b"SETUP DONE" in line:
+            break
+    time.sleep(seconds)
+    begin = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    output, _ = process.communicate(timeout=30)
+    assert process.returncode == 1, output
+    assert time.monotonic() - begin < 1.0
+    assert list(tmp_path.glob("f_*.png")) == []
+    assert os.listdir(temporary) == [], "frames that were kept for their neighbours are gone"
