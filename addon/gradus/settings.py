@@ -193,7 +193,7 @@ SETTINGS: tuple[Setting, ...] = (
         True,
         "Temporal",
         "In animations half of the samples follow those of the frame before, and neighbouring frames are reconstructed together: less "
-        "flicker at the same cost. With Weighted, L2 and L1",
+        "flicker at the same cost. Not with integrator PATH, or reconstruction NONE",
         0,
         1,
         native=False,
