@@ -41,7 +41,7 @@ FAULTS = {
     "out of memory": "fault(exporter.Exporter, 'sync', MemoryError())",
     "render": "fault(renderer, 'render')",
     "build": "fault(store.Session, 'commit', native.GradusError(4, 'out of memory'))",
-    "sampling": "fault(renderer, '_wait', native.GradusError(1, 'sampling failed'))",
+    "sampling": "fault(renderer, 'wait', native.GradusError(1, 'sampling failed'))",
     "upload": "fault(pixels.PassBuffer, 'upload')",
     "half uploaded": "fault(pixels.PassBuffer, 'upload', before=False)",
     "statistics": "fault(stats, 'complete', OSError(28, 'No space left on device'))",
@@ -62,9 +62,11 @@ def files(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.glob("f_*"))
 
 
+@pytest.mark.parametrize("ahead", [False, True], ids=["frame by frame", "ahead"])
 @pytest.mark.parametrize("name", list(FAULTS))
-def test_i1_injected_failures(blender: Callable[..., Outcome], tmp_path: Path, name: str) -> None:
-    outcome = animate(blender, tmp_path, FAULTS[name], range(1, 4))
+def test_i1_injected_failures(blender: Callable[..., Outcome], tmp_path: Path, name: str, ahead: bool) -> None:
+    fault = "scene.gradus.integrator, scene.gradus.samples = 'AUTO', 2\n" * ahead + FAULTS[name]
+    outcome = animate(blender, tmp_path, fault, range(1, 4))
     assert outcome.code == 1, outcome.output
     assert "Error: Gradus: " in outcome.output
     assert files(tmp_path) == ["f_0001.png"]

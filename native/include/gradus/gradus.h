@@ -575,7 +575,7 @@ GRADUS_API GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusSc
 GRADUS_API GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last);
 /* Reconstructs what is needed of the windows of `frame`; passes, stats and frame of the render are those of the delivered frame, once it
  * has ended. Frames in order. settings: other values of reconstruction, reconstruction_alpha, denoiser and film_exposure than the frames
- * were sampled for; may be NULL. */
+ * were sampled for (AUTO: none other); may be NULL. */
 GRADUS_API GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings,
                                                GradusRender* render);
 GRADUS_API GradusError gradus_sequence_release(GradusSequence sequence);
