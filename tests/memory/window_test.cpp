@@ -11,6 +11,7 @@
 #include "reconstruct/space_time/window.h"
 #include "reconstruct/space_time/window_solver.h"
 #include "support/statistics.h"
+#include "temporal/spooled_window.h"
 
 namespace gradus::memory {
 namespace {
@@ -105,6 +106,29 @@ TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
   const double pixels = double(size.width) * size.height * size.frames, bytes = double(peak_bytes() - before) / pixels;
   std::printf("  %.1f bytes, %.2f µs per pixel and frame\n", bytes, 1e-3 * double(process_cpu_nanoseconds() - start - opening) / pixels);
   EXPECT_LE(bytes, 160.0);
+}
+
+std::shared_ptr<const Frame> flat_frame(const WindowSize& size, int32_t number) {
+  auto frame = std::make_shared<Frame>(uint32_t(size.width), uint32_t(size.height), Region{0, 0, size.width, size.height}, 3, 1, true);
+  for (auto& counts : frame->count) std::fill(counts.begin(), counts.end(), 1u);
+  frame->frame_number = number;
+  return frame;
+}
+
+// Two frames at a time while they are read, then none.
+TEST(J1_Window, InputsAreNotHeld) {
+  const WindowSize size = test::full_run() ? full_window() : small_window();
+  const double pixels = double(size.width) * size.height * size.frames;
+  const auto open = [&](int place) { return flat_frame(size, place); };
+  const int64_t before = live_bytes();
+  forget_peak();
+  const uint64_t start = process_cpu_nanoseconds();
+  const SpooledWindow window(size.frames, open, open);
+  const double seconds = 1e-9 * double(process_cpu_nanoseconds() - start);
+  const double held = double(live_bytes() - before) / pixels, most = double(peak_bytes() - before) / pixels;
+  std::printf("  %.3f bytes, at most %.1f while they are read, %.2f CPU-s\n", held, most, seconds);
+  EXPECT_LE(held, 0.1);
+  EXPECT_LE(most, 80.0);
 }
 
 // What is kept does not grow with the length of a sequence.

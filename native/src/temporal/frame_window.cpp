@@ -58,16 +58,6 @@ void FrameWindow::read_half_differences(RowKind kind, int t, int y, float* out) 
   read(kind, t, y, &HalvedImages::half_differences, out);
 }
 
-void FrameWindow::read_deviations(RowKind kind, int t, int y, float* out) const {
-  const size_t channels = size_t(size().channels);
-  std::vector<float> halves(size_t(size().width) * channels);
-  read_half_differences(kind, t, y, halves.data());
-  for (size_t x = 0; x < size_t(size().width); ++x) {
-    const float* d = halves.data() + x * channels;
-    out[x] = std::sqrt((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / 3.0f);
-  }
-}
-
 void FrameWindow::read_links(int t, int y, int32_t* out) const {
   const std::vector<int32_t>& links = frames_[size_t(t)]->links;
   const auto first = links.begin() + ptrdiff_t(y) * size().width;

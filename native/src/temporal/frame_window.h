@@ -17,7 +17,6 @@ class FrameWindow final : public HalvedWindowSource {
 
   WindowSize size() const override;
   void read_row(RowKind kind, int t, int y, float* out) const override;
-  void read_deviations(RowKind kind, int t, int y, float* out) const override;
   void read_half_differences(RowKind kind, int t, int y, float* out) const override;
   void read_links(int t, int y, int32_t* out) const override;
 

@@ -27,9 +27,11 @@ struct TemporalFrame {
 // Without links.
 TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay);
 
-// Frames in order, with their links: those that the replay of each next one has followed. base, replay: the parts of a frame, by its place;
-// held no longer than the frame is made.
+// The parts of a frame, by its place; held no longer than the frame is made.
 using LoadPart = std::function<std::shared_ptr<const Frame>(int place)>;
-std::vector<std::shared_ptr<const TemporalFrame>> make_temporal_frames(int count, const LoadPart& base, const LoadPart& replay);
+// Takes frames in order, each with the next one, nullptr after the last: links are those that the replay of the next has followed. No more
+// than two are held at a time.
+using TakeFrame = std::function<void(std::shared_ptr<const TemporalFrame> frame, const std::shared_ptr<const TemporalFrame>& next)>;
+void for_temporal_frames(int count, const LoadPart& base, const LoadPart& replay, const TakeFrame& take);
 
 }  // namespace gradus

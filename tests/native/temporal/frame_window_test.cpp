@@ -2,8 +2,12 @@
 #include "temporal/frame_window.h"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "temporal/spooled_window.h"
 
 namespace gradus {
 namespace {
@@ -75,6 +79,113 @@ TEST_F(TwoFrames, DeviationsAreThoseOfTheRows) {
 TEST_F(TwoFrames, HalfDifferencesAreThoseOfTheRows) {
   EXPECT_NEAR(half_differences(RowKind::kDt, 0)[1], 0.9f - 0.2f, 1e-6f);
   EXPECT_TRUE(std::isnan(half_differences(RowKind::kDt, 0)[2]));
+}
+
+Frame sampled(int32_t number, uint32_t seed, int width = 20) {
+  Frame frame(uint32_t(width), 8, {0, 0, width, 8}, 4, 1, true);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  const auto fill = [&](std::vector<Radiance>* plane) {
+    for (Radiance& value : *plane) value = {uniform(random), uniform(random), uniform(random), uniform(random)};
+  };
+  for (int half = 0; half < kHalves; ++half) {
+    fill(&frame.components[0].primal[half]);
+    for (auto& plane : frame.components[0].gradient[half]) fill(&plane);
+    for (uint32_t& count : frame.count[half]) count = uint32_t(random() % 3);
+    for (auto& plane : frame.pair_count[half]) {
+      for (float& count : plane) count = float(random() % 3);
+    }
+  }
+  frame.frame_number = number;
+  return frame;
+}
+
+// Five frames: the last but one shows what the one before shows, and each has followed the one before, but for a pixel without a source.
+class FiveFrames : public testing::Test {
+ protected:
+  FiveFrames() {
+    for (int place = 0; place < 5; ++place) {
+      const int own = place == 3 ? 2 : place;
+      base_.push_back(std::make_shared<Frame>(sampled(own, uint32_t(own))));
+      auto replay = std::make_shared<Frame>(sampled(own, uint32_t(10 + own)));
+      replay->replayed.stream_frame = place == 4 ? 2 : own - 1;
+      for (int i = 0; i < 160; ++i) replay->replayed.pixel.push_back(i == 7 ? kNoLink : (i + 3) % 160);
+      replay_.push_back(std::move(replay));
+    }
+  }
+  SpooledWindow spooled() const { return SpooledWindow(5, load(base_), load(replay_)); }
+  static LoadPart load(const std::vector<std::shared_ptr<Frame>>& frames) {
+    return [&](int place) { return frames[size_t(place)]; };
+  }
+  std::vector<std::shared_ptr<Frame>> base_, replay_;
+};
+
+// As the bits of rows: absent differences are no numbers.
+TEST_F(FiveFrames, SpooledRowsAreThoseOfTheFramesInMemory) {
+  std::vector<std::shared_ptr<const TemporalFrame>> frames;
+  for_temporal_frames(5, load(base_), load(replay_), [&](auto frame, const auto&) { frames.push_back(std::move(frame)); });
+  const FrameWindow whole(frames);
+  const SpooledWindow spooled = this->spooled();
+  EXPECT_EQ(spooled.size().frames, 5);
+  const auto same = [&](size_t bytes, const auto& read) {
+    std::vector<unsigned char> expected(bytes), row(bytes);
+    read(whole, expected.data());
+    read(spooled, row.data());
+    EXPECT_EQ(row, expected);
+  };
+  for (int t = 0; t < 5; ++t) {
+    for (int y = 0; y < 8; ++y) {
+      for (const RowKind kind : kRowKinds) {
+        if (t == 4 && is_temporal(kind)) continue;
+        same(20 * 4 * sizeof(float), [&](const auto& source, void* out) { source.read_row(kind, t, y, static_cast<float*>(out)); });
+        same(20 * sizeof(float), [&](const auto& source, void* out) { source.read_deviations(kind, t, y, static_cast<float*>(out)); });
+      }
+      if (t < 4) same(20 * sizeof(int32_t), [&](const auto& source, void* out) { source.read_links(t, y, static_cast<int32_t*>(out)); });
+    }
+  }
+}
+
+TEST_F(FiveFrames, LinksAreThoseThatTheNextFrameHasFollowed) {
+  const SpooledWindow window = spooled();
+  std::vector<int32_t> links(20);
+  window.read_links(0, 0, links.data());
+  EXPECT_EQ(links[3], 0);
+  EXPECT_EQ(links[10], kNoLink) << "nobody has followed it";
+  window.read_links(2, 0, links.data());
+  EXPECT_EQ(links[10], 10) << "the same frame again";
+  window.read_links(3, 0, links.data());
+  EXPECT_EQ(links[3], 0);
+}
+
+TEST_F(FiveFrames, OneOfAnotherSizeOrWithoutGradientsIsNamed) {
+  const auto refusal = [&] {
+    try {
+      spooled();
+      return std::string();
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+  };
+  replay_[4] = std::make_shared<Frame>(sampled(4, 1, 21));
+  EXPECT_EQ(refusal(), "stored frame 4 has another size or other planes than those beside it");
+  base_[1] = std::make_shared<Frame>(sampled(1, 1, 21));
+  EXPECT_EQ(refusal().find("stored frame 1 has another size"), 0u);
+  base_[0]->gradients = false;
+  EXPECT_EQ(refusal().find("stored frame 0 has another size or other planes"), 0u);
+}
+
+// Plain paths: differences in space were read beyond the ends of what there is.
+TEST_F(FiveFrames, WithoutGradientsThereArePixelsAndTheirDifferencesOverTime) {
+  for (const auto& frames : {base_, replay_}) {
+    for (const auto& frame : frames) frame->gradients = false;
+  }
+  const SpooledWindow window = spooled();
+  std::vector<float> row(20 * 4);
+  EXPECT_NO_THROW(window.read_row(RowKind::kPrimal, 4, 7, row.data()));
+  EXPECT_NO_THROW(window.read_half_differences(RowKind::kDt, 3, 7, row.data()));
+  for (const RowKind kind : {RowKind::kDx, RowKind::kDy, RowKind::kDxDt, RowKind::kDyDt}) {
+    EXPECT_THROW(window.read_row(kind, 0, 0, row.data()), Error);
+  }
 }
 
 }  // namespace

@@ -38,6 +38,8 @@ class HalvedWindowSource : public WindowSource {
  public:
   // (A − B)/2 of the two halves of what read_row() gives.
   virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
+  // By these: root mean squares over RGB.
+  void read_deviations(RowKind kind, int t, int y, float* out) const override;
 };
 
 }  // namespace gradus

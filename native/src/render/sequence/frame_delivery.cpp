@@ -10,7 +10,6 @@
 #include "render/pass_read.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
-#include "temporal/frame_window.h"
 
 namespace gradus {
 namespace {

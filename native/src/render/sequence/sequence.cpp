@@ -5,7 +5,7 @@
 #include "render/sequence/frame_delivery.h"
 #include "render/sequence/frame_sampling.h"
 #include "settings/options.h"
-#include "temporal/frame_window.h"
+#include "temporal/spooled_window.h"
 
 namespace gradus {
 
@@ -102,7 +102,7 @@ std::unique_ptr<HalvedWindowSource> Sequence::open_window(const FrameRange& plac
   const auto part = [&](FramePart which) {
     return [this, &places, which](int i) { return folder_.load(frame_at(places.first + i), which); };
   };
-  return std::make_unique<FrameWindow>(make_temporal_frames(places.count(), part(FramePart::kBase), part(FramePart::kOffset)));
+  return std::make_unique<SpooledWindow>(places.count(), part(FramePart::kBase), part(FramePart::kOffset));
 }
 
 std::shared_ptr<Frame> Sequence::open_frame(int32_t number, double* offset_samples) const {

@@ -1,10 +1,7 @@
 #include "render/sequence/sequence_folder.h"
 
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -12,37 +9,15 @@
 #include "frame/store.h"
 
 namespace gradus {
-namespace {
 
 namespace fs = std::filesystem;
 
-Error problem(const std::string& what, const std::string& path, const std::string& cause) {
-  return Error(GRADUS_ERROR_INVALID_OPERATION, what + " " + path + ": " + cause);
-}
-
-std::string make_temporary_folder() {
-  std::error_code error;
-  const fs::path parent = fs::temp_directory_path(error);
-  std::string path = (error ? fs::path("/tmp") : parent) / "gradus-XXXXXX";
-  if (mkdtemp(path.data()) == nullptr) throw problem("cannot make a temporary folder", path, std::strerror(errno));
-  return path;
-}
-
-}  // namespace
-
-SequenceFolder::SequenceFolder(const std::string& path) : path_(path), is_temporary_(path.empty()) {
-  if (is_temporary_) {
-    path_ = make_temporary_folder();
-    return;
-  }
+SequenceFolder::SequenceFolder(const std::string& path)
+    : temporary_(path.empty() ? std::make_unique<TemporaryFolder>() : nullptr), path_(temporary_ ? temporary_->path() : path) {
+  if (temporary_) return;
   std::error_code error;
   fs::create_directories(path_, error);
-  if (error) throw problem("cannot make the frame store's folder", path_, error.message());
-}
-
-SequenceFolder::~SequenceFolder() {
-  std::error_code ignored;
-  if (is_temporary_) fs::remove_all(path_, ignored);
+  if (error) throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make the frame store's folder " + path_ + ": " + error.message());
 }
 
 std::string SequenceFolder::path(int32_t frame, FramePart part) const {
@@ -72,7 +47,7 @@ void SequenceFolder::repeat(int32_t from, int32_t to) const {
 
 void SequenceFolder::forget(int32_t frame) const {
   std::error_code ignored;
-  if (!is_temporary_) return;
+  if (!temporary_) return;
   for (const FramePart part : {FramePart::kBase, FramePart::kOffset}) fs::remove(path(frame, part), ignored);
 }
 

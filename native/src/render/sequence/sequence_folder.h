@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "base/temporary_folder.h"
 #include "frame/frame.h"
 
 namespace gradus {
@@ -15,11 +16,8 @@ class SequenceFolder {
  public:
   // path: made if it is not there; empty: a folder for temporary files, which goes when this does.
   explicit SequenceFolder(const std::string& path);
-  ~SequenceFolder();
-  SequenceFolder(const SequenceFolder&) = delete;
-  SequenceFolder& operator=(const SequenceFolder&) = delete;
 
-  bool is_temporary() const { return is_temporary_; }
+  bool is_temporary() const { return temporary_ != nullptr; }
   std::string path(int32_t frame, FramePart part) const;
   // Whether both parts of a frame are there.
   bool holds(int32_t frame) const;
@@ -32,8 +30,8 @@ class SequenceFolder {
   void forget(int32_t frame) const;
 
  private:
+  std::unique_ptr<const TemporaryFolder> temporary_;
   std::string path_;
-  bool is_temporary_;
 };
 
 }  // namespace gradus
