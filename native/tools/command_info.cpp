@@ -9,6 +9,7 @@
 #include "frame/image_exr.h"
 #include "frame/store.h"
 #include "settings/options.h"
+#include "stored_sequence.h"
 
 namespace gradus::tool {
 namespace {
@@ -59,7 +60,22 @@ ordered_json frame_info(const std::string& path) {
           {"settings", settings_to_json(frame->settings)}};
 }
 
+ordered_json sequence_info(const std::string& folder) {
+  const StoredSequence stored(folder);
+  const int32_t first = stored.frames().front(), last = stored.frames().back();
+  ordered_json frame = frame_info(stored.path(first));
+  ordered_json info{{"kind", "sequence"},
+                    {"first", first},
+                    {"last", last},
+                    {"step", stored.step()},
+                    {"frames", stored.frames().size()},
+                    {"missing", stored.missing(first, last)}};
+  for (const char* of_all : {"resolution", "sampled_region", "alpha", "settings"}) info[of_all] = frame[of_all];
+  return info;
+}
+
 ordered_json describe(const std::string& path) {
+  if (std::filesystem::is_directory(path)) return sequence_info(path);
   if (std::filesystem::path(path).extension() == ".gradus") return scene_info(path);
   if (std::filesystem::path(path).extension() != ".exr") throw invalid_argument(path + " is neither FILE.gradus nor FILE.exr");
   if (is_frame_file(path)) return frame_info(path);
@@ -85,8 +101,8 @@ void add_info(CLI::App* app, int* exit_code) {
     bool json = false;
   };
   auto args = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand("info", "Say what a scene file, a stored frame or an image holds");
-  command->add_option("file", args->path, "FILE.gradus or FILE.exr")->required()->check(CLI::ExistingFile);
+  CLI::App* command = app->add_subcommand("info", "Say what a scene file, a stored frame, a folder of frames or an image holds");
+  command->add_option("file", args->path, "FILE.gradus, FILE.exr, or a folder of a frame store")->required()->check(CLI::ExistingPath);
   command->add_flag("--json", args->json, "Print one JSON object");
   command->callback([args, exit_code] {
     const ordered_json info = describe(args->path);

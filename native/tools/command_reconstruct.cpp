@@ -1,60 +1,55 @@
 // gradus reconstruct FRAME.exr -o IMAGE.exr
+#include <filesystem>
+
 #include "api/objects.h"
-#include "common.h"
 #include "frame/image_exr.h"
+#include "reconstruct.h"
 #include "render/pass_read.h"
+#include "settings/pass_table.h"
 
 namespace gradus::tool {
 namespace {
 
-struct ReconstructArguments {
-  std::string frame, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes;
-  std::vector<std::string> merged;
-  float alpha = 0.0f;
-};
+bool is_sequence(const ReconstructArguments& args) { return std::filesystem::is_directory(args.input); }
 
 // What would be ignored, or lost, is refused before anything is read.
 void check_usage(const ReconstructArguments& args, uint32_t reconstruction, uint32_t denoiser) {
-  check_apart("--output", args.output, args.frame);
+  check_apart("--output", args.output, args.input);
   for (const std::string& path : args.merged) check_apart("--output", args.output, path);
   check_denoiser_path(args.denoiser_path, denoiser);
   const bool weighs = reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED ||
                       reconstruction == GRADUS_RECONSTRUCTION_L1;
-  if (args.alpha != 0.0f && !weighs) {
+  const bool as_sampled = is_sequence(args) && reconstruction == GRADUS_RECONSTRUCTION_AUTO;
+  if (args.alpha != 0.0f && !weighs && !as_sampled) {
     throw CLI::ValidationError("--alpha", "is for --reconstruction l2, weighted or l1; others find their weights themselves");
   }
+  const auto refuse = [](const char* option, const char* what) { throw CLI::ValidationError(option, std::string("is for ") + what); };
+  if (is_sequence(args)) {
+    if (!args.merged.empty()) refuse("--merge", "single frames");
+    return;
+  }
+  if (!args.frames.empty()) refuse("--frames", "folders of frames");
+  if (args.window_size > 0) refuse("--window-size", "folders of frames");
+  if (args.exposure >= 0.0) refuse("--film-exposure", "folders of frames");
+  if (const std::string bad = exr_only(args.output); !bad.empty()) throw CLI::ValidationError("--output", bad);
 }
 
 bool holds(const Frame& frame, uint32_t pass) {
+  if (pass_info(pass).kind == PassKind::Sequence) return wants(frame.settings.passes, pass);
   if (pass == GRADUS_PASS_GRADIENT_X || pass == GRADUS_PASS_GRADIENT_Y) return frame.gradients;
   return pass == GRADUS_PASS_ERROR || has_pass(frame, pass);  // that of the reconstruction
-}
-
-// Those of `asked` that are there: all of them, unless it is everything.
-uint64_t held_passes(const client::Frame& frame, uint64_t asked) {
-  const std::shared_ptr<const Frame> content = api::find_handle<api::FrameObject>(frame.id())->get();
-  uint64_t held = 0;
-  std::string names, missing;
-  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (holds(*content, pass)) {
-      held |= uint64_t{1} << pass;
-      names += (names.empty() ? "" : ", ") + typed_name(pass);
-    } else if ((asked >> pass & 1) != 0) {
-      missing += (missing.empty() ? "" : ", ") + typed_name(pass);
-    }
-  }
-  if (asked == kAllPasses || missing.empty()) return asked & held;
-  throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without " + missing + "; it holds " + names);
 }
 
 int run(const ReconstructArguments& args) {
   const uint32_t reconstruction = parse_choice("reconstruction", args.reconstruction), denoiser = parse_choice("denoiser", args.denoiser);
   check_usage(args, reconstruction, denoiser);
+  if (is_sequence(args)) return reconstruct_sequence(args);
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
-  client::Frame frame = client::Frame::load(device, args.frame);
+  client::Frame frame = client::Frame::load(device, args.input);
   for (const std::string& path : args.merged) frame.merge(client::Frame::load(device, path));
   const auto [width, height] = frame.size();
-  const uint64_t passes = args.passes.empty() ? 1 : held_passes(frame, parse_passes(args.passes));
+  const uint64_t passes =
+      args.passes.empty() ? 1 : held_passes(*api::find_handle<api::FrameObject>(frame.id())->get(), parse_passes(args.passes));
   const auto wanted = [passes](uint32_t pass) { return (passes >> pass & 1) != 0; };
   std::vector<float> error;  // of this reconstruction, not of the one that the frame was rendered for
   std::vector<ImageLayer> layers = {
@@ -71,11 +66,37 @@ int run(const ReconstructArguments& args) {
 
 }  // namespace
 
+uint64_t held_passes(const Frame& frame, uint64_t asked) {
+  uint64_t held = 0;
+  std::string names, missing;
+  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
+    if (holds(frame, pass)) {
+      held |= uint64_t{1} << pass;
+      names += (names.empty() ? "" : ", ") + typed_name(pass);
+    } else if ((asked >> pass & 1) != 0) {
+      missing += (missing.empty() ? "" : ", ") + typed_name(pass);
+    }
+  }
+  if (asked == kAllPasses || missing.empty()) return asked & held;
+  throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without " + missing + "; it holds " + names);
+}
+
 void add_reconstruct(CLI::App* app, int* exit_code) {
   auto args = std::make_shared<ReconstructArguments>();
-  CLI::App* command = app->add_subcommand("reconstruct", "Reconstruct a stored frame into an image");
-  command->add_option("frame", args->frame, "Stored frame, as gradus render writes it")->required()->check(CLI::ExistingFile);
-  command->add_option("-o,--output", args->output, "Image to write, FILE.exr")->required()->check(exr_only);
+  CLI::App* command = app->add_subcommand("reconstruct", "Reconstruct a stored frame, or those of an animation, into images");
+  command
+      ->add_option("frame", args->input,
+                   "Stored frame, as gradus render writes it, or a folder of a frame store with those of an animation")
+      ->required()
+      ->check(CLI::ExistingPath);
+  command->add_option("-o,--output", args->output, "Image to write, FILE.exr; of an animation the folder for 0001.exr and so on")
+      ->required();
+  command->add_option("--frames", args->frames, "Of an animation: FIRST-LAST; all if not given");
+  command
+      ->add_option("--window-size", args->window_size,
+                   "Of an animation: frames that are reconstructed together, half of them with the next ones, too (10 if not given)")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--film-exposure", args->exposure, "Of an animation: factor on all radiance")->check(CLI::NonNegativeNumber);
   command
       ->add_option("--reconstruction", args->reconstruction,
                    "auto, none, l2 (unbiased), regularized (by features), weighted (by the measured noise) or l1 (robust)")

@@ -174,6 +174,12 @@ class Render : public Handle<GradusRender, gradus_render_release> {
     check(gradus_render_poll(id_, &progress));
     return progress;
   }
+  // Of those that are there once the render has ended.
+  std::vector<float> read_pass(uint32_t pass, size_t pixels) const {
+    std::vector<float> values(pixels * pass_channels(pass));
+    check(gradus_render_read_pass(id_, pass, values.data(), values.size()));
+    return values;
+  }
   void cancel() { check(gradus_render_cancel(id_)); }
   void wait() const { check(gradus_render_wait(id_, -1.0)); }
   std::string stats() const {
@@ -185,6 +191,22 @@ class Render : public Handle<GradusRender, gradus_render_release> {
     GradusFrame id = 0;
     check(gradus_render_frame(id_, &id));
     return Frame(id);
+  }
+
+ private:
+  friend class Sequence;
+  explicit Render(GradusRender id) : Handle(id) {}
+};
+
+class Sequence : public Handle<GradusSequence, gradus_sequence_release> {
+ public:
+  Sequence(const Device& device, const GradusSequenceSettings& settings) {
+    check(gradus_sequence_create(device.id(), &settings, &id_));
+  }
+  Render deliver(int32_t frame, const GradusSettings& settings) const {
+    GradusRender render = 0;
+    check(gradus_sequence_deliver(id_, frame, &settings, &render));
+    return Render(render);
   }
 };
 

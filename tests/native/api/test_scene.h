@@ -83,10 +83,12 @@ inline GradusError set_light(GradusScene scene) {
   return gradus_scene_set_lights(scene, &light, 1);
 }
 
-inline GradusError set_camera(GradusScene scene) {
+// x: how far to the right of the quad's middle.
+inline GradusError set_camera(GradusScene scene, float x = 0.0f) {
   GradusCamera camera = sized<GradusCamera>();
   for (float* m : {camera.matrix, camera.matrix_previous, camera.matrix_next}) {
     set_identity(m);
+    m[12] = x;
     m[14] = 3.0f;
   }
   for (float* w : {camera.window, camera.window_previous, camera.window_next}) {

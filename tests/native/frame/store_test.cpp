@@ -106,6 +106,18 @@ TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
   }
 }
 
+TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
+  Frame frame = *rendered(small_settings(20, 10, 2));
+  frame.replayed.stream_frame = -3;
+  for (int32_t i = 0; i < 200; ++i) frame.replayed.pixel.push_back(i % 7 == 0 ? kNoLink : 199 - i);
+  save_frame(frame, path());
+  EXPECT_EQ(load_frame(path())->replayed.stream_frame, -3);
+  EXPECT_EQ(load_frame(path())->replayed.pixel, frame.replayed.pixel);
+  frame.replayed.pixel[5] = 200;
+  save_frame(frame, path());
+  EXPECT_THROW(load_frame(path()), Error);
+}
+
 // A file by OpenEXR alone, with headers as `change` leaves them: every channel of every part is read and written again.
 template <class Change>
 void rewrite(const std::string& from, const std::string& to, const Change& change) {

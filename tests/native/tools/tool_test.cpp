@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 
 #include "api/test_scene.h"
 #include "frame/image_exr.h"
@@ -299,6 +300,164 @@ TEST_F(Tool, NamesACommandThatThereIsNot) {
   const Outcome outcome = run("frobnicate");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("there is no command or option frobnicate"), std::string::npos) << outcome.err;
+}
+
+// A camera that goes aside over frames 1 to 6, in store/anim/layer.
+class ToolSequence : public Tool {
+ protected:
+  void SetUp() override {
+    Tool::SetUp();
+    render(GRADUS_RECONSTRUCTION_L2);
+  }
+  void render(uint32_t reconstruction) {
+    fs::remove_all(folder / kFolder);
+    delivered.clear();
+    const GradusDevice device = make_device();
+    const GradusScene scene = make_scene(device);
+    auto settings = sized<GradusSequenceSettings>();
+    const std::string store = (folder / kFolder).string();
+    settings.first = 1;
+    settings.last = 6;
+    settings.step = 1;
+    settings.folder = store.c_str();
+    GradusSequence sequence = 0;
+    ASSERT_OK(gradus_sequence_create(device, &settings, &sequence));
+    for (int32_t frame = 1; frame <= 6; ++frame) {
+      ASSERT_OK(set_camera(scene, 0.02f * float(frame)));
+      ASSERT_OK(gradus_scene_commit(scene, nullptr, nullptr));
+      GradusSettings render_settings = small_render(24, 16, 4);
+      render_settings.reconstruction = reconstruction;
+      render_settings.frame = frame;
+      GradusRender render = 0;
+      ASSERT_OK(gradus_sequence_sample(sequence, scene, &render_settings, &render));
+      ASSERT_OK(gradus_render_wait(render, -1.0));
+      ASSERT_OK(gradus_render_release(render));
+    }
+    for (int32_t frame = 1; frame <= 6; ++frame) {
+      GradusRender render = 0;
+      ASSERT_OK(gradus_sequence_deliver(sequence, frame, nullptr, &render));
+      ASSERT_OK(gradus_render_wait(render, -1.0));
+      delivered.emplace_back(24 * 16 * 4);
+      ASSERT_OK(gradus_render_read_pass(render, GRADUS_PASS_COMBINED, delivered.back().data(), delivered.back().size()));
+      ASSERT_OK(gradus_render_release(render));
+    }
+    ASSERT_OK(gradus_sequence_release(sequence));
+    ASSERT_OK(gradus_scene_release(scene));
+    ASSERT_OK(gradus_device_release(device));
+  }
+  std::string stored() const {
+    std::string all;
+    for (const auto& entry : fs::directory_iterator(folder / kFolder)) all += text(fs::path(kFolder) / entry.path().filename());
+    return all;
+  }
+  static constexpr const char* kFolder = "store/anim/layer";
+  std::vector<std::vector<float>> delivered;
+};
+
+TEST_F(ToolSequence, WritesThePicturesThatWereDelivered) {
+  const std::string before = stored();
+  const Outcome made = run("reconstruct store/anim/layer -o pictures --passes gradient_x");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.out.find("pictures/0001.exr"), std::string::npos) << made.out;
+  for (int frame = 1; frame <= 6; ++frame) {
+    const std::string path = (folder / ("pictures/000" + std::to_string(frame) + ".exr")).string();
+    const LoadedImage picture = load_rgb(path, "");
+    for (size_t i = 0; i < 24 * 16; ++i) {
+      for (size_t c = 0; c < 3; ++c) ASSERT_EQ(picture.rgb[3 * i + c], delivered[size_t(frame) - 1][4 * i + c]) << frame;
+    }
+    EXPECT_NO_THROW(load_rgb(path, "Gradient X"));
+  }
+  EXPECT_EQ(stored(), before) << "nothing is sampled";
+}
+
+// The frames beside those that are asked for have their share, whatever the job is split into.
+TEST_F(ToolSequence, PartsHaveTheBitsOfTheWhole) {
+  ASSERT_EQ(run("reconstruct store/anim/layer -o part --frames 3-4").code, 0);
+  EXPECT_FALSE(fs::exists(folder / "part/0002.exr"));
+  const LoadedImage picture = load_rgb((folder / "part/0003.exr").string(), "");
+  for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[2][4 * i]);
+}
+
+TEST_F(ToolSequence, ChangesHowFramesAreReconstructed) {
+  for (const char* how : {"--reconstruction l1", "--alpha 0.05", "--window-size 2", "--film-exposure 2"}) {
+    const Outcome made = run(std::string("reconstruct store/anim/layer -o other --frames 2 ") + how);
+    ASSERT_EQ(made.code, 0) << how << ": " << made.err;
+    const LoadedImage picture = load_rgb((folder / "other/0002.exr").string(), "");
+    double sum = 0.0, delivered_sum = 0.0;
+    bool same = true;
+    for (size_t i = 0; i < 24 * 16; ++i) {
+      same = same && picture.rgb[3 * i] == delivered[1][4 * i];
+      sum += double(picture.rgb[3 * i]);
+      delivered_sum += double(delivered[1][4 * i]);
+    }
+    EXPECT_FALSE(same) << how;
+    EXPECT_NEAR(sum / delivered_sum, std::string(how) == "--film-exposure 2" ? 2.0 : 1.0, 0.05) << how;
+  }
+}
+
+// Plain paths with features.
+TEST_F(ToolSequence, WritesWhatAutoDelivered) {
+  render(GRADUS_RECONSTRUCTION_AUTO);
+  const Outcome made = run("reconstruct store/anim/layer -o pictures --passes all");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const LoadedImage picture = load_rgb((folder / "pictures/0004.exr").string(), "");
+  for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[3][4 * i]);
+  const Outcome l2 = run("reconstruct store/anim/layer -o other --reconstruction l2");
+  EXPECT_EQ(l2.code, 1);
+  EXPECT_NE(l2.err.find("hold no gradients"), std::string::npos) << l2.err;
+}
+
+TEST_F(ToolSequence, NamesFramesThatAreNotThere) {
+  fs::remove(folder / kFolder / "f+0000003.base.exr");
+  fs::remove(folder / kFolder / "f+0000005.offset.exr");
+  const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("store/anim/layer lacks frames 3, 5"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder / "pictures"));
+  EXPECT_EQ(run("reconstruct store/anim/layer -o pictures --frames 1-2").code, 0);
+  const Outcome beyond = run("reconstruct store/anim/layer -o pictures --frames 6-9");
+  EXPECT_NE(beyond.err.find("lacks frames 7 to 9"), std::string::npos) << beyond.err;
+  const Outcome info = run("info store/anim/layer");
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_NE(info.out.find("\"sequence\""), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("\"3, 5\""), std::string::npos) << info.out;
+}
+
+// A frame of another layer under the name of one of this.
+TEST_F(ToolSequence, RefusesFramesThatDoNotFit) {
+  ASSERT_EQ(run("render good.gradus -o f.exr --width 20 --integrator gradient").code, 0);
+  for (const char* part : {"base", "offset"}) {
+    fs::copy_file(folder / "f.exr", folder / kFolder / (std::string("f+0000004.") + part + ".exr"), fs::copy_options::overwrite_existing);
+  }
+  const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("has another size"), std::string::npos) << outcome.err;
+}
+
+TEST_F(ToolSequence, WrongUsageIsNamed) {
+  ASSERT_EQ(run("render good.gradus -o still").code, 0);
+  std::ofstream(folder / "file") << "no folder";
+  const std::string before = stored();
+  const std::tuple<const char*, int, const char*> wrong[] = {
+      {"store/anim/layer -o store/anim/../anim/layer", 2, "which it would replace"},
+      {"store/anim/layer -o file", 2, "is no folder"},
+      {"store/anim/layer -o p --frames 3-1", 2, "ends before it begins"},
+      {"store/anim/layer -o p --frames all", 2, "expected FIRST-LAST"},
+      {"store/anim/layer -o p --merge file", 2, "is for single frames"},
+      {"store/anim/layer -o p --alpha 0.1 --reconstruction regularized", 2, "is for --reconstruction"},
+      {"store/anim/layer -o p --reconstruction none", 2, "--passes noisy_image"},
+      {"still/good/ViewLayer -o p", 1, "none of a sequence"},
+      {"store -o p", 1, "holds no stored frames"},
+      {"still/good/ViewLayer/f+0000000.base.exr -o p.exr --frames 1-2", 2, "is for folders"},
+      {"still/good/ViewLayer/f+0000000.base.exr -o p.exr --window-size 4", 2, "is for folders"},
+  };
+  for (const auto& [arguments, code, cause] : wrong) {
+    const Outcome outcome = run(std::string("reconstruct ") + arguments);
+    EXPECT_EQ(outcome.code, code) << arguments;
+    EXPECT_NE(outcome.err.find(cause), std::string::npos) << arguments << ": " << outcome.err;
+  }
+  EXPECT_EQ(stored(), before);
+  EXPECT_FALSE(fs::exists(folder / "p"));
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// What `gradus reconstruct` is told, for one frame and for those of a sequence.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common.h"
+#include "frame/frame.h"
+
+namespace gradus::tool {
+
+struct ReconstructArguments {
+  std::string input, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes, frames;
+  std::vector<std::string> merged;
+  float alpha = 0.0f;
+  double exposure = -1.0;    // below 0: as it was sampled for
+  uint32_t window_size = 0;  // 0: as the library has it
+};
+
+// Those of `asked` that are there: all of them, unless it is everything. Throws with the names of what is missing.
+uint64_t held_passes(const Frame& frame, uint64_t asked);
+
+// input: a folder with frames of an animation; output: one for their pictures. Returns the exit code.
+int reconstruct_sequence(const ReconstructArguments& args);
+
+}  // namespace gradus::tool

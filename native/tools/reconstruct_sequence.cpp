@@ -1,0 +1,122 @@
+// gradus reconstruct FOLDER -o FOLDER
+#include "reconstruct.h"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <regex>
+
+#include "frame/image_exr.h"
+#include "frame/store.h"
+#include "settings/pass_table.h"
+#include "stored_sequence.h"
+
+namespace gradus::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Range {
+  int32_t first, last;
+};
+
+// "" for all.
+Range range_of(const std::string& text, const StoredSequence& stored) {
+  if (text.empty()) return {stored.frames().front(), stored.frames().back()};
+  std::smatch match;
+  if (!std::regex_match(text, match, std::regex("(-?[0-9]{1,7})(?:-(-?[0-9]{1,7}))?"))) {
+    throw CLI::ValidationError("--frames", text + ": expected FIRST-LAST, or one frame");
+  }
+  const Range range{std::stoi(match[1]), std::stoi(match[match[2].matched ? 2 : 1])};
+  if (range.last < range.first) throw CLI::ValidationError("--frames", text + " ends before it begins");
+  return range;
+}
+
+// As Blender names them.
+std::string picture_path(const std::string& folder, int32_t frame) {
+  std::array<char, 24> name{};
+  std::snprintf(name.data(), name.size(), frame < 0 ? "%05d.exr" : "%04d.exr", frame);
+  return (fs::path(folder) / name.data()).string();
+}
+
+void check_usage(const ReconstructArguments& args) {
+  if (args.reconstruction == "none")
+    throw CLI::ValidationError("--reconstruction", "none is for single frames; --passes noisy_image writes it");
+  check_apart("--output", args.output, args.input);
+  if (fs::exists(args.output) && !fs::is_directory(args.output)) {
+    throw CLI::ValidationError("--output", args.output + " is no folder, which the pictures of " + args.input + " need");
+  }
+}
+
+// What the pictures are made of otherwise than they were sampled for.
+GradusSettings settings_of(const ReconstructArguments& args, const GradusSettings& stored) {
+  GradusSettings settings = stored;
+  const bool changed = args.reconstruction != "auto";
+  if (changed) settings.reconstruction = parse_choice("reconstruction", args.reconstruction);
+  if (changed || args.alpha != 0.0f) settings.reconstruction_alpha = args.alpha;
+  if (args.exposure >= 0.0) settings.film_exposure = float(args.exposure);
+  settings.denoiser = parse_choice("denoiser", args.denoiser);
+  return settings;
+}
+
+client::Sequence open(const client::Device& device, const ReconstructArguments& args, const StoredSequence& stored, const Range& range) {
+  auto settings = client::make<GradusSequenceSettings>();
+  settings.first = range.first;
+  settings.last = range.last;
+  settings.step = uint32_t(stored.step());
+  settings.window_size = args.window_size;
+  settings.window_overlap = args.window_size / 2;
+  settings.folder = stored.folder().c_str();
+  return client::Sequence(device, settings);
+}
+
+uint64_t passes_of(const ReconstructArguments& args, const Frame& frame) {
+  if (args.passes.empty()) return 1;
+  const uint64_t asked = parse_passes(args.passes), held = held_passes(frame, asked);
+  const bool has_error = wants(frame.settings.passes, GRADUS_PASS_ERROR);  // windows estimate it where frames were sampled for it
+  return asked == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
+}
+
+void write_picture(const client::Render& render, uint64_t passes, const std::string& path) {
+  const auto [width, height] = render.frame().size();
+  std::vector<ImageLayer> layers;
+  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
+    if ((passes >> pass & 1) == 0) continue;
+    const std::string name = pass == GRADUS_PASS_COMBINED ? "" : client::pass_name(pass);
+    layers.push_back({name, int(client::pass_channels(pass)), render.read_pass(pass, size_t(width) * height)});
+  }
+  save_image(path, int(width), int(height), layers);
+}
+
+}  // namespace
+
+int reconstruct_sequence(const ReconstructArguments& args) {
+  check_usage(args);
+  const StoredSequence stored(args.input);
+  const Range asked = range_of(args.frames, stored);
+  const std::vector<int32_t> frames = stored.expected(asked.first, asked.last);
+  const std::string missing = stored.missing(asked.first, asked.last);
+  if (frames.empty()) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, args.input + " holds none of the frames " + args.frames);
+  if (!missing.empty()) {
+    throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
+                        args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
+  }
+  const auto first = load_frame(stored.path(frames.front()));
+  const GradusSettings settings = settings_of(args, first->settings);
+  const uint64_t passes = passes_of(args, *first);
+  const client::Device device(0, nullptr, args.denoiser_path.c_str());
+  const client::Sequence sequence = open(device, args, stored, {frames.front(), frames.back()});
+  fs::create_directories(args.output);
+  for (const int32_t frame : frames) {
+    const client::Render render = sequence.deliver(frame, settings);
+    render.wait();
+    const std::string path = picture_path(args.output, frame);
+    write_picture(render, passes, path);
+    std::printf("%s\n", path.c_str());
+    std::fflush(stdout);
+  }
+  print_warnings(device);
+  return 0;
+}
+
+}  // namespace gradus::tool

@@ -1,0 +1,77 @@
+#include "stored_sequence.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <regex>
+#include <set>
+
+#include "base/error.h"
+
+namespace gradus::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Numbers of the files of one kind.
+std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind) {
+  const std::regex name("f([+-][0-9]{7,8})\\." + kind + "\\.exr");
+  std::set<int32_t> numbers;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    std::smatch match;
+    const std::string file = entry.path().filename().string();
+    if (std::regex_match(file, match, name)) numbers.insert(std::stoi(match[1]));
+  }
+  return numbers;
+}
+
+std::string text_of(int32_t first, int32_t last) {
+  return first == last ? std::to_string(first) : std::to_string(first) + " to " + std::to_string(last);
+}
+
+}  // namespace
+
+StoredSequence::StoredSequence(const std::string& folder) : folder_(folder) {
+  const std::set<int32_t> base = numbers_in(folder, "base"), offset = numbers_in(folder, "offset");
+  std::set_intersection(base.begin(), base.end(), offset.begin(), offset.end(), std::back_inserter(frames_));
+  if (frames_.empty()) {
+    throw invalid_argument(
+        folder + (base.empty() ? " holds no stored frames" : " holds stored frames, but none of a sequence: reconstruct them one by one"));
+  }
+  if (frames_.size() > 1) step_ = INT32_MAX;
+  for (size_t i = 1; i < frames_.size(); ++i) step_ = std::min(step_, frames_[i] - frames_[i - 1]);
+}
+
+std::string StoredSequence::path(int32_t frame) const {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "f%+08d.base.exr", frame);
+  return (fs::path(folder_) / name.data()).string();
+}
+
+std::vector<int32_t> StoredSequence::expected(int32_t first, int32_t last) const {
+  std::vector<int32_t> frames;
+  const int64_t beyond = (int64_t(first) - frames_.front()) % step_;
+  for (int64_t frame = int64_t(first) + (beyond == 0 ? 0 : beyond > 0 ? step_ - beyond : -beyond); frame <= last; frame += step_) {
+    frames.push_back(int32_t(frame));
+  }
+  return frames;
+}
+
+std::string StoredSequence::missing(int32_t first, int32_t last) const {
+  std::string text;
+  const auto add = [&](int32_t from, int32_t to) { text += (text.empty() ? "" : ", ") + text_of(from, to); };
+  int32_t from = 0, to = 0;
+  bool open = false;
+  for (const int32_t frame : expected(first, last)) {
+    const bool there = std::binary_search(frames_.begin(), frames_.end(), frame);
+    if (there && open) add(from, to);
+    if (!there && !open) from = frame;
+    if (!there) to = frame;
+    open = !there;
+  }
+  if (open) add(from, to);
+  return text;
+}
+
+}  // namespace gradus::tool
