@@ -84,7 +84,7 @@ inline GradusError set_light(GradusScene scene) {
 }
 
 // x: how far to the right of the quad's middle.
-inline GradusError set_camera(GradusScene scene, float x = 0.0f) {
+inline GradusError set_camera_at(GradusScene scene, float x) {
   GradusCamera camera = sized<GradusCamera>();
   for (float* m : {camera.matrix, camera.matrix_previous, camera.matrix_next}) {
     set_identity(m);
@@ -101,6 +101,8 @@ inline GradusError set_camera(GradusScene scene, float x = 0.0f) {
   camera.aperture_ratio = 1.0f;
   return gradus_scene_set_camera(scene, &camera);
 }
+
+inline GradusError set_camera(GradusScene scene) { return set_camera_at(scene, 0.0f); }
 
 inline void fill_scene(GradusScene scene) {
   EXPECT_OK(set_quad(scene));

@@ -323,7 +323,7 @@ class ToolSequence : public Tool {
     GradusSequence sequence = 0;
     ASSERT_OK(gradus_sequence_create(device, &settings, &sequence));
     for (int32_t frame = 1; frame <= 6; ++frame) {
-      ASSERT_OK(set_camera(scene, 0.02f * float(frame)));
+      ASSERT_OK(set_camera_at(scene, 0.02f * float(frame)));
       ASSERT_OK(gradus_scene_commit(scene, nullptr, nullptr));
       GradusSettings render_settings = small_render(24, 16, 4);
       render_settings.reconstruction = reconstruction;
