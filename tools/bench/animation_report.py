@@ -60,9 +60,12 @@ class Aim:
 
 AIMS = (
     Aim("flicker", lambda _: "path", "F / PT", 0.1),
+    Aim("flicker_warped", lambda _: "path", "F warped / PT", 0.1),
     Aim("flicker", per_frame, "F / the same frame by frame", 0.4),
+    Aim("flicker_warped", per_frame, "F warped / the same frame by frame", 0.4),
     Aim("relmse", per_frame, "relMSE / the same frame by frame", 0.8),
     Aim("flicker", lambda _: PEER, "F / Cycles + denoiser", 0.6),
+    Aim("flicker_warped", lambda _: PEER, "F warped / Cycles + denoiser", 0.6),
 )
 
 
