@@ -15,7 +15,7 @@ from .animation import Animation
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
-from .progress import PictureDisplay, wait
+from .progress import Display, PictureDisplay, wait
 from .store import FINAL, PREVIEW, Cancelled, Key, Session
 
 VERSION = bpy.app.version
@@ -314,7 +314,8 @@ def _render_view(job: Job, view: str) -> None:
 def _sample(job: Job, view: str, result: Any) -> None:
     handle = _start(job, view)
     try:
-        wait(job, handle, PictureDisplay(job, handle, result))
+        # A frame of an animation is reconstructed in one go: there is no picture of it before.
+        wait(job, handle, PictureDisplay(job, handle, result) if job.animation is None else Display(job))
         _deliver(job, view, handle, result)
     finally:
         job.session.library.render_release(handle)

@@ -1,0 +1,87 @@
+"""Render Animation in a window: frames are sampled ahead on the render's own thread, while the interface lives."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from support import window
+
+pytestmark = pytest.mark.application
+
+SCENE = """
+import sys
+import bpy
+
+sys.argv += ["--", "--gradus-stats", "FOLDER/stats.jsonl"]
+scene = bpy.context.scene
+scene.render.engine = "GRADUS"
+scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 36, 100
+scene.gradus.samples, scene.gradus.noise_threshold = SAMPLES, 0
+scene.frame_start, scene.frame_end = 1, 12
+scene.render.filepath = "FOLDER/f_####"
+cube = bpy.data.objects["Cube"]
+for frame in (1, 12):
+    cube.location.x = 0.1 * frame
+    cube.keyframe_insert("location", frame=frame)
+preferences = bpy.context.preferences.view
+preferences.render_display_type, preferences.show_splash = "NONE", False
+EXTRA
+
+def tell(text):
+    def handler(*_):
+        print(text, scene.frame_current, flush=True)
+    return handler
+
+bpy.app.handlers.render_init.append(tell("RENDER-STARTED"))
+bpy.app.handlers.render_complete.append(tell("RENDER-COMPLETE"))
+bpy.app.handlers.render_cancel.append(tell("RENDER-CANCELLED"))
+
+def start():
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window):
+        bpy.ops.render.render("INVOKE_DEFAULT", animation=True)
+
+def tick():
+    from gradus import animation
+    print("TICK", len(animation._running), flush=True)
+    return 0.2
+
+bpy.app.timers.register(start, first_interval=1.0)
+bpy.app.timers.register(tick, first_interval=1.0)
+"""
+
+
+@pytest.fixture(autouse=True)
+def tools() -> None:
+    if not all(shutil.which(name) for name in ("Xvfb", "xdotool")):
+        pytest.skip("needs the packages of tools/setup/debian-window.txt")
+
+
+def script(folder: Path, samples: int, extra: str = "") -> str:
+    return SCENE.replace("FOLDER", str(folder)).replace("SAMPLES", str(samples)).replace("EXTRA", extra)
+
+
+def lines(folder: Path) -> list[dict]:
+    return [json.loads(line) for line in (folder / "stats.jsonl").read_text().splitlines()]
+
+
+def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
+    with window.blender(script(tmp_path, 16)) as blender:
+        blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
+        blender.wait_for("TICK 0", limit=5)
+        assert "TICK 1" in blender.log, "the interface lives meanwhile"
+    assert [line["frame"] for line in lines(tmp_path)] == list(range(1, 13))
+    assert all(line["spp_offset"] == 8 for line in lines(tmp_path))
+    assert len(list(tmp_path.glob("f_*.png"))) == 12
+
+
+def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:
+    with window.blender(script(tmp_path, 100000)) as blender:
+        blender.wait_for("TICK 1", limit=60)
+        blender.press("Escape")
+        blender.wait_for("RENDER-CANCELLED", limit=3)
+        blender.wait_for("RENDER-CANCELLED 1\nTICK 0", limit=5)  # nothing is kept
+    assert list(tmp_path.glob("f_*.png")) == []
