@@ -53,20 +53,40 @@ void remove_dead_parts(const fs::path& folder) {
   }
 }
 
+// The first part file's name that `make` can give to something.
+template <class Make>
+std::string first_free(const std::string& path, const Make& make) {
+  const std::string process = std::to_string(getpid());
+  for (int n = 1;; ++n) {
+    const std::string name = path + "." + (n == 1 ? process : process + "-" + std::to_string(n)) + ending();
+    if (make(name) || errno != EEXIST) return name;
+  }
+}
+
 }  // namespace
 
 PartFile make_part_file(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   remove_dead_parts(folder.empty() ? "." : folder);
   PartFile part;
-  for (int n = 1; part.descriptor < 0; ++n) {
-    const std::string process = std::to_string(getpid());
-    part.name = path + "." + (n == 1 ? process : process + "-" + std::to_string(n)) + ending();
-    part.descriptor = open(part.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (part.descriptor < 0 && errno != EEXIST) return part;
-  }
-  flock(part.descriptor, LOCK_EX | LOCK_NB);  // not every file system can do it; the process's number is enough on most
+  part.name = first_free(path, [&](const std::string& name) {
+    part.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return part.descriptor >= 0;
+  });
+  if (part.descriptor >= 0) flock(part.descriptor, LOCK_EX | LOCK_NB);  // where it cannot be, the process's number is enough
   return part;
+}
+
+bool link_file(const std::string& path, const std::string& name) {
+  bool linked = false;
+  const std::string part = first_free(name, [&](const std::string& free) {
+    linked = link(path.c_str(), free.c_str()) == 0;
+    return linked;
+  });
+  if (!linked) return false;
+  const bool named = rename(part.c_str(), name.c_str()) == 0;
+  unlink(part.c_str());  // it stays where both were names of one file already
+  return named;
 }
 
 }  // namespace gradus

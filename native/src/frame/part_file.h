@@ -13,5 +13,7 @@ struct PartFile {
 
 // New and locked. Those that dead processes of this host have left in its folder are removed.
 PartFile make_part_file(const std::string& path);
+// A second name for a file in the same folder, in the place of what has it. False: not every file system can do it.
+bool link_file(const std::string& path, const std::string& name);
 
 }  // namespace gradus

@@ -30,6 +30,7 @@
 #include <thread>
 
 #include "frame/file_writer.h"
+#include "frame/part_file.h"
 #include "render/combine.h"
 #include "render/fake_integrator.h"
 
@@ -467,6 +468,18 @@ TEST_F(F6_Store, AnAbandonedWriterLeavesNothing) {
     writer.write("abc", 3);
   }
   EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(F6_Store, ASecondNameTakesThePlaceOfWhatHadIt) {
+  std::ofstream(path("a")) << "new";
+  std::ofstream(path("b")) << "old";
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_TRUE(link_file(path("a"), path("b")));
+    EXPECT_TRUE(fs::equivalent(path("a"), path("b")));
+    EXPECT_EQ(files(), 2u);
+  }
+  EXPECT_FALSE(link_file(path("missing"), path("b")));
+  EXPECT_EQ(files(), 2u);
 }
 
 // Under the name of the process, which a killed one cannot remove.

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "frame/part_file.h"
 #include "frame/store.h"
 
 namespace gradus {
@@ -38,10 +39,7 @@ void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part) c
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
   for (const FramePart part : {FramePart::kOffset, FramePart::kBase}) {
     const std::string source = path(from, part), target = path(to, part);
-    std::error_code error;
-    fs::create_hard_link(source, target, error);
-    if (!error || error == std::errc::file_exists) continue;
-    save_frame(*load_frame(source), target);  // not every file system has hard links
+    if (!link_file(source, target)) save_frame(*load_frame(source), target);
   }
 }
 

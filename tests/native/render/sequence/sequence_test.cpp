@@ -38,9 +38,10 @@ class Folder {
   }
   ~Folder() { fs::remove_all(path_); }
   const std::string& path() const { return path_; }
-  void remove(int32_t frame) const {
+  void remove(int32_t frame, const std::string& part = "") const {
     for (const auto& entry : fs::directory_iterator(path_)) {
-      if (entry.path().filename().string().find(std::to_string(frame).append(".")) != std::string::npos) fs::remove(entry.path());
+      if (entry.path().filename().string().find(std::to_string(frame).append(".").append(part)) != std::string::npos)
+        fs::remove(entry.path());
     }
   }
 
@@ -187,6 +188,25 @@ TEST(I8_Sequence, WhatDoesNotChangeIsSampledOnce) {
     EXPECT_LT(distance(frames[i].combined, frames[0].combined), 1e-8);
     for (size_t k = 0; k < frames[i].difference.size(); ++k) EXPECT_EQ(frames[i].difference[k], 0.0f);
   }
+}
+
+// Half of a frame that a killed job had sampled with other settings was taken for one of those that are alike.
+TEST(C7_Sequence, HalfAFrameThatIsLeftIsReplaced) {
+  Pan pan(0.0f);
+  const Folder folder;
+  const auto settings = [](int32_t frame, uint32_t seed) {
+    GradusSettings s = settings_of(frame);
+    s.seed = seed;
+    return s;
+  };
+  const auto old = make_sequence(1, 2, folder.path());
+  for (const int32_t frame : {1, 2}) sample(old.get(), pan.at(frame), settings(frame, 7));
+  folder.remove(1);
+  folder.remove(2, "base");
+  const auto sequence = make_sequence(1, 2, folder.path());
+  for (const int32_t frame : {1, 2}) sample(sequence.get(), pan.at(frame), settings(frame, 8));
+  const Delivered first = deliver(sequence.get(), 1), second = deliver(sequence.get(), 2);
+  EXPECT_EQ(first.noisy, second.noisy);
 }
 
 TEST(C7_Sequence, GoesOnWhereItEndedWithTheSameBits) {
