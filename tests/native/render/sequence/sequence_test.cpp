@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -188,6 +189,29 @@ TEST(I8_Sequence, WhatDoesNotChangeIsSampledOnce) {
     EXPECT_LT(distance(frames[i].combined, frames[0].combined), 1e-8);
     for (size_t k = 0; k < frames[i].difference.size(); ++k) EXPECT_EQ(frames[i].difference[k], 0.0f);
   }
+}
+
+// Each frame is sampled by whoever comes first, or by both, and one of them has it.
+TEST(C7_Sequence, TwoJobsOnTheSameFramesMakeTheSameBits) {
+  const Folder shared;
+  std::vector<Delivered> frames[2];
+  std::vector<std::thread> jobs;
+  for (std::vector<Delivered>& delivered : frames) {
+    jobs.emplace_back([&] {
+      Pan pan(1.3f);
+      delivered = render(&pan, make_sequence(1, 4, shared.path()).get(), 1, 4);
+    });
+  }
+  for (std::thread& job : jobs) job.join();
+  Pan pan(1.3f);
+  const std::vector<Delivered> alone = render(&pan, make_sequence(1, 4).get(), 1, 4);
+  for (size_t i = 0; i < alone.size(); ++i) {
+    for (const std::vector<Delivered>& delivered : frames) {
+      EXPECT_EQ(delivered[i].noisy, alone[i].noisy);
+      EXPECT_EQ(delivered[i].combined, alone[i].combined);
+    }
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(shared.path()), fs::directory_iterator()), 8);
 }
 
 // Half of a frame that a killed job had sampled with other settings was taken for one of those that are alike.
