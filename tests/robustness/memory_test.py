@@ -12,6 +12,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from support.application import Outcome
 
 # An animated scene: a cube that turns, so that every frame is exported anew; what a frame leaves behind is counted after it.
@@ -20,7 +21,7 @@ import bpy, ctypes, os
 from pathlib import Path
 scene = bpy.context.scene
 scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 36, 100
-scene.gradus.samples = 1
+scene.gradus.samples = SAMPLES
 scene.objects["Cube"].keyframe_insert("rotation_euler", frame=1)
 scene.objects["Cube"].rotation_euler = (1.0, 2.0, 3.0)
 scene.objects["Cube"].keyframe_insert("rotation_euler", frame=1000)
@@ -48,8 +49,10 @@ MEGABYTE = 1 << 20
 GROWTH, SWING = 1 * MEGABYTE, 48 * MEGABYTE
 
 
-def test_j1_memory_does_not_grow_with_frames(blender: Callable[..., Outcome], tmp_path: Path) -> None:
-    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", SCRIPT, "-o", f"{tmp_path}/f_####", "-F", "PNG"]
+@pytest.mark.parametrize("samples", [1, 2], ids=["frame by frame", "over windows"])
+def test_j1_memory_does_not_grow_with_frames(blender: Callable[..., Outcome], tmp_path: Path, samples: int) -> None:
+    script = SCRIPT.replace("SAMPLES", str(samples))
+    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", script, "-o", f"{tmp_path}/f_####", "-F", "PNG"]
     outcome = blender(*head, "-s", "1", "-e", str(FRAMES), "-a", limit=1800)
     assert outcome.code == 0, outcome.output
     lines = [line.split()[1:] for line in outcome.output.splitlines() if line.startswith("MEMORY ")]

@@ -20,6 +20,11 @@ import bpy
 scene = bpy.context.scene
 scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = {size}, 100
 scene.gradus.samples, scene.gradus.noise_threshold = {samples}, 0.0
+scene.render.use_overwrite = False
+cube = scene.objects['Cube']
+cube.keyframe_insert('location', frame=1)
+cube.location.x = 1.0
+cube.keyframe_insert('location', frame=20)
 bpy.data.objects['Cube'].modifiers.new('Fine', 'SUBSURF').render_levels = {level}
 print('SETUP DONE', flush=True)
 """
@@ -27,12 +32,12 @@ print('SETUP DONE', flush=True)
 FULL = os.environ.get("GRADUS_TEST_FULL") == "1"
 
 
-def start(folder: Path, size: str, samples: int, level: int, frames: int) -> tuple:
+def start(folder: Path, size: str, samples: int, level: int, frames: int, *arguments: str | Path) -> tuple:
     script = SETUP.format(size=size, samples=samples, level=level)
     (folder / "home").mkdir(exist_ok=True)
     output = ["-o", f"{folder}/f_####", "-F", "PNG", "-s", "1", "-e", str(frames), "-a"]
     home = folder / "home" / str(time.monotonic_ns())
-    process = application.start("--addons", "gradus", "-E", "GRADUS", "--python-expr", script, *output, folder=home)
+    process = application.start("--addons", "gradus", "-E", "GRADUS", "--python-expr", script, *output, "--", *arguments, folder=home)
     lines = []
     for line in process.stdout:
         lines.append(line)
@@ -77,20 +82,41 @@ def test_k1_sigint_ends_the_render_within_a_second(tmp_path: Path) -> None:
     assert statistics.median(seconds) <= 0.3 or not FULL  # the catalogue's figure; a busy machine would break it
 
 
-def test_i3_killed_at_any_moment_a_rerun_completes(tmp_path: Path) -> None:
-    for index in range(20 if FULL else 3):
-        process, _ = start(tmp_path, "48, 27", 4, 2, 6)
-        time.sleep(0.05 + 0.1 * index)
+def kill_again_and_again(folder: Path, *arguments: str | Path) -> None:
+    """And let a last run end: six small frames, two samples of each."""
+    for index in range(20 if FULL else 4):
+        process, _ = start(folder, "48, 27", 2, 2, 6, *arguments)
+        time.sleep(0.05 + (0.1 if FULL else 0.3) * index)
         end(process, signal.SIGKILL)
         # Blender writes its files itself and not atomically: what was being written when it was killed may be short.
-        for path in tmp_path.glob("f_*"):
+        for path in folder.glob("f_*"):
             if not is_whole_png(path):
                 path.unlink()
-        check_whole(tmp_path)
-    process, _ = start(tmp_path, "48, 27", 4, 2, 6)
+        check_whole(folder)
+    complete(folder, *arguments)
+
+
+def complete(folder: Path, *arguments: str | Path) -> None:
+    process, _ = start(folder, "48, 27", 2, 2, 6, *arguments)
     output, _ = process.communicate(timeout=120)
     assert process.returncode == 0, output
-    assert check_whole(tmp_path) == 6
+    assert check_whole(folder) == 6
+
+
+def test_i3_killed_at_any_moment_a_rerun_completes(tmp_path: Path) -> None:
+    kill_again_and_again(tmp_path)
+
+
+def test_i3_with_a_frame_store_the_rerun_has_the_bits_of_an_undisturbed_render(tmp_path: Path) -> None:
+    disturbed, undisturbed = tmp_path / "disturbed", tmp_path / "undisturbed"
+    disturbed.mkdir()
+    undisturbed.mkdir()
+    kill_again_and_again(disturbed, "--gradus-frame-store", disturbed / "store")
+    complete(undisturbed, "--gradus-frame-store", undisturbed / "store")
+    for path in sorted(undisturbed.glob("f_*")):
+        found, expected = (np.asarray(oiio.ImageInput.open(str(file)).read_image()) for file in (disturbed / path.name, path))
+        assert np.array_equal(found, expected), path.name
+    assert not list(disturbed.glob("store/**/*.part")), "what killed processes have left is removed by the next"
 
 
 def is_whole_png(path: Path) -> bool:

@@ -34,6 +34,8 @@ void require_same(const Frame& stored, const std::string& path, const GradusSett
     throw invalid_argument("stored frame " + path + " " + why + ": remove it, or choose another frame store");
   };
   if (sampling_key(stored.settings) != sampling_key(settings)) refuse("was sampled with other settings");
+  if (stored.settings.passes != settings.passes) refuse("was sampled with other passes");
+  if (!std::equal(stored.settings.region, stored.settings.region + 4, settings.region)) refuse("shows another region");
   if (stored.scene_key != scene_key) refuse("shows another scene");
 }
 
@@ -106,6 +108,7 @@ std::shared_ptr<const Frame> FrameSampling::stored(FramePart part) const {
   std::shared_ptr<const Frame> frame = folder.load(number, part);
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // that of the first of several frames that are alike
+  if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = frame->settings.integrator;  // what it came to
   require_same(*frame, folder.path(number, part), settings, input_.snapshot->content_key);
   return frame;
 }

@@ -263,6 +263,19 @@ TEST(C7_Sequence, PartsOfAJobMakeTheFramesOfTheWhole) {
   }
 }
 
+// What AUTO came to is in the file, and it is AUTO that asks for it again.
+TEST(C7_Sequence, FramesOfAutomaticSettingsAreFoundAgain) {
+  Pan pan(1.3f);
+  const Folder folder;
+  GradusSettings settings = settings_of(1);
+  settings.integrator = GRADUS_INTEGRATOR_AUTO;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_AUTO;
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), settings);
+  const auto again = make_sequence(1, 1, folder.path());
+  sample(again.get(), pan.at(1), settings);
+  EXPECT_EQ(deliver(again.get(), 1).stats["stopped"], "stored");
+}
+
 TEST(C7_Sequence, MoreSamplesAreAddedToStoredFrames) {
   Pan pan(1.3f);
   const Folder folder, fresh;
