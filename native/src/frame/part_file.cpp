@@ -58,7 +58,7 @@ template <class Make>
 std::string first_free(const std::string& path, const Make& make) {
   const std::string process = std::to_string(getpid());
   for (int n = 1;; ++n) {
-    const std::string name = path + "." + (n == 1 ? process : process + "-" + std::to_string(n)) + ending();
+    std::string name = path + "." + (n == 1 ? process : process + "-" + std::to_string(n)) + ending();
     if (make(name) || errno != EEXIST) return name;
   }
 }

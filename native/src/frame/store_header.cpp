@@ -155,6 +155,7 @@ void check_regions(const Frame& frame) {
 
 std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<StoredPart>& parts) {
   std::vector<Imf::Header> headers;
+  headers.reserve(parts.size());
   for (const StoredPart& part : parts) headers.push_back(make_header(frame, part));
   headers.front().insert(kAttribute, Imf::StringAttribute(describe(frame).dump()));
   return headers;
