@@ -161,6 +161,19 @@ def test_views_have_sequences_of_their_own(moving: bpy.types.Scene, exports: Exp
     assert [(line["frame"], line["view"]) for line in lines()] == [(frame, view) for frame in range(1, 7) for view in ("left", "right")]
 
 
+def test_a_border_is_the_part_of_the_whole(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
+    moving.frame_end = 4
+    moving.render.film_transparent = True
+    whole, part = tmp_path / "whole", tmp_path / "part"
+    animate(moving, whole)
+    moving.render.use_border = moving.render.use_crop_to_border = True
+    moving.render.border_min_x, moving.render.border_max_x, moving.render.border_min_y, moving.render.border_max_y = 0.25, 0.75, 0.5, 1.0
+    animate(moving, part)
+    cropped, expected = combined(part, 3), combined(whole, 3)[HEIGHT // 2 :, WIDTH // 4 : WIDTH * 3 // 4]
+    assert np.allclose(cropped, expected, atol=1e-3)
+    assert [line["frame"] for line in lines()] == [1, 2, 3, 4] * 2
+
+
 def test_motion_blur_returns_to_the_frame(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:
     moving.render.use_motion_blur = True
     moving.view_layers[0].use_pass_vector = True
