@@ -49,6 +49,8 @@ def frames_of_job(scene: Any, has_store: bool) -> Frames | None:
     if not first <= frame <= scene.frame_end or (frame - first) % step:
         return None
     last = scene.frame_end - (scene.frame_end - first) % step
+    if scene.render.use_placeholder and not scene.render.use_overwrite:
+        return None  # other processes take frames away in between
     if not has_store:
         # Without one, frames that are not asked for would be sampled for their neighbours alone.
         first, last = frame, _last_without_a_file(scene.render, frame, last, step)
@@ -63,8 +65,6 @@ def _asks_for_single_frames(arguments: list[str]) -> bool:
 def _last_without_a_file(render: Any, frame: int, last: int, step: int) -> int:
     if render.use_overwrite or render.is_movie_format:
         return last
-    if render.use_placeholder:
-        return frame  # other processes take frames away in between
     for following in range(frame + step, last + 1, step):
         if os.path.exists(render.frame_path(frame=following)):
             return following - step
@@ -79,6 +79,7 @@ class Animation:
         self.library = job.session.library
         self._has_folder = bool(folder)
         self._next = frames.first
+        self._begun = False
         self._shots: dict[tuple[str, int], Any] = {}
         self._fault: tuple[int, Exception] | None = None
         self._sequences: dict[str, int] = {}
@@ -106,12 +107,16 @@ class Animation:
         """Samples what the job's frame needs. A fault is held until its frame's turn: those before it are not lost by it."""
         frame = job.scene.frame_current
         first, last = self._needs(frame)
+        begins = not self._begun
+        if begins:  # files of earlier frames are there already, and nothing is asked for them
+            self._next = max(self._next, first)
         missing = [number for number in self.frames.up_to(last) if number >= self._next] if self._fault is None else []
         if missing:
             with _stepping(job, missing[-1]) as show:
                 display = Display(job)
-                if self._has_folder and self._next == self.frames.first:
+                if self._has_folder and begins:
                     self._pass_by(job, show)
+                self._begun = True
                 for place, number in enumerate(missing):
                     display.follow(f"frame {number} of {first}–{last} ahead, ", place / len(missing), 1.0 / len(missing))
                     if not self._holds_fault(number, lambda number=number: self._sample(job, show, number, display)):
@@ -140,8 +145,8 @@ class Animation:
         return True
 
     def _pass_by(self, job: Any, show: Callable[[int], None]) -> None:
-        """Links the first frame to the one before it, so that parts of an animation, each with its own range, fit together in a store."""
-        for view in self._export(job, show, self.frames.first - self.frames.step):
+        """Links the next frame to the one before it, so that parts of an animation, each with its own range, fit together in a store."""
+        for view in self._export(job, show, self._next - self.frames.step):
             self.library.sequence_pass_by(self._sequences[view], job.session.scene, byref(job.shot.settings))
 
     def _sample(self, job: Any, show: Callable[[int], None], number: int, display: Display) -> None:

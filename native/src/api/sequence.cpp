@@ -101,7 +101,10 @@ GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, cons
   return api::guard([&] {
     api::require(render, "render") = 0;
     GradusSettings copy{};
-    if (settings != nullptr) copy = api::read_struct(settings, "settings", default_settings());
+    if (settings != nullptr) {
+      copy = api::read_struct(settings, "settings", default_settings());
+      check_settings(copy);
+    }
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
     api::require_rest(*object);

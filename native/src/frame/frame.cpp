@@ -61,6 +61,12 @@ double mean_samples(const Frame& frame) {
   return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
 }
 
+std::vector<uint32_t> samples_of_pixels(const Frame& frame) {
+  std::vector<uint32_t> samples = frame.count[0];
+  for (size_t i = 0; i < samples.size(); ++i) samples[i] += frame.count[1][i];
+  return samples;
+}
+
 Region delivered_region(const Frame& frame) {
   const uint32_t* r = frame.settings.region;
   if (r[2] == 0 && r[3] == 0) return frame.region;

@@ -108,6 +108,8 @@ class Frame {
 
 // Samples of a pixel, on average over the region.
 double mean_samples(const Frame& frame);
+// Samples of each pixel.
+std::vector<uint32_t> samples_of_pixels(const Frame& frame);
 // What was asked for, without the guard ring.
 Region delivered_region(const Frame& frame);
 

@@ -46,7 +46,7 @@ std::unique_ptr<Integrator> LoopInput::make_integrator(const GradusSettings& its
 RenderLoop::RenderLoop(LoopInput input)
     : input_(std::move(input)),
       denoiser_(choose_denoiser(input_.settings.denoiser, input_.device.get(), &why_no_denoiser_)),
-      plan_(make_plan(input_.settings, *input_.snapshot, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
+      plan_(make_plan(input_.planned_settings(), *input_.snapshot, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
       arena_(arena_size(input_.threads)),
       picture_(plan_.delivered),
       live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {

@@ -30,8 +30,15 @@ struct LoopInput {
   uint32_t threads = 1;
   // A part of a frame of a sequence: it is sampled everywhere, and reconstructed later, with others.
   bool samples_only = false;
+  uint32_t whole_samples = 0;            // of the frame, by which both parts are planned; 0: those of the settings
   std::shared_ptr<const Replay> replay;  // nullptr: the samples are the frame's own
 
+  // What the plan goes by.
+  GradusSettings planned_settings() const {
+    GradusSettings planned = settings;
+    if (whole_samples > 0) planned.samples = whole_samples;
+    return planned;
+  }
   // An integrator of the snapshot's camera, for settings that may differ from the render's.
   std::unique_ptr<Integrator> make_integrator(const GradusSettings& its_settings, uint32_t integrator) const;
 };

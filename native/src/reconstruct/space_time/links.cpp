@@ -1,5 +1,6 @@
 #include "reconstruct/space_time/links.h"
 
+#include <cstdlib>
 #include <string>
 
 #include "base/error.h"
@@ -15,10 +16,12 @@ void Links::set_row(int y, const int32_t* targets, std::vector<bool>* taken) {
       shift[x] = kNone;
       continue;
     }
-    if (target < 0 || target >= width_ * height_) throw invalid_argument("a link leads out of the frame");
+    if (target < 0 || target >= int64_t(width_) * height_) throw invalid_argument("a link leads out of the frame");
     if ((*taken)[size_t(target)]) throw invalid_argument("two pixels are linked to the same one");
     (*taken)[size_t(target)] = true;
-    shift[x] = ((target / width_ - y) * (1 << 16)) | ((target % width_ - x) & 0xffff);
+    const int aside = target % width_ - x, up = target / width_ - y;
+    const bool fits = std::abs(aside) <= INT16_MAX && std::abs(up) < INT16_MAX;
+    shift[x] = fits ? (up * (1 << 16)) | (aside & 0xffff) : kNone;
   }
 }
 

@@ -45,7 +45,12 @@ void FrameDelivery::render() {
     phase_ = GRADUS_PHASE_RECONSTRUCTING;
   }
   arena.execute([&] { reconstruct(); });
-  if (frame_->settings.denoiser != GRADUS_DENOISER_NONE) denoise();
+  RenderStats& stats = record_.stats;
+  const bool denoises =
+      frame_->settings.denoiser != GRADUS_DENOISER_NONE &&
+      (!record_.plan.denoises_if_it_pays || denoises_after(record_.plan, mean_samples(*frame_), &stats.chosen, &stats.skipped));
+  if (denoises) denoise();
+  if (!denoises) frame_->settings.denoiser = GRADUS_DENOISER_NONE;
   stop_if_asked();
   sequence_->forget_before(sequence_->needs(number_).first);
   const std::lock_guard lock(mutex_);
@@ -80,12 +85,19 @@ void FrameDelivery::reconstruct() {
   const CancelTest cancel = [this] { return is_stopped(); };
   const GradusSettings& settings = frame_->settings;
   const bool with_error = wants(settings.passes, GRADUS_PASS_ERROR);
-  SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha, with_error});
-  const Reconstructed picture = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
-  stop_if_asked();
-  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, picture.image, delivered());
+  const Region& region = record_.plan.delivered;
+  Reconstructed picture;
+  try {
+    SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha, with_error}, *frame_);
+    picture = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
+    stop_if_asked();
+  } catch (...) {
+    sequence_->pictures_.reset();  // a window that was not solved has left no share in its frames
+    throw;
+  }
+  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, picture.image, region);
   std::vector<float> error;
-  if (with_error) error = crop_error(*frame_, picture.error, delivered());
+  if (with_error) error = crop_error(*frame_, picture.error, region);
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
   error_ = std::move(error);
@@ -100,7 +112,7 @@ void FrameDelivery::denoise() {
   if (!library) return;
   const uint32_t threads = threads_of(frame_->settings, sequence_->device_.get());
   std::vector<float> rgba =
-      denoise_combined(*library, *frame_, frame_->settings.reconstruction, delivered(), threads, cancel, combined_, &failure);
+      denoise_combined(*library, *frame_, frame_->settings.reconstruction, record_.plan.delivered, threads, cancel, combined_, &failure);
   if (rgba.empty()) {
     stats.warnings.push_back(failure);
     return;
@@ -112,13 +124,13 @@ void FrameDelivery::denoise() {
 }
 
 void FrameDelivery::read_differences_over_time(const Frame& frame) {
-  const Region region = delivered();
+  const Region region = record_.plan.delivered;
   difference_.assign(3 * size_t(region.area()), 0.0f);
   link_ = difference_;
   const int place = sequence_->place_of(number_) + 1;
   const int32_t next = sequence_->frame_at(place);
   const bool wanted = wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
-  if (!wanted || next > sequence_->needs(number_).last || !sequence_->folder_.holds(next)) return;
+  if (!wanted || !sequence_->folder_.holds(next)) return;
   const std::unique_ptr<WindowSource> window = sequence_->open_window({place - 1, place});
   const int width = frame.region.width(), channels = frame.channels;
   std::vector<float> differences(size_t(width) * size_t(channels));
@@ -139,6 +151,12 @@ void FrameDelivery::read_differences_over_time(const Frame& frame) {
   }
 }
 
+const Region& FrameDelivery::delivered() const {
+  const std::lock_guard lock(mutex_);
+  require_end("its passes come");
+  return record_.plan.delivered;
+}
+
 void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
   const std::lock_guard lock(mutex_);
   require_end("its passes come");
@@ -152,7 +170,12 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
     std::copy(made->begin(), made->end(), pixels);
     return;
   }
-  read_frame_pass(*frame_, pass, delivered(), pixels);
+  const Region& region = record_.plan.delivered;
+  if (pass == GRADUS_PASS_ERROR) {  // it was cancelled: nothing is known of the picture
+    std::fill_n(pixels, size_t(region.area()), 0.0f);
+    return;
+  }
+  read_frame_pass(*frame_, pass, region, pixels);
 }
 
 std::string FrameDelivery::stats() const {

@@ -13,7 +13,7 @@ class FrameDelivery final : public RenderTask {
  public:
   FrameDelivery(std::shared_ptr<Sequence> sequence, int32_t frame, const GradusSettings* settings);
 
-  const Region& delivered() const override { return record_.plan.delivered; }
+  const Region& delivered() const override;
   void read_pass(uint32_t pass, float* pixels) const override;
   std::string stats() const override;
   std::shared_ptr<const Frame> frame() const override;

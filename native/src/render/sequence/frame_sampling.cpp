@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.h"
 #include "settings/options.h"
@@ -23,12 +24,6 @@ uint64_t key_without_frame(GradusSettings settings) {
   return sampling_key(settings);
 }
 
-std::vector<uint32_t> samples_of(const Frame& frame) {
-  std::vector<uint32_t> samples(frame.count[0].size());
-  for (size_t i = 0; i < samples.size(); ++i) samples[i] = frame.count[0][i] + frame.count[1][i];
-  return samples;
-}
-
 void require_same(const Frame& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
   const auto refuse = [&](const std::string& why) {
     throw invalid_argument("stored frame " + path + " " + why + ": remove it, or choose another frame store");
@@ -37,6 +32,25 @@ void require_same(const Frame& stored, const std::string& path, const GradusSett
   if (stored.settings.passes != settings.passes) refuse("was sampled with other passes");
   if (!std::equal(stored.settings.region, stored.settings.region + 4, settings.region)) refuse("shows another region");
   if (stored.scene_key != scene_key) refuse("shows another scene");
+  if (stored.settings.noise_threshold > 0.0f && !(settings.noise_threshold > 0.0f)) refuse("was sampled with a noise threshold");
+}
+
+// The samples of each pixel that a replay takes: those of what it replays, the mean in holes, and where that is not known.
+std::vector<uint32_t> replayed_counts(const SampleSources& sources, const FrameBefore* before, double mean) {
+  std::vector<uint32_t> counts(sources.pixel.size(), uint32_t(std::max(1L, std::lround(mean))));
+  if (!before || before->counts.empty()) return counts;
+  for (size_t i = 0; i < counts.size(); ++i) {
+    const int32_t source = sources.pixel[i];
+    if (source != kNoLink) counts[i] = before->counts[size_t(source)];
+  }
+  return counts;
+}
+
+// No more of them than `most` on average: where a frame is dearer than the one before, a time limit allows fewer.
+void limit_mean(double most, std::vector<uint32_t>* counts) {
+  const double mean = std::accumulate(counts->begin(), counts->end(), 0.0) / double(counts->size());
+  if (mean <= most) return;
+  for (uint32_t& count : *counts) count = std::max(1u, uint32_t(std::lround(count * most / mean)));
 }
 
 }  // namespace
@@ -51,7 +65,8 @@ LoopInput FrameSampling::base_input() const {
   LoopInput input = input_;
   input.settings.samples = base_samples(input.settings.samples);
   input.settings.time_limit *= kBaseShareOfTime;
-  if (stored_base_ && !is_enough(*stored_base_, input.settings.samples)) input.resumed = stored_base_;
+  if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase)) input.resumed = stored_base_;
+  input.whole_samples = input_.settings.samples;
   return input;
 }
 
@@ -106,6 +121,8 @@ std::shared_ptr<const Frame> FrameSampling::stored(FramePart part) const {
   const int32_t number = input_.settings.frame;
   if (!folder.holds(number)) return nullptr;
   std::shared_ptr<const Frame> frame = folder.load(number, part);
+  // The file of an earlier frame that was as this one, and now has too few samples: taken anew, or from that frame again.
+  if (frame->frame_number != number && !has_as_many(*frame, part)) return nullptr;
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // that of the first of several frames that are alike
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = frame->settings.integrator;  // what it came to
@@ -113,9 +130,12 @@ std::shared_ptr<const Frame> FrameSampling::stored(FramePart part) const {
   return frame;
 }
 
-// Where counts differ, a frame is whole or not there.
-bool FrameSampling::is_enough(const Frame& frame, uint32_t samples) const {
-  return has_counts(input_.settings) || frame.frame_number != input_.settings.frame || frame.settings.samples >= samples;
+bool FrameSampling::has_as_many(const Frame& frame, FramePart part) const {
+  const GradusSettings& asked = input_.settings;
+  const uint32_t samples = part == FramePart::kBase ? base_samples(asked.samples) : asked.samples / 2;
+  // Frames with a time limit have as many as it left them.
+  if (asked.time_limit > 0.0f && asked.time_limit <= frame.settings.time_limit / kBaseShareOfTime) return true;
+  return frame.settings.samples >= samples && frame.settings.noise_threshold <= asked.noise_threshold;
 }
 
 bool FrameSampling::repeats_before() const {
@@ -164,13 +184,16 @@ void FrameSampling::sample_parts() {
 
 void FrameSampling::sample_offset(const Frame& base) {
   LoopInput input = input_;
+  input.whole_samples = input.settings.samples;
   input.settings.samples /= 2;
   const std::shared_ptr<const Frame> found = stored(FramePart::kOffset);
-  if (found && is_enough(*found, input.settings.samples)) return;
-  input.resumed = found;
+  const bool counted = has_counts(input_.settings);
+  if (found && !counted && has_as_many(*found, FramePart::kOffset)) return;
   input.replay = follow(base);
   const std::vector<uint32_t>& counts = input.replay->counts;
-  if (!counts.empty()) input.settings.samples = *std::max_element(counts.begin(), counts.end());
+  if (found && counted && samples_of_pixels(*found) == counts) return;
+  if (!counted) input.resumed = found;
+  if (counted) input.settings.samples = *std::max_element(counts.begin(), counts.end());
   auto offset = std::make_unique<RenderLoop>(std::move(input));
   {
     const std::lock_guard lock(mutex_);
@@ -184,10 +207,10 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
   auto replay = std::make_shared<Replay>();
   const size_t pixels = size_t(base.region.area());
   replay->sources = {input_.settings.frame, std::vector<int32_t>(pixels, kNoLink)};
-  const bool counted = has_counts(input_.settings);
   const FrameBefore* before = sequence_->before_.get();
   const bool follows = before && before->settings.width == input_.settings.width && before->settings.height == input_.settings.height &&
-                       !is_cut(before->snapshot->camera, input_.snapshot->camera) && (!counted || before->counts.size() == pixels);
+                       std::equal(input_.settings.region, input_.settings.region + 4, before->settings.region) &&
+                       !is_cut(before->snapshot->camera, input_.snapshot->camera);
   if (follows) {
     const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, input_.settings.width, input_.settings.height); };
     const Camera camera_before = camera(*before->snapshot), camera_now = camera(*input_.snapshot);
@@ -197,13 +220,12 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
       replay->sources = {before->stream_frame, inverse_links(link_pixels(from, to))};
     });
   }
-  if (counted) {
-    const auto mean = uint32_t(std::max(1L, std::lround(mean_samples(base))));
-    replay->counts.assign(pixels, mean);
-    for (size_t i = 0; i < pixels; ++i) {
-      const int32_t source = replay->sources.pixel[i];
-      if (source != kNoLink) replay->counts[i] = before->counts[size_t(source)];
-    }
+  if (!has_counts(input_.settings)) return replay;
+  const double mean = mean_samples(base);
+  replay->counts = replayed_counts(replay->sources, before, mean);
+  const double seconds = base_.what_it_took().seconds.sample;
+  if (input_.settings.time_limit > 0.0f && seconds > 0.0) {
+    limit_mean((1.0 - kBaseShareOfTime) * input_.settings.time_limit / seconds * mean, &replay->counts);
   }
   return replay;
 }
@@ -213,7 +235,7 @@ void FrameSampling::finish(const std::shared_ptr<const Frame>& base) {
   before->snapshot = input_.snapshot;
   before->settings = input_.settings;
   before->stream_frame = base->frame_number;
-  if (has_counts(input_.settings)) before->counts = samples_of(*base);
+  if (has_counts(input_.settings)) before->counts = samples_of_pixels(*base);
   sequence_->before_ = std::move(before);
   sequence_->records_[input_.settings.frame] = record_;
   const std::lock_guard lock(mutex_);

@@ -26,7 +26,8 @@ class FrameSampling final : public RenderTask {
 
   // What the folder has of the frame, if it fits.
   std::shared_ptr<const Frame> stored(FramePart part) const;
-  bool is_enough(const Frame& frame, uint32_t samples) const;
+  // As many samples as are asked for, or as many as it may have.
+  bool has_as_many(const Frame& frame, FramePart part) const;
   bool repeats_before() const;
   void repeat_before();
   void sample_parts();

@@ -1,5 +1,7 @@
 #include "render/sequence/sequence.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "render/resume.h"
 #include "render/sequence/frame_delivery.h"
@@ -18,6 +20,15 @@ uint32_t integrator_of(const GradusSettings& settings) {
   return by_features ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
 }
 
+bool is_sampled_alike(const Frame& a, const Frame& b) {
+  const auto key = [](GradusSettings settings) {
+    settings.frame = 0;
+    return sampling_key(settings);
+  };
+  return key(a.settings) == key(b.settings) && a.settings.passes == b.settings.passes && a.channels == b.channels &&
+         std::equal(a.settings.region, a.settings.region + 4, b.settings.region);
+}
+
 }  // namespace
 
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
@@ -32,7 +43,7 @@ bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
 Sequence::Sequence(std::shared_ptr<Device> device, const SequenceSettings& settings, IntegratorFactory factory)
     : device_(std::move(device)), settings_(settings), factory_(std::move(factory)), folder_(settings.folder), last_(settings.last) {
   if (settings.step < 1) throw invalid_argument("a sequence has a step of at least 1");
-  WindowGrid(places(), settings.windows);  // which looks at them
+  WindowGrid(own_places(), settings.windows);  // which looks at them
 }
 
 int Sequence::place_of(int32_t frame) const {
@@ -46,19 +57,29 @@ int32_t Sequence::frame_at(int place) const {
   return int32_t(settings_.first + (int64_t(place) - place_of(settings_.first)) * int64_t(settings_.step));
 }
 
-FrameRange Sequence::places() const {
+FrameRange Sequence::own_places() const {
   if (settings_.last < settings_.first) throw invalid_argument("a sequence ends before it begins");
   FrameRange range{place_of(settings_.first), 0};
   range.last = range.first + int((int64_t(settings_.last) - settings_.first) / settings_.step);
+  return range;
+}
+
+// Frames beside the range, as long as they are there and were sampled as `like` was: others belong to another job.
+FrameRange Sequence::places_with_neighbours(const Frame& like) const {
+  FrameRange range = own_places();
   if (folder_.is_temporary()) return range;
+  const auto fits = [&](int place) {
+    const int32_t frame = frame_at(place);
+    return folder_.holds(frame) && is_sampled_alike(*folder_.load(frame, FramePart::kBase), like);
+  };
   const int most = settings_.windows.frames;  // more have no share
-  for (int i = 0; i < most && folder_.holds(frame_at(range.first - 1)); ++i) --range.first;
-  for (int i = 0; i < most && folder_.holds(frame_at(range.last + 1)); ++i) ++range.last;
+  for (int i = 0; i < most && fits(range.first - 1); ++i) --range.first;
+  for (int i = 0; i < most && last_ == settings_.last && fits(range.last + 1); ++i) ++range.last;
   return range;
 }
 
 FrameRange Sequence::needs(int32_t frame) const {
-  WindowGrid grid(places(), settings_.windows);
+  WindowGrid grid(own_places(), settings_.windows);
   const int place = place_of(frame);
   const FrameRange places{grid.frames(grid.first_with(place)).first, grid.frames(grid.last_with(place)).last};
   return {std::max(frame_at(places.first), settings_.first), std::min(frame_at(places.last), last_)};
@@ -90,7 +111,12 @@ void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSet
   before->settings = settings;
   before->settings.integrator = integrator_of(settings);
   before->stream_frame = settings.frame;
-  before->is_sampled = false;
+  before->is_sampled = folder_.holds(settings.frame);
+  if (before->is_sampled) {  // another part of the job has sampled it
+    const std::shared_ptr<const Frame> base = folder_.load(settings.frame, FramePart::kBase);
+    before->stream_frame = base->frame_number;
+    if (settings.noise_threshold > 0.0f || settings.time_limit > 0.0f) before->counts = samples_of_pixels(*base);
+  }
   before_ = std::move(before);
 }
 
@@ -121,11 +147,11 @@ std::shared_ptr<Frame> Sequence::open_frame(int32_t number, double* offset_sampl
   return frame;
 }
 
-SequencePictures* Sequence::pictures(const SequenceMethod& method) {
+SequencePictures* Sequence::pictures(const SequenceMethod& method, const Frame& like) {
   if (!pictures_ || !(pictures_->method() == method)) {
     SequenceSource source{[this](const FrameRange& window) { return open_window(window); },
                           [this](int place) { return open_frame(frame_at(place)); }};
-    pictures_ = std::make_unique<SequencePictures>(places(), settings_.windows, std::move(source), method);
+    pictures_ = std::make_unique<SequencePictures>(places_with_neighbours(like), settings_.windows, std::move(source), method);
     if (last_ < settings_.last) pictures_->end_at(place_of(last_));
   }
   return pictures_.get();

@@ -53,12 +53,14 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // Frames are counted in steps, so that those of one grid are next to each other whatever part of a job they are rendered in.
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
+  FrameRange own_places() const;
   // The frames that windows may take: those that are rendered, and those beside them that the folder holds.
-  FrameRange places() const;
+  FrameRange places_with_neighbours(const Frame& like) const;
   std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places) const;
   // All samples of a frame; offset: if given, those of its second part.
   std::shared_ptr<Frame> open_frame(int32_t frame, double* offset = nullptr) const;
-  SequencePictures* pictures(const SequenceMethod& method);
+  // like: a frame of the sequence.
+  SequencePictures* pictures(const SequenceMethod& method, const Frame& like);
   // Those that no picture to come needs.
   void forget_before(int32_t frame);
 

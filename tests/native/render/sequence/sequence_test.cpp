@@ -288,6 +288,69 @@ TEST(C7_Sequence, MoreSamplesAreAddedToStoredFrames) {
   }
 }
 
+// Frames like the first one have its files: they get its new ones.
+TEST(C7_Sequence, FramesThatDoNotChangeGetTheAddedSamplesToo) {
+  Pan pan(0.0f);
+  const Folder folder;
+  render(&pan, make_sequence(1, 4, folder.path()).get(), 1, 4, 4);
+  const std::vector<Delivered> more = render(&pan, make_sequence(1, 4, folder.path()).get(), 1, 4, 12);
+  for (const Delivered& frame : more) {
+    EXPECT_EQ(frame.stats["samples"], 12.0);
+    EXPECT_EQ(frame.noisy, more[0].noisy);
+  }
+}
+
+GradusSettings adaptive(int32_t frame, uint32_t samples) {
+  GradusSettings settings = settings_of(frame, samples);
+  settings.noise_threshold = 1e-3f;
+  return settings;
+}
+
+TEST(C7_Sequence, AdaptiveFramesGetMoreSamplesWhereTheyAreAskedFor) {
+  Pan pan(1.3f);
+  const Folder folder;
+  double before = 0.0;
+  for (const uint32_t samples : {40u, 40u, 80u}) {
+    const auto sequence = make_sequence(1, 2, folder.path());
+    for (int32_t t = 1; t <= 2; ++t) sample(sequence.get(), pan.at(t), adaptive(t, samples));
+    const Delivered frame = deliver(sequence.get(), 2);
+    if (samples == 80) {
+      EXPECT_GT(frame.stats["samples"], 1.5 * before);
+    } else if (before > 0.0) {
+      EXPECT_EQ(frame.stats["stopped"], "stored");
+    }
+    before = frame.stats["samples"];
+  }
+}
+
+TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto sequence = make_sequence(5, 6, folder.path());
+  sequence->pass_by(pan.at(4), with_passes(adaptive(4, 8)));
+  for (int32_t t = 5; t <= 6; ++t) sample(sequence.get(), pan.at(t), adaptive(t, 8));
+  const std::vector<int32_t> sources = SequenceFolder(folder.path()).load(5, FramePart::kOffset)->replayed.pixel;
+  EXPECT_GT(size_t(std::count_if(sources.begin(), sources.end(), [](int32_t i) { return i != kNoLink; })), sources.size() / 2);
+}
+
+// Frames beside a job's own that another one has left in the folder.
+TEST(C7_Sequence, NeighboursOfAnotherJobAreLeftOut) {
+  Pan pan(1.3f);
+  const Folder shared, alone;
+  const auto of_seed = [&](Sequence* sequence, int32_t first, int32_t last, uint32_t seed) {
+    for (int32_t t = first; t <= last; ++t) {
+      GradusSettings settings = settings_of(t);
+      settings.seed = seed;
+      sample(sequence, pan.at(t), settings);
+    }
+  };
+  of_seed(make_sequence(1, 4, shared.path()).get(), 1, 4, 1);
+  const auto a = make_sequence(5, 8, shared.path()), b = make_sequence(5, 8, alone.path());
+  of_seed(a.get(), 5, 8, 0);
+  of_seed(b.get(), 5, 8, 0);
+  for (int32_t t = 5; t <= 8; ++t) EXPECT_EQ(deliver(a.get(), t).combined, deliver(b.get(), t).combined) << t;
+}
+
 TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   Pan pan(1.3f);
   const Folder folder;
