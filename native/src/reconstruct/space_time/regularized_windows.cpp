@@ -14,6 +14,9 @@ namespace {
 
 // Squared error of what shows none, in median luminances.
 constexpr float kLeastError = 1e-6f;
+// Squared distance that errors explain, in these: eight deviations.
+constexpr float kExplained = 64.0f;
+constexpr int kColors = 3;
 
 // The picture, and its error in one more channel.
 Field to_field(const Frame& frame, const Reconstructed& picture) {
@@ -31,6 +34,28 @@ float scale_of(const Field& picture) {
   Field colours(picture.width(), picture.height(), 3);
   for_values(&colours, [&](float& value, int x, int y, int c) { value = picture.row(y, c)[x]; });
   return robust_scale(colours);
+}
+
+// Weights of a change. Where both pictures say otherwise, by more than their errors explain, it is known no better than it meets them.
+Field weigh_change(const Change& change, const Field& here, const Field& next) {
+  Field weight = change.weight;
+  const int error = here.channels() - 1;
+  for_rows(here.height(), [&](int y) {
+    change.links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+      const float *e = here.row(y, error), *e_next = next.row(y + dy, error) + dx;
+      float* c = weight.row(y);
+      for (int i = begin; i < end; ++i) {
+        float apart = 0.0f;
+        for (int k = 0; k < kColors; ++k) {
+          const float d = next.row(y + dy, k)[i + dx] - here.row(y, k)[i] - change.difference.row(y, k)[i];
+          apart += d * d / kColors;
+        }
+        const float excess = apart - kExplained * (e[i] + e_next[i] + 1.0f / c[i]);
+        if (excess > 0.0f) c[i] = track_weight(1.0f / c[i] + excess);
+      }
+    });
+  });
+  return weight;
 }
 
 void check_size(const Frame& frame, const WindowSize& size) {
@@ -58,10 +83,14 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const HalvedWindo
     weights.push_back(estimate.weight);
   }
   if (cancel()) return;
+  std::vector<Field> couplings;
+  for (int frame = frames.first; frame < frames.last; ++frame) {
+    couplings.push_back(weigh_change(*estimates_.at(frame).change, estimates_.at(frame).picture, estimates_.at(frame + 1).picture));
+  }
   std::vector<TrackStep> steps;
   for (int frame = frames.first; frame < frames.last; ++frame) {
     const Change& change = *estimates_.at(frame).change;
-    steps.push_back({change.links, change.difference, change.weight});
+    steps.push_back({change.links, change.difference, couplings[steps.size()]});
   }
   solve_tracks(steps, &pictures, &weights);
   for (int t = 0; t < frames.count(); ++t) take(t, to_picture(std::exchange(pictures[size_t(t)], {})));

@@ -212,6 +212,37 @@ TEST(C5_RegularizedWindow, ALampThatIsSwitchedShowsAtOnce) {
   }
 }
 
+// A window that is told that nothing changes, and for sure.
+class Blind final : public HalvedWindowSource {
+ public:
+  explicit Blind(FrameWindow window) : window_(std::move(window)) {}
+  WindowSize size() const override { return window_.size(); }
+  void read_row(RowKind kind, int t, int y, float* out) const override { read(kind, t, y, &FrameWindow::read_row, out); }
+  void read_half_differences(RowKind kind, int t, int y, float* out) const override {
+    read(kind, t, y, &FrameWindow::read_half_differences, out);
+  }
+  void read_deviations(RowKind kind, int t, int y, float* out) const override { window_.read_deviations(kind, t, y, out); }
+  void read_links(int t, int y, int32_t* out) const override { window_.read_links(t, y, out); }
+
+ private:
+  void read(RowKind kind, int t, int y, void (FrameWindow::*row)(RowKind, int, int, float*) const, float* out) const {
+    (window_.*row)(kind, t, y, out);
+    if (is_temporal(kind)) std::fill_n(out, size_t(size().width) * size_t(size().channels), 0.0f);
+  }
+  FrameWindow window_;
+};
+
+// Samples of both frames outweigh a change that seems to be known and is wrong.
+TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
+  Shot shot;
+  shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
+  SolveReport report;
+  RegularizedWindows windows(shot.open());
+  windows.reconstruct(shot.all(), Blind(shot.window(shot.all())), never, &report, [&](int t, const Reconstructed& picture) {
+    EXPECT_NEAR(mean(picture.image) / mean(shot.description(t).truth), 1.0, 0.05) << t;
+  });
+}
+
 // Alpha, which is an eighth of red in these frames, goes through the weights of the colours.
 TEST(B2_RegularizedWindow, AlphaGoesThroughTheSameWeights) {
   Shot shot;
