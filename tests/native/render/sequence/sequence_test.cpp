@@ -1,5 +1,6 @@
 // Frames of an animation, sampled in halves and reconstructed together (contract 4).
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -512,6 +513,27 @@ TEST(E_Sequence, RegularizedDeliversItsErrorWhereItIsAskedFor) {
   const double first = error_of(0, 1.0f), second = error_of(1, 10.0f);
   EXPECT_GT(first, 0.0);
   EXPECT_NEAR(second / first, 100.0, 50.0);
+}
+
+// Renders that were cancelled at any moment, while they sample or deliver, leave no trace in those that follow.
+TEST(K3_Sequence, ManyCancelsThenARenderHasTheBitsOfAFreshOne) {
+  Pan pan(1.3f);
+  const std::vector<Delivered> fresh = render(&pan, make_sequence(1, 3).get(), 1, 3);
+  const auto sequence = make_sequence(1, 3);
+  const auto cancelled = [](std::unique_ptr<RenderTask> task, int microseconds) {
+    std::thread thread([&] { task->run(); });
+    std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
+    task->cancel();
+    thread.join();
+  };
+  for (int i = 0; i < 60; ++i) cancelled(sequence->sample(pan.at(1), with_passes(settings_of(1))), 150 * i);
+  for (int32_t t = 1; t <= 3; ++t) sample(sequence.get(), pan.at(t), settings_of(t));
+  for (int i = 0; i < 40; ++i) cancelled(sequence->deliver(1, nullptr), 200 * i);
+  for (int32_t t = 1; t <= 3; ++t) {
+    const Delivered frame = deliver(sequence.get(), t);
+    EXPECT_EQ(frame.noisy, fresh[size_t(t - 1)].noisy);
+    EXPECT_EQ(frame.combined, fresh[size_t(t - 1)].combined);
+  }
 }
 
 // A frame that failed: those before it are delivered without it (I2).
