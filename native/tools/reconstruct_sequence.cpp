@@ -102,12 +102,13 @@ int reconstruct_sequence(const ReconstructArguments& args) {
                         args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
   }
   const auto first = load_frame(stored.path(frames.front()));
-  const GradusSettings settings = settings_of(args, first->settings);
   const uint64_t passes = passes_of(args, *first);
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   const client::Sequence sequence = open(device, args, stored, {frames.front(), frames.back()});
   fs::create_directories(args.output);
   for (const int32_t frame : frames) {
+    // Exposure and the like may change from frame to frame.
+    const GradusSettings settings = settings_of(args, load_frame(stored.path(frame))->settings);
     const client::Render render = sequence.deliver(frame, settings);
     render.wait();
     const std::string path = picture_path(args.output, frame);
