@@ -402,7 +402,10 @@ def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds
     time.sleep(seconds)
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
-    output, _ = process.communicate(timeout=30)
+    try:
+        output, _ = process.communicate(timeout=30)
+    finally:
+        process.kill()
     assert process.returncode == 1, output
     assert time.monotonic() - begin < 1.0
     assert list(tmp_path.glob("f_*.png")) == []
