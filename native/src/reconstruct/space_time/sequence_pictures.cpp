@@ -14,10 +14,15 @@ SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& s
       regularized_(source_.frame),
       blend_(grid_, [this](int frame, Reconstructed picture) { ready_[frame] = std::move(picture); }) {}
 
+bool SequencePictures::has(int frame) const {
+  return !next_window_ || ready_.count(frame) > 0 || *next_window_ <= grid_.first_with(frame) ||
+         (*next_window_ <= grid_.last_with(frame) && blend_.has_begun(frame));
+}
+
 Reconstructed SequencePictures::take(int frame, const CancelTest& cancel, SolveReport* report) {
+  if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
   if (!next_window_) next_window_ = grid_.first_with(frame);
   while (ready_.count(frame) == 0) {
-    if (*next_window_ > grid_.last_with(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
     solve_next(cancel, report);
     if (cancel()) return {};
   }

@@ -4,6 +4,17 @@
 
 namespace gradus {
 
+namespace {
+
+// Weight of a difference over time between pixels that lie apart, over that of one at rest: what is seen through another pixel differs by
+// the part of a pixel that φ was rounded by, and repeats less of the noise (docs/method.md). Links come from the scene alone, so that L2
+// stays without bias.
+constexpr float kMovingWeight = 0.1f;
+
+float link_weight(int32_t target, int32_t pixel) { return target == pixel ? 1.0f : kMovingWeight; }
+
+}  // namespace
+
 void weigh_alike(const WindowSource& source, float alpha, SpaceTimeSystem* system) {
   const WindowSize size = source.size();
   for (const RowKind kind : kRowKinds) {
@@ -11,10 +22,13 @@ void weigh_alike(const WindowSource& source, float alpha, SpaceTimeSystem* syste
       if (kind == RowKind::kPrimal) system->frame(t).factor = alpha * alpha;
       for_pieces(size.height, [&](int begin, int end) {
         std::vector<float> values(size_t(size.width) * size_t(size.channels)), weights(static_cast<size_t>(size.width));
+        std::vector<int32_t> links(static_cast<size_t>(size.width));
         for (int y = begin; y < end; ++y) {
           source.read_row(kind, t, y, values.data());
+          if (is_temporal(kind)) source.read_links(t, y, links.data());
           for (int x = 0; x < size.width; ++x) {
-            weights[size_t(x)] = is_complete(values.data() + ptrdiff_t(x) * size.channels, size.channels) ? 1.0f : 0.0f;
+            const float weight = is_temporal(kind) ? link_weight(links[size_t(x)], y * size.width + x) : 1.0f;
+            weights[size_t(x)] = is_complete(values.data() + ptrdiff_t(x) * size.channels, size.channels) ? weight : 0.0f;
           }
           system->set_weights(kind, t, y, weights.data());
         }

@@ -19,6 +19,9 @@ class WindowBlend {
   // Windows in order, and their frames in order. The error of two that are blended is taken as that of their blend: it is no larger.
   void add(int window, int frame, Reconstructed picture);
 
+  // Whether a window has added to the frame, and others will.
+  bool has_begun(int frame) const { return begun_.count(frame) > 0; }
+
  private:
   WindowGrid grid_;
   Take take_;

@@ -147,11 +147,11 @@ std::shared_ptr<Frame> Sequence::open_frame(int32_t number, double* offset_sampl
   return frame;
 }
 
-SequencePictures* Sequence::pictures(const SequenceMethod& method, const Frame& like) {
-  if (!pictures_ || !(pictures_->method() == method)) {
+SequencePictures* Sequence::pictures(const SequenceMethod& method, const Frame& frame) {
+  if (!pictures_ || !(pictures_->method() == method) || !pictures_->has(place_of(frame.frame_number))) {
     SequenceSource source{[this](const FrameRange& window) { return open_window(window); },
                           [this](int place) { return open_frame(frame_at(place)); }};
-    pictures_ = std::make_unique<SequencePictures>(places_with_neighbours(like), settings_.windows, std::move(source), method);
+    pictures_ = std::make_unique<SequencePictures>(places_with_neighbours(frame), settings_.windows, std::move(source), method);
     if (last_ < settings_.last) pictures_->end_at(place_of(last_));
   }
   return pictures_.get();

@@ -59,8 +59,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places) const;
   // All samples of a frame; offset: if given, those of its second part.
   std::shared_ptr<Frame> open_frame(int32_t frame, double* offset = nullptr) const;
-  // like: a frame of the sequence.
-  SequencePictures* pictures(const SequenceMethod& method, const Frame& like);
+  // That have the picture of `frame`: begun anew where it was taken before, or by another method.
+  SequencePictures* pictures(const SequenceMethod& method, const Frame& frame);
   // Those that no picture to come needs.
   void forget_before(int32_t frame);
 
