@@ -13,6 +13,7 @@ What was found in 3.4, 4.5 and 5.0, and is relied on here:
 from __future__ import annotations
 
 import ctypes
+import logging
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -145,9 +146,19 @@ class Animation:
         return True
 
     def _pass_by(self, job: Any, show: Callable[[int], None]) -> None:
-        """Links the next frame to the one before it, so that parts of an animation, each with its own range, fit together in a store."""
-        for view in self._export(job, show, self._next - self.frames.step):
-            self.library.sequence_pass_by(self._sequences[view], job.session.scene, byref(job.shot.settings))
+        """Links the next frame to the one before it, so that parts of an animation, each with its own range, fit together in a store.
+        That frame is not of this job: what is wrong with it concerns nobody, and without it there is no link."""
+        job.is_silent = True
+        try:
+            for view in self._export(job, show, self._next - self.frames.step):
+                self.library.sequence_pass_by(self._sequences[view], job.session.scene, byref(job.shot.settings))
+        except (Cancelled, ExportCancelled):
+            raise
+        except Exception:
+            logging.getLogger(__name__).info("The frame before the first one cannot be shown", exc_info=True)
+        finally:
+            job.is_silent = False
+            self.library.take_scene_warnings(job.session.scene)
 
     def _sample(self, job: Any, show: Callable[[int], None], number: int, display: Display) -> None:
         for view in self._export(job, show, number):

@@ -107,6 +107,7 @@ class Job:
         self.depsgraph = depsgraph
         self.is_preview = engine.is_preview
         self.overrides = options.Overrides() if self.is_preview else options.current()
+        self.is_silent = False
         self.cancelled = False
         self.infos = active_passes(self.scene, self.layer, self.overrides)
         self.views = compat.view_names(self.scene.render)
@@ -213,6 +214,8 @@ class Job:
         return False
 
     def warn(self, texts: list[str]) -> None:
+        if self.is_silent:
+            return
         for text in self.session.take_new_warnings(texts):
             self.shot.warnings.append(text)
             if not self.is_preview:

@@ -35,6 +35,10 @@ FrameDelivery::FrameDelivery(std::shared_ptr<Sequence> sequence, int32_t frame, 
     : sequence_(std::move(sequence)), number_(frame), changed_(settings ? std::optional(*settings) : std::nullopt) {}
 
 void FrameDelivery::render() {
+  {
+    const std::lock_guard lock(mutex_);
+    phase_ = GRADUS_PHASE_RECONSTRUCTING;
+  }
   std::shared_ptr<Frame> frame;
   const uint32_t threads = threads_of(changed_.value_or(GradusSettings{}), sequence_->device_.get());
   tbb::task_arena arena(arena_size(threads));
@@ -42,7 +46,6 @@ void FrameDelivery::render() {
   {
     const std::lock_guard lock(mutex_);
     frame_ = std::move(frame);
-    phase_ = GRADUS_PHASE_RECONSTRUCTING;
   }
   arena.execute([&] { reconstruct(); });
   RenderStats& stats = record_.stats;

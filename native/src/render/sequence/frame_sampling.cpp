@@ -35,6 +35,14 @@ void require_same(const Frame& stored, const std::string& path, const GradusSett
   if (stored.settings.noise_threshold > 0.0f && !(settings.noise_threshold > 0.0f)) refuse("was sampled with a noise threshold");
 }
 
+std::shared_ptr<const Frame> load_or_name_the_way_out(const SequenceFolder& folder, int32_t number, FramePart part) {
+  try {
+    return folder.load(number, part);
+  } catch (const Error& e) {
+    throw Error(e.code(), std::string(e.what()) + ": remove it, or choose another frame store");
+  }
+}
+
 // The samples of each pixel that a replay takes: those of what it replays, the mean in holes, and where that is not known.
 std::vector<uint32_t> replayed_counts(const SampleSources& sources, const FrameBefore* before, double mean) {
   std::vector<uint32_t> counts(sources.pixel.size(), uint32_t(std::max(1L, std::lround(mean))));
@@ -120,7 +128,7 @@ std::shared_ptr<const Frame> FrameSampling::stored(FramePart part) const {
   const SequenceFolder& folder = sequence_->folder_;
   const int32_t number = input_.settings.frame;
   if (!folder.holds(number)) return nullptr;
-  std::shared_ptr<const Frame> frame = folder.load(number, part);
+  const std::shared_ptr<const Frame> frame = load_or_name_the_way_out(folder, number, part);
   // The file of an earlier frame that was as this one, and now has too few samples: taken anew, or from that frame again.
   if (frame->frame_number != number && !has_as_many(*frame, part)) return nullptr;
   GradusSettings settings = input_.settings;

@@ -515,6 +515,19 @@ TEST(E_Sequence, RegularizedDeliversItsErrorWhereItIsAskedFor) {
   EXPECT_NEAR(second / first, 100.0, 50.0);
 }
 
+// A full disk, a folder that went: the render ends, and its code is not that of one that goes on (I2).
+TEST(I2_Sequence, AFolderThatCannotBeWrittenEndsTheRenderWithItsName) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto sequence = make_sequence(1, 4, folder.path());
+  fs::remove_all(folder.path());
+  const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
+  task->run();
+  std::string text;
+  EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_UNKNOWN);
+  EXPECT_NE(text.find("f+0000001.offset.exr"), std::string::npos) << text;
+}
+
 // Renders that were cancelled at any moment, while they sample or deliver, leave no trace in those that follow.
 TEST(K3_Sequence, ManyCancelsThenARenderHasTheBitsOfAFreshOne) {
   Pan pan(1.3f);
