@@ -7,6 +7,7 @@ from fault import Fault, Test, native, statistics
 LAMBERT = "native/src/bsdf/lobe.h"
 PIXELS = "native/src/integrator/pixel_loop.cpp"
 LOOP = "native/src/render/loop.cpp"
+TASK = "native/src/render/render_task.cpp"
 
 RENDERER = (
     Fault(
@@ -85,7 +86,7 @@ RENDERER = (
         7,
         "swallowed exception",
         "on a thread of the render",
-        LOOP,
+        TASK,
         "    end(GRADUS_ERROR_UNKNOWN, e.what());\n",
         '    end(GRADUS_OK, "");\n',
         (native("Loop.FailuresOfTheIntegratorBecomeTheOutcome"),),
@@ -166,9 +167,9 @@ RENDERER = (
         12,
         "missed cancel",
         "of the whole render",
-        "native/src/render/loop.h",
-        "void cancel() { stop_.store(true, std::memory_order_relaxed); }",
-        "void cancel() { stop_.store(false, std::memory_order_relaxed); }",
+        "native/src/render/render_task.h",
+        "virtual void cancel() { stop_.store(true, std::memory_order_relaxed); }",
+        "virtual void cancel() { stop_.store(false, std::memory_order_relaxed); }",
         (native("K2_Cancel.EndsWithinAQuarterSecondAndStaysReadable"),),
     ),
 )
