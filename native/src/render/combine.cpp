@@ -25,12 +25,12 @@ std::vector<float> crop_error(const Frame& frame, const std::vector<float>& erro
 
 std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
                            SolveReport* report, std::vector<float>* error) {
-  std::vector<float> rgba(size_t(region.area()) * 4);
   const bool solves = reconstruction != GRADUS_RECONSTRUCTION_NONE;
   Reconstructed solved;
   if (solves || error != nullptr) solved = reconstruct_frame(frame, reconstruction, alpha, error != nullptr, cancel, report);
   if (error != nullptr) *error = crop_error(frame, solved.error, region);
   if (!solves) {
+    std::vector<float> rgba(size_t(region.area()) * 4);
     read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, region, rgba.data());
     return rgba;
   }

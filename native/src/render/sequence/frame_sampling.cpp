@@ -14,6 +14,9 @@ namespace {
 // Of a time limit; the other half takes as long, and the differences over time make it no shorter (contract 4.6).
 constexpr float kBaseShareOfTime = 0.4f;
 
+// Of a noise threshold: half of the samples have twice the squared error of all.
+constexpr float kBaseShareOfThreshold = 1.41421356f;
+
 // Whether pixels may differ in their samples, which a replay then repeats.
 bool has_counts(const GradusSettings& settings) { return settings.noise_threshold > 0.0f || settings.time_limit > 0.0f; }
 
@@ -73,6 +76,7 @@ LoopInput FrameSampling::base_input() const {
   LoopInput input = input_;
   input.settings.samples = base_samples(input.settings.samples);
   input.settings.time_limit *= kBaseShareOfTime;
+  input.settings.noise_threshold *= kBaseShareOfThreshold;
   if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase)) input.resumed = stored_base_;
   input.whole_samples = input_.settings.samples;
   return input;
@@ -143,7 +147,7 @@ bool FrameSampling::has_as_many(const Frame& frame, FramePart part) const {
   const uint32_t samples = part == FramePart::kBase ? base_samples(asked.samples) : asked.samples / 2;
   // Frames with a time limit have as many as it left them.
   if (asked.time_limit > 0.0f && asked.time_limit <= frame.settings.time_limit / kBaseShareOfTime) return true;
-  return frame.settings.samples >= samples && frame.settings.noise_threshold <= asked.noise_threshold;
+  return frame.settings.samples >= samples && frame.settings.noise_threshold <= kBaseShareOfThreshold * asked.noise_threshold;
 }
 
 bool FrameSampling::repeats_before() const {
@@ -184,19 +188,20 @@ void FrameSampling::sample_parts() {
     run(&base_);
     base = base_.frame();
   }
-  sample_offset(*base);
+  sample_offset(*base, samples_base);
   if (samples_base) save(*base, FramePart::kBase);
   record_.stats.stopped = samples_base ? record_.stats.stopped : "stored";
   finish(base);
 }
 
-void FrameSampling::sample_offset(const Frame& base) {
+void FrameSampling::sample_offset(const Frame& base, bool samples_base) {
   LoopInput input = input_;
   input.whole_samples = input.settings.samples;
   input.settings.samples /= 2;
   const std::shared_ptr<const Frame> found = stored(FramePart::kOffset);
   const bool counted = has_counts(input_.settings);
   if (found && !counted && has_as_many(*found, FramePart::kOffset)) return;
+  if (found && !samples_base && input.settings.time_limit > 0.0f) return;  // as many as the time of its base allowed
   input.replay = follow(base);
   const std::vector<uint32_t>& counts = input.replay->counts;
   if (found && counted && samples_of_pixels(*found) == counts) return;

@@ -31,7 +31,7 @@ class FrameSampling final : public RenderTask {
   bool repeats_before() const;
   void repeat_before();
   void sample_parts();
-  void sample_offset(const Frame& base);
+  void sample_offset(const Frame& base, bool samples_base);
   void run(RenderLoop* loop);
   void save(const Frame& frame, FramePart part) const;
   std::shared_ptr<const Replay> follow(const Frame& base) const;

@@ -324,6 +324,27 @@ TEST(C7_Sequence, AdaptiveFramesGetMoreSamplesWhereTheyAreAskedFor) {
   }
 }
 
+// A time limit leaves a frame as many samples as it could take: a rerun keeps them.
+TEST(C7_Sequence, FramesWithATimeLimitKeepTheirSamples) {
+  Pan pan(1.3f);
+  const Folder folder;
+  std::vector<float> before;
+  for (int i = 0; i < 2; ++i) {
+    const auto sequence = make_sequence(1, 2, folder.path());
+    for (int32_t t = 1; t <= 2; ++t) {
+      GradusSettings settings = settings_of(t, 1u << 20);
+      settings.time_limit = 0.1f;
+      sample(sequence.get(), pan.at(t), settings);
+    }
+    const Delivered frame = deliver(sequence.get(), 2);
+    if (i > 0) {
+      EXPECT_EQ(frame.stats["stopped"], "stored");
+      EXPECT_EQ(frame.combined, before);
+    }
+    before = frame.combined;
+  }
+}
+
 TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
   Pan pan(1.3f);
   const Folder folder;
