@@ -394,7 +394,7 @@ def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(blender: Callable[
 def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds: float) -> None:
     temporary = tmp_path / "temporary"
     temporary.mkdir()
-    asked = arguments(tmp_path, "-s", "1", "-e", "20", "-a", samples=2000)
+    asked = arguments(tmp_path, "-s", "1", "-e", "20", "-a", samples=20000, script="scene.gradus.noise_threshold = 0.0\n")
     process = application.start(*asked, folder=tmp_path / "home", env={"TMPDIR": str(temporary)})
     for line in process.stdout:
         if b"SETUP DONE" in line:
