@@ -22,10 +22,9 @@ from animation_modes import MODES, REFERENCES
 from animation_references import Reference, reference, vectors
 from animation_renderer import AnimationRenderer
 from animation_scenes import Animation, select
-from bench import append, powers_of_two
-from renderers import RefusedError
+from bench import append, bench_each, powers_of_two
 from results import FOLDER
-from version import cpu_name, version_of_build
+from version import cpu_name
 
 RESULTS = FOLDER / "animation.jsonl"
 
@@ -127,15 +126,7 @@ def main() -> None:
     parser.add_argument("--samples", type=powers_of_two, default=[4, 16, 64])
     parser.add_argument("--modes", type=names, default=list(MODES))
     arguments = parser.parse_args()
-    version, deadline = version_of_build(), time.monotonic() + 60.0 * arguments.minutes
-    for animation in select(arguments.scenes):
-        try:
-            bench_animation(animation, arguments, version, deadline)
-        except (RuntimeError, RefusedError) as error:
-            print(f"FAILED {animation.name}: {error}", flush=True)
-        if time.monotonic() > deadline:
-            print("time is up; run again to go on")
-            break
+    bench_each(select(arguments.scenes), bench_animation, arguments)
 
 
 if __name__ == "__main__":

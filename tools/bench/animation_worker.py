@@ -9,12 +9,8 @@ every frame export, build, sampling, reconstruction or denoising, and writing a 
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
-import sys
-import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import animation_modes
@@ -23,10 +19,6 @@ import memory
 import modes
 import numpy as np
 import worker
-from answers import Answers
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
-import gradus  # noqa: E402
 
 
 def render(job: dict, folder: Path) -> dict:
@@ -52,26 +44,11 @@ def render(job: dict, folder: Path) -> dict:
     return answer
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("scene")
-    parser.add_argument("width", type=int)
-    parser.add_argument("height", type=int)
-    arguments = parser.parse_args()
-    answers = Answers()
-    gradus.register()
-    worker.prepare(arguments.scene, arguments.width, arguments.height)
+def open_scene(path: str, width: int, height: int) -> Callable[[dict, Path], dict]:
+    worker.prepare(path, width, height)
     bpy.context.scene.render.use_overwrite, bpy.context.scene.render.use_placeholder = True, False
-    with tempfile.TemporaryDirectory() as folder:
-        for line in sys.stdin:
-            try:
-                answer = render(json.loads(line), Path(folder))
-            except Exception as error:  # one failed job must not end the others
-                answer = {"error": str(error).strip()}
-            answers.send(answer)
-    gradus.unregister()
-    os._exit(0)  # the 4.5 module can hang at exit
+    return render
 
 
 if __name__ == "__main__":
-    main()
+    worker.serve(__doc__, open_scene)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -160,6 +161,19 @@ def powers_of_two(text: str) -> list[int]:
     return counts
 
 
+def bench_each(scenes: list[Any], bench_one: Callable[[Any, argparse.Namespace, str, float], None], arguments: argparse.Namespace) -> None:
+    """One after the other, until the time is up; one that fails does not end the others."""
+    version, deadline = version_of_build(), time.monotonic() + 60.0 * arguments.minutes
+    for scene in scenes:
+        try:
+            bench_one(scene, arguments, version, deadline)
+        except (RuntimeError, RefusedError) as error:
+            print(f"FAILED {scene.name}: {error}", flush=True)
+        if time.monotonic() > deadline:
+            print("time is up; run again to go on")
+            break
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="")
@@ -176,15 +190,7 @@ def main() -> None:
         arguments.scenes = arguments.scenes or ",".join(QUICK)
         arguments.width, arguments.reference, arguments.samples, arguments.seeds = 160, 1024, [4, 16], 3
     Path(RESULTS).parent.mkdir(parents=True, exist_ok=True)
-    version, deadline = version_of_build(), time.monotonic() + 60.0 * arguments.minutes
-    for scene in select(arguments.scenes):
-        try:
-            bench_scene(scene, arguments, version, deadline)
-        except (RuntimeError, RefusedError) as error:
-            print(f"FAILED {scene.name}: {error}", flush=True)
-        if time.monotonic() > deadline:
-            print("time is up; run again to go on")
-            break
+    bench_each(select(arguments.scenes), bench_scene, arguments)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -96,20 +97,21 @@ def write_twin(job: dict) -> dict:
     return {}
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+def serve(description: str | None, open_scene: Callable[[str, int, int], Callable[[dict, Path], dict]]) -> None:
+    """Answers jobs, a line each, until there are no more. `open_scene` opens a file at a size, and gives what answers a job."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("scene")
     parser.add_argument("width", type=int)
     parser.add_argument("height", type=int)
     arguments = parser.parse_args()
     answers = Answers()
     gradus.register()
-    bounces = prepare(arguments.scene, arguments.width, arguments.height)
+    answer_job = open_scene(arguments.scene, arguments.width, arguments.height)
     with tempfile.TemporaryDirectory() as folder:
         for line in sys.stdin:
             job = json.loads(line)
             try:
-                answer = write_twin(job) if "twin" in job else render(job, Path(folder), bounces)
+                answer = answer_job(job, Path(folder))
             except Exception as error:  # one failed job must not end the others
                 answer = {"error": str(error).strip()}
             answers.send(answer)
@@ -117,5 +119,10 @@ def main() -> None:
     os._exit(0)  # the 4.5 module can hang at exit
 
 
+def open_scene(path: str, width: int, height: int) -> Callable[[dict, Path], dict]:
+    bounces = prepare(path, width, height)
+    return lambda job, folder: write_twin(job) if "twin" in job else render(job, folder, bounces)
+
+
 if __name__ == "__main__":
-    main()
+    serve(__doc__, open_scene)

@@ -25,6 +25,8 @@ inline void take_warning(Warnings* warnings, const char** text) {
 struct SceneObject {
   explicit SceneObject(const std::shared_ptr<Device>& device);
   ~SceneObject();
+  // Throws invalid_operation before the first commit.
+  std::shared_ptr<const Snapshot> snapshot();
   std::mutex mutex;  // calls of one scene wait for each other
   Scene scene;
   Warnings warnings;                        // of commits

@@ -15,10 +15,7 @@ namespace {
 std::shared_ptr<RenderObject> start(GradusScene scene, const GradusSettings* settings, std::shared_ptr<const Frame> resumed) {
   const GradusSettings copy = read_struct(settings, "settings", default_settings());
   const auto object = find_handle<SceneObject>(scene);
-  const std::lock_guard lock(object->mutex);
-  std::shared_ptr<const Snapshot> snapshot = object->scene.snapshot();
-  if (!snapshot) throw invalid_operation("the scene was not committed");
-  return std::make_shared<RenderObject>(object->scene.device(), std::move(snapshot), copy, std::move(resumed));
+  return std::make_shared<RenderObject>(object->scene.device(), object->snapshot(), copy, std::move(resumed));
 }
 
 }  // namespace

@@ -37,6 +37,13 @@ void check_key(uint64_t key) {
 SceneObject::SceneObject(const std::shared_ptr<Device>& device) : scene(device) {}
 SceneObject::~SceneObject() = default;
 
+std::shared_ptr<const Snapshot> SceneObject::snapshot() {
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<const Snapshot> current = scene.snapshot();
+  if (!current) throw invalid_operation("the scene was not committed");
+  return current;
+}
+
 }  // namespace gradus::api
 
 using api::with_scene;

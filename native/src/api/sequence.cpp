@@ -18,14 +18,6 @@ SequenceSettings settings_of(const GradusSequenceSettings& given) {
   return settings;
 }
 
-std::shared_ptr<const Snapshot> snapshot_of(GradusScene scene) {
-  const auto object = find_handle<SceneObject>(scene);
-  const std::lock_guard lock(object->mutex);
-  std::shared_ptr<const Snapshot> snapshot = object->scene.snapshot();
-  if (!snapshot) throw invalid_operation("the scene was not committed");
-  return snapshot;
-}
-
 // With the sequence's lock.
 void require_rest(const SequenceObject& object) {
   const auto running = object.running.lock();
@@ -74,7 +66,7 @@ GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene, c
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
     api::require_rest(*object);
-    *render = api::run(object.get(), object->sequence->sample(api::snapshot_of(scene), copy));
+    *render = api::run(object.get(), object->sequence->sample(api::find_handle<api::SceneObject>(scene)->snapshot(), copy));
   });
 }
 
@@ -84,7 +76,7 @@ GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusScene scene, 
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
     api::require_rest(*object);
-    object->sequence->pass_by(api::snapshot_of(scene), copy);
+    object->sequence->pass_by(api::find_handle<api::SceneObject>(scene)->snapshot(), copy);
   });
 }
 

@@ -116,9 +116,9 @@ void save_frame(const Frame& frame, const std::string& path) {
   });
 }
 
-std::shared_ptr<const Frame> load_frame(const std::string& path) {
+std::shared_ptr<Frame> load_frame(const std::string& path) {
   try {
-    return std::make_shared<const Frame>(read_frame(path));
+    return std::make_shared<Frame>(read_frame(path));
   } catch (const Error& e) {
     throw Error(e.code(), "cannot load frame " + path + ": " + e.what());
   } catch (const std::bad_alloc&) {

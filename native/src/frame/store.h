@@ -14,6 +14,6 @@ namespace gradus {
 // Writes PATH as a whole or not at all: under a temporary name beside it, synced, then renamed. Throws Error with path and cause.
 void save_frame(const Frame& frame, const std::string& path);
 // Throws invalid_argument with path and cause for a file that is missing, damaged or no frame.
-std::shared_ptr<const Frame> load_frame(const std::string& path);
+std::shared_ptr<Frame> load_frame(const std::string& path);
 
 }  // namespace gradus

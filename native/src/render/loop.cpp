@@ -157,8 +157,8 @@ void RenderLoop::judge() {
 void RenderLoop::sample() {
   sampling_.start();
   const auto cancel = [this] { return is_stopped(); };
-  const bool adaptively =
-      input_.settings.noise_threshold > 0.0f && !input_.replay;  // a render that is too short to be so may go on as one that is
+  // A render that is too short to be so may go on as one that is.
+  const bool adaptively = input_.settings.noise_threshold > 0.0f && !input_.replay;
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
   if (adaptively) adaptive_ = std::make_unique<AdaptiveSampling>(*frame_, input_.settings.noise_threshold, plan_.first_check);
@@ -204,8 +204,8 @@ void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
 }
 
 bool RenderLoop::show_is_due(uint32_t begin) const {
-  const uint32_t reconstruction = frame_->settings.reconstruction;
   if (input_.samples_only) return false;
+  const uint32_t reconstruction = frame_->settings.reconstruction;
   if (begin < kBothHalves) return live_view_.quarter_is_due(reconstruction);
   return live_view_.refresh_is_due(reconstruction, sampling_.seconds(), tracker_.fraction() / ProgressTracker::kSamplingShare);
 }
@@ -290,15 +290,13 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
 
 std::string RenderLoop::stats() const {
   const std::lock_guard lock(mutex_);
-  require_end("its stats come");
-  if (!frame_) throw invalid_operation("the render failed before it began: " + text_);
+  require_frame(frame_, "its stats come", "the render failed before it began: ");
   return stats_json(stats_, plan_, *frame_);
 }
 
 std::shared_ptr<const Frame> RenderLoop::frame() const {
   const std::lock_guard lock(mutex_);
-  require_end("its frame comes");
-  if (!frame_) throw invalid_operation("the render failed before it began: " + text_);
+  require_frame(frame_, "its frame comes", "the render failed before it began: ");
   return frame_;
 }
 

@@ -54,6 +54,8 @@ class RenderTask {
   bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
   // Throws invalid_operation while running. With the lock.
   void require_end(const char* what) const;
+  // The same, and where the task has ended without a frame: `failure`, and why. With the lock.
+  void require_frame(const std::shared_ptr<const Frame>& frame, const char* what, const char* failure) const;
   double seconds() const { return clock_.seconds(); }
   double process_cpu_seconds() const { return 1e-9 * double(process_cpu_nanoseconds() - process_cpu_start_); }
 

@@ -14,6 +14,8 @@
 namespace gradus {
 namespace {
 
+constexpr const char* kNotDelivered = "the frame was not delivered: ";
+
 // Of a frame that was sampled by another process, or in another session.
 Plan plan_of(const Frame& frame) {
   Plan plan;
@@ -162,8 +164,7 @@ const Region& FrameDelivery::delivered() const {
 
 void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
   const std::lock_guard lock(mutex_);
-  require_end("its passes come");
-  if (!frame_) throw invalid_operation("the frame was not delivered: " + text_);
+  require_frame(frame_, "its passes come", kNotDelivered);
   const std::vector<float>* made = pass == GRADUS_PASS_COMBINED          ? &combined_
                                    : pass == GRADUS_PASS_ERROR           ? &error_
                                    : pass == GRADUS_PASS_GRADIENT_T      ? &difference_
@@ -183,15 +184,13 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
 
 std::string FrameDelivery::stats() const {
   const std::lock_guard lock(mutex_);
-  require_end("its stats come");
-  if (!frame_) throw invalid_operation("the frame was not delivered: " + text_);
+  require_frame(frame_, "its stats come", kNotDelivered);
   return stats_json(record_.stats, record_.plan, *frame_);
 }
 
 std::shared_ptr<const Frame> FrameDelivery::frame() const {
   const std::lock_guard lock(mutex_);
-  require_end("its frame comes");
-  if (!frame_) throw invalid_operation("the frame was not delivered: " + text_);
+  require_frame(frame_, "its frame comes", kNotDelivered);
   return frame_;
 }
 

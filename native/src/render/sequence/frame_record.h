@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "frame/frame.h"
 #include "plan/plan.h"
 #include "render/stats.h"
 #include "scene/snapshot.h"
@@ -16,14 +17,22 @@ struct FrameBefore {
   std::shared_ptr<const Snapshot> snapshot;
   GradusSettings settings{};
   int32_t stream_frame = 0;      // whose random numbers it has taken: its own, or those of the first of several that are alike
-  std::vector<uint32_t> counts;  // samples of each pixel; empty: as many as the settings say
-  bool is_sampled = true;        // false: it was passed by
+  std::vector<uint32_t> counts;  // samples of each pixel; empty: as many as the settings say, or not known
+  bool is_sampled = false;
 };
+// base: its own half; nullptr where it was not sampled.
+std::unique_ptr<const FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings, const Frame* base);
 
 // How a frame was sampled, for the stats of its delivery.
 struct FrameRecord {
   Plan plan;
   RenderStats stats;
 };
+
+// Whether pixels may differ in their samples, which a replay then repeats.
+bool has_counts(const GradusSettings& settings);
+// Whether frames with these settings show the same region with the same passes, sampled alike but for their numbers.
+bool are_alike(const GradusSettings& a, const GradusSettings& b);
+bool show_same_region(const GradusSettings& a, const GradusSettings& b);
 
 }  // namespace gradus

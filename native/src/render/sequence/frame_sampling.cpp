@@ -17,23 +17,15 @@ constexpr float kBaseShareOfTime = 0.4f;
 // Of a noise threshold: half of the samples have twice the squared error of all.
 constexpr float kBaseShareOfThreshold = 1.41421356f;
 
-// Whether pixels may differ in their samples, which a replay then repeats.
-bool has_counts(const GradusSettings& settings) { return settings.noise_threshold > 0.0f || settings.time_limit > 0.0f; }
-
 uint32_t base_samples(uint32_t samples) { return samples - samples / 2; }
 
-uint64_t key_without_frame(GradusSettings settings) {
-  settings.frame = 0;
-  return sampling_key(settings);
-}
+constexpr const char* kWayOut = ": remove it, or choose another frame store";
 
 void require_same(const Frame& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
-  const auto refuse = [&](const std::string& why) {
-    throw invalid_argument("stored frame " + path + " " + why + ": remove it, or choose another frame store");
-  };
+  const auto refuse = [&](const std::string& why) { throw invalid_argument("stored frame " + path + " " + why + kWayOut); };
   if (sampling_key(stored.settings) != sampling_key(settings)) refuse("was sampled with other settings");
   if (stored.settings.passes != settings.passes) refuse("was sampled with other passes");
-  if (!std::equal(stored.settings.region, stored.settings.region + 4, settings.region)) refuse("shows another region");
+  if (!show_same_region(stored.settings, settings)) refuse("shows another region");
   if (stored.scene_key != scene_key) refuse("shows another scene");
   if (stored.settings.noise_threshold > 0.0f && !(settings.noise_threshold > 0.0f)) refuse("was sampled with a noise threshold");
 }
@@ -42,7 +34,7 @@ std::shared_ptr<const Frame> load_or_name_the_way_out(const SequenceFolder& fold
   try {
     return folder.load(number, part);
   } catch (const Error& e) {
-    throw Error(e.code(), std::string(e.what()) + ": remove it, or choose another frame store");
+    throw Error(e.code(), e.what() + std::string(kWayOut));
   }
 }
 
@@ -107,15 +99,13 @@ GradusProgress FrameSampling::progress() const {
 
 std::string FrameSampling::stats() const {
   const std::lock_guard lock(mutex_);
-  require_end("its stats come");
-  if (!frame_) throw invalid_operation("the render failed: " + text_);
+  require_frame(frame_, "its stats come", "the render failed: ");
   return stats_json(record_.stats, record_.plan, *frame_);
 }
 
 std::shared_ptr<const Frame> FrameSampling::frame() const {
   const std::lock_guard lock(mutex_);
-  require_end("its frame comes");
-  if (!frame_) throw invalid_operation("the render failed: " + text_);
+  require_frame(frame_, "its frame comes", "the render failed: ");
   return frame_;
 }
 
@@ -154,9 +144,8 @@ bool FrameSampling::repeats_before() const {
   const FrameBefore* before = sequence_->before_.get();
   const GradusSettings& now = input_.settings;
   return before && before->is_sampled && before->snapshot->content_key == input_.snapshot->content_key &&
-         key_without_frame(before->settings) == key_without_frame(now) && before->settings.samples >= now.samples &&
-         before->settings.noise_threshold <= now.noise_threshold && std::equal(now.region, now.region + 4, before->settings.region) &&
-         before->settings.passes == now.passes;
+         are_alike(before->settings, now) && before->settings.samples >= now.samples &&
+         before->settings.noise_threshold <= now.noise_threshold;
 }
 
 void FrameSampling::run(RenderLoop* loop) {
@@ -222,8 +211,7 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
   replay->sources = {input_.settings.frame, std::vector<int32_t>(pixels, kNoLink)};
   const FrameBefore* before = sequence_->before_.get();
   const bool follows = before && before->settings.width == input_.settings.width && before->settings.height == input_.settings.height &&
-                       std::equal(input_.settings.region, input_.settings.region + 4, before->settings.region) &&
-                       !is_cut(before->snapshot->camera, input_.snapshot->camera);
+                       show_same_region(before->settings, input_.settings) && !is_cut(before->snapshot->camera, input_.snapshot->camera);
   if (follows) {
     const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, input_.settings.width, input_.settings.height); };
     const Camera camera_before = camera(*before->snapshot), camera_now = camera(*input_.snapshot);
@@ -244,12 +232,7 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
 }
 
 void FrameSampling::finish(const std::shared_ptr<const Frame>& base) {
-  auto before = std::make_unique<FrameBefore>();
-  before->snapshot = input_.snapshot;
-  before->settings = input_.settings;
-  before->stream_frame = base->frame_number;
-  if (has_counts(input_.settings)) before->counts = samples_of_pixels(*base);
-  sequence_->before_ = std::move(before);
+  sequence_->before_ = make_before(input_.snapshot, input_.settings, base.get());
   sequence_->records_[input_.settings.frame] = record_;
   const std::lock_guard lock(mutex_);
   frame_ = base;

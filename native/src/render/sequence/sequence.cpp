@@ -20,15 +20,6 @@ uint32_t integrator_of(const GradusSettings& settings) {
   return by_features ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
 }
 
-bool is_sampled_alike(const Frame& a, const Frame& b) {
-  const auto key = [](GradusSettings settings) {
-    settings.frame = 0;
-    return sampling_key(settings);
-  };
-  return key(a.settings) == key(b.settings) && a.settings.passes == b.settings.passes && a.channels == b.channels &&
-         std::equal(a.settings.region, a.settings.region + 4, b.settings.region);
-}
-
 }  // namespace
 
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
@@ -70,7 +61,9 @@ FrameRange Sequence::places_with_neighbours(const Frame& like) const {
   if (folder_.is_temporary()) return range;
   const auto fits = [&](int place) {
     const int32_t frame = frame_at(place);
-    return folder_.holds(frame) && is_sampled_alike(*folder_.load(frame, FramePart::kBase), like);
+    if (!folder_.holds(frame)) return false;
+    const std::shared_ptr<const Frame> other = folder_.load(frame, FramePart::kBase);
+    return are_alike(other->settings, like.settings) && other->channels == like.channels;
   };
   const int most = settings_.windows.frames;  // more have no share
   for (int i = 0; i < most && fits(range.first - 1); ++i) --range.first;
@@ -106,18 +99,11 @@ std::unique_ptr<RenderTask> Sequence::sample(std::shared_ptr<const Snapshot> sna
 }
 
 void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
-  auto before = std::make_unique<FrameBefore>();
-  before->snapshot = std::move(snapshot);
-  before->settings = settings;
-  before->settings.integrator = integrator_of(settings);
-  before->stream_frame = settings.frame;
-  before->is_sampled = folder_.holds(settings.frame);
-  if (before->is_sampled) {  // another part of the job has sampled it
-    const std::shared_ptr<const Frame> base = folder_.load(settings.frame, FramePart::kBase);
-    before->stream_frame = base->frame_number;
-    if (settings.noise_threshold > 0.0f || settings.time_limit > 0.0f) before->counts = samples_of_pixels(*base);
-  }
-  before_ = std::move(before);
+  GradusSettings resolved = settings;
+  resolved.integrator = integrator_of(settings);
+  std::shared_ptr<const Frame> base;  // that of another part of the job
+  if (folder_.holds(settings.frame)) base = folder_.load(settings.frame, FramePart::kBase);
+  before_ = make_before(std::move(snapshot), resolved, base.get());
 }
 
 std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSettings* settings) {
@@ -132,12 +118,12 @@ std::unique_ptr<HalvedWindowSource> Sequence::open_window(const FrameRange& plac
 }
 
 std::shared_ptr<Frame> Sequence::open_frame(int32_t number, double* offset_samples) const {
-  const auto base = folder_.load(number, FramePart::kBase), offset = folder_.load(number, FramePart::kOffset);
-  if (base->count[0].size() != offset->count[0].size() || base->channels != offset->channels || base->gradients != offset->gradients ||
-      base->passes.size() != offset->passes.size() || sampling_key(base->settings) != sampling_key(offset->settings)) {
+  const std::shared_ptr<Frame> frame = folder_.load(number, FramePart::kBase);
+  const std::shared_ptr<const Frame> offset = folder_.load(number, FramePart::kOffset);
+  if (frame->count[0].size() != offset->count[0].size() || frame->channels != offset->channels || frame->gradients != offset->gradients ||
+      frame->passes.size() != offset->passes.size() || sampling_key(frame->settings) != sampling_key(offset->settings)) {
     throw invalid_argument("stored frame " + folder_.path(number, FramePart::kBase) + " and its offset do not belong together");
   }
-  auto frame = std::make_shared<Frame>(*base);
   add_sums(frame.get(), *offset);
   frame->frame_number = number;
   frame->settings.frame = number;

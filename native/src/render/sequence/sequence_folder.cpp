@@ -32,7 +32,7 @@ bool SequenceFolder::holds(int32_t frame) const {
   return fs::exists(path(frame, FramePart::kBase), error) && fs::exists(path(frame, FramePart::kOffset), error);
 }
 
-std::shared_ptr<const Frame> SequenceFolder::load(int32_t frame, FramePart part) const { return load_frame(path(frame, part)); }
+std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part) const { return load_frame(path(frame, part)); }
 
 void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part) const { save_frame(content, path(frame, part)); }
 

@@ -22,7 +22,7 @@ class SequenceFolder {
   // Whether both parts of a frame are there.
   bool holds(int32_t frame) const;
   // Throws invalid_argument with path and cause. By the threads of the caller's arena; so does save().
-  std::shared_ptr<const Frame> load(int32_t frame, FramePart part) const;
+  std::shared_ptr<Frame> load(int32_t frame, FramePart part) const;
   void save(const Frame& content, int32_t frame, FramePart part) const;
   // Frame `to` gets the files of frame `from`.
   void repeat(int32_t from, int32_t to) const;
