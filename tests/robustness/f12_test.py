@@ -78,7 +78,7 @@ def wait_for_picture(blender: window.Window) -> tuple[float, float]:
     raise AssertionError(f"no picture on the screen: red {red:.4f}, green {green:.4f}\n{blender.log}")
 
 
-def test_f12_shows_the_picture() -> None:
+def test_shows_the_picture() -> None:
     with window.blender(SCENE.replace("SAMPLES", "8")) as blender:
         blender.wait_for("WINDOW-READY")
         assert max(shares(blender.screenshot())) < 1e-4
@@ -129,7 +129,7 @@ def roughness(path: Path, layer: str) -> float:
     return float(np.abs(np.diff(green, axis=1)).mean() / green.mean())
 
 
-def test_f12_shows_a_reconstruction_while_it_samples(tmp_path: Path) -> None:
+def test_shows_a_reconstruction_while_it_samples(tmp_path: Path) -> None:
     result = tmp_path / "result.exr"
     with window.blender(ROOM.replace("FILE", str(result))) as blender:
         blender.wait_for("WINDOW-READY")
@@ -142,7 +142,7 @@ def test_f12_shows_a_reconstruction_while_it_samples(tmp_path: Path) -> None:
     assert roughness(result, "Combined") < 0.7 * roughness(result, "Noisy Image")
 
 
-def test_f12_grows_on_screen_and_escape_ends_it() -> None:
+def test_grows_on_screen_and_escape_ends_it() -> None:
     with window.blender(SCENE.replace("SAMPLES", "1000000")) as blender:
         blender.wait_for("WINDOW-READY")
         blender.press("F12")

@@ -91,7 +91,7 @@ def test_viewport_follows_an_edit(session: tuple[Path, dict]) -> None:
     assert bright_rows[1] < bright_rows[0] - 10, "the cube did not go up"
 
 
-def test_f12_renders_while_two_viewports_sample(session: tuple[Path, dict]) -> None:
+def test_a_render_while_two_viewports_sample(session: tuple[Path, dict]) -> None:
     folder, answers = session
     assert answers["areas"] == 2
     assert answers["f12"] == ["complete"]
