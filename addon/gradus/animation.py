@@ -26,7 +26,7 @@ import bpy
 
 from . import frame_store, native, simulation, store
 from .export import Cancelled as ExportCancelled
-from .progress import Display, wait
+from .progress import Display, is_watched, open_result, wait
 from .store import Cancelled
 
 
@@ -165,13 +165,21 @@ class Animation:
             handle = ctypes.c_uint64()
             self.library.sequence_sample(self._sequences[view], job.session.scene, byref(job.shot.settings), byref(handle))
             try:
-                wait(job, handle.value, display)
+                self._watch(job, view, handle.value, display)
             finally:
                 self.library.render_release(handle.value)
             if job.cancelled:
                 raise Cancelled
             job.shot.clock.stop()
             self._shots[view, number] = job.shot
+
+    @staticmethod
+    def _watch(job: Any, view: str, handle: int, display: Display) -> None:
+        """A window shows the frame that is being sampled; progress tells which one that is."""
+        if not is_watched():
+            return wait(job, handle, display)
+        with open_result(job, view, is_kept=False) as result:
+            wait(job, handle, display, result)
 
     def _export(self, job: Any, show: Callable[[int], None], number: int) -> Iterator[str]:
         """Each view in turn, when the native scene shows it in that frame; job.shot is that view's."""

@@ -3,21 +3,30 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from ctypes import byref
 from typing import Any
 
 import bpy
 
 from . import native, passes
+from .failure import Failure
 from .native import Error, GradusError, Phase
 from .store import POLL_SECONDS
 
+VERSION = bpy.app.version
 _SHOWN = frozenset((passes.Pass.COMBINED, passes.Pass.NOISY_IMAGE))
 
 
-def wait(job: Any, handle: int, display: Display) -> None:
-    """Until the library is done; a cancelled render ends well, too: what it has so far is there."""
+def is_watched() -> bool:
+    return not bpy.app.background
+
+
+def wait(job: Any, handle: int, display: Display, result: Any = None) -> None:
+    """Until the library is done; a cancelled render ends well, too: what it has so far is there. result: where the picture grows."""
     library = job.session.library
+    picture = LivePicture(job, handle, result) if result is not None and is_watched() else None
     progress = native.Progress()
     running = True
     while running:
@@ -35,6 +44,8 @@ def wait(job: Any, handle: int, display: Display) -> None:
             library.render_cancel(handle)
         library.render_poll(handle, byref(progress))
         display.show(progress)
+        if picture is not None:
+            picture.show(progress)
 
 
 class Display:
@@ -65,33 +76,49 @@ class Display:
         return f"sample {progress.samples_done}/{self.job.shot.settings.samples}, {100.0 * progress.fraction:.0f} %"
 
 
-class PictureDisplay(Display):
-    """Also the picture so far, where somebody looks."""
+class LivePicture:
+    """The picture so far of a render, where somebody looks."""
 
     FIRST_REFRESH, LONGEST_REFRESH = 0.5, 16.0  # s between pictures; each one waits longer than the one before
 
     def __init__(self, job: Any, handle: int, result: Any) -> None:
-        super().__init__(job)
-        self.handle, self.result = handle, result
-        self.start = self.next_text
+        self.job, self.handle, self.result = job, handle, result
+        self.start = time.monotonic()
         self.refresh = self.FIRST_REFRESH
         self.next_refresh = self.start + self.refresh
         self.version = 0
-        self.is_watched = not bpy.app.background
-        if self.is_watched:
-            job.read(handle, frozenset((passes.Pass.COMBINED,)))  # there is nothing yet, but the library knows then that somebody looks
+        job.read(handle, frozenset((passes.Pass.COMBINED,)))  # there is nothing yet, but the library knows then that somebody looks
 
     def show(self, progress: native.Progress) -> None:
-        super().show(progress)
         now = time.monotonic()
-        if self.is_watched and progress.version != self.version and now >= self.next_refresh:
+        if progress.version != self.version and now >= self.next_refresh:
             self.version = progress.version
-            self._picture()
+            self._draw()
             self.next_refresh = time.monotonic() + self.refresh
             if now - self.start > 5.0:
                 self.refresh = min(2.0 * self.refresh, self.LONGEST_REFRESH)
 
-    def _picture(self) -> None:
+    def _draw(self) -> None:
         self.job.read(self.handle, _SHOWN)
         self.job.buffer.upload(self.result.layers[0])
         self.job.engine.update_result(self.result)
+
+
+@contextmanager
+def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
+    """Blender's picture of the job's shot, with the job's buffer laid out for it. is_kept: what is in it in the end is the frame's."""
+    engine, settings = job.engine, job.shot.settings
+    result = engine.begin_result(0, 0, settings.width, settings.height, layer=job.layer.name, view=view)
+    if result is None:
+        raise Failure("the render border leaves nothing to render")
+    try:
+        width, height = result.resolution_x, result.resolution_y
+        x0, y0, x1, y1 = settings.region
+        if job.animation is not None and (width, height) != (x1 - x0, y1 - y0):
+            raise Failure("the size of the picture changes in the animation: switch Temporal off")
+        settings.region[:] = [x0, y0, x0 + width, y0 + height]
+        job.buffer.prepare(result.layers[0].passes, passes.by_name(job.infos, VERSION), width, height)
+        yield result
+    finally:
+        # Also after a failure, which the caller reports: an open result would stay in memory.
+        engine.end_result(result, cancel=not is_kept)

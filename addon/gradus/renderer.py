@@ -15,7 +15,7 @@ from .animation import Animation
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
-from .progress import Display, PictureDisplay, wait
+from .progress import Display, open_result, wait
 from .store import FINAL, PREVIEW, Cancelled, Key, Session
 
 VERSION = bpy.app.version
@@ -297,28 +297,15 @@ def _prepare_view(job: Job, index: int, view: str) -> None:
 
 
 def _render_view(job: Job, view: str) -> None:
-    engine, settings = job.engine, job.shot.settings
-    result = engine.begin_result(0, 0, settings.width, settings.height, layer=job.layer.name, view=view)
-    if result is None:
-        raise Failure("the render border leaves nothing to render")
-    try:
-        width, height = result.resolution_x, result.resolution_y
-        x0, y0, x1, y1 = settings.region
-        if job.animation is not None and (width, height) != (x1 - x0, y1 - y0):
-            raise Failure("the size of the picture changes in the animation: switch Temporal off")
-        settings.region[:] = [x0, y0, x0 + width, y0 + height]
-        job.buffer.prepare(result.layers[0].passes, passes.by_name(job.infos, VERSION), width, height)
+    with open_result(job, view) as result:
         _sample(job, view, result)
-    finally:
-        # Also after a failure, which the caller reports: an open result would stay in memory.
-        engine.end_result(result)
 
 
 def _sample(job: Job, view: str, result: Any) -> None:
     handle = _start(job, view)
     try:
         # A frame of an animation is reconstructed in one go: there is no picture of it before.
-        wait(job, handle, PictureDisplay(job, handle, result) if job.animation is None else Display(job))
+        wait(job, handle, Display(job), result if job.animation is None else None)
         _deliver(job, view, handle, result)
     finally:
         job.session.library.render_release(handle)

@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from support import window
+from support import glow, window
 
 pytestmark = pytest.mark.application
 
@@ -76,6 +76,27 @@ def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
     assert [line["frame"] for line in lines(tmp_path)] == list(range(1, 13))
     assert all(line["spp_offset"] == 8 for line in lines(tmp_path))
     assert len(list(tmp_path.glob("f_*.png"))) == 12
+
+
+MOVES = """
+bpy.data.objects["Cube"].keyframe_insert("location", frame=1)
+bpy.data.objects["Cube"].location.x += 1
+bpy.data.objects["Cube"].keyframe_insert("location", frame=12)
+scene.frame_end = 12
+scene.render.filepath = "FOLDER/f_####"
+"""
+
+
+def test_frames_ahead_are_seen_while_they_are_sampled(tmp_path: Path) -> None:
+    """The first frame comes only when those ahead of it are there: until then the window was black."""
+    with window.blender(glow.SCENE.replace("SAMPLES", "1000000") + MOVES.replace("FOLDER", str(tmp_path))) as blender:
+        blender.wait_for("WINDOW-READY")
+        blender.press("ctrl+F12")
+        blender.wait_for("RENDER-STARTED")
+        glow.wait_for_picture(blender)
+        blender.press("Escape")
+        blender.wait_for("RENDER-CANCELLED", limit=3)
+    assert list(tmp_path.glob("f_*.png")) == []
 
 
 def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:

@@ -88,6 +88,7 @@ GradusProgress FrameSampling::progress() const {
   const GradusProgress base = base_.progress();
   p.fraction = 0.5f * base.fraction;
   p.samples_done = base.samples_done;
+  p.version = base.version;
   p.memory_bytes = base.memory_bytes;
   if (!offset_) return p;
   const GradusProgress offset = offset_->progress();
