@@ -12,7 +12,7 @@ What was found in 3.4, 4.5 and 5.0, and is relied on here:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import bpy
@@ -35,10 +35,11 @@ class Simulations:
         self._find()
 
     def _find(self) -> None:
-        world = self.scene.rigidbody_world
-        if world is not None and world.enabled and world.collection is not None and not _is_kept(world.point_cache):
-            self._add("Rigid Body World", world.point_cache.frame_start)
-        for obj in self.scene.objects:
+        for scene in _with_backgrounds(self.scene):
+            world = scene.rigidbody_world
+            if world is not None and world.enabled and world.collection is not None and not _is_kept(world.point_cache):
+                self._add("Rigid Body World", world.point_cache.frame_start)
+        for obj in _with_instances(obj for scene in _with_backgrounds(self.scene) for obj in scene.objects):
             for modifier in obj.modifiers:
                 if modifier.show_render:
                     self._find_in(obj, modifier)
@@ -68,12 +69,17 @@ class Simulations:
             self.scene.frame_set(frame)
 
     def compute(self, last: int, stop: Callable[[], bool]) -> None:
-        """Up to the frame `last`, and one more: a simulation's second frame is what puts the first into the cache. Raises Cancelled."""
+        """Up to the frame `last`, and one more: a simulation's second frame is what puts the first into the cache. Raises Cancelled, with
+        the scene at the frame where it was."""
         if self._computed is not None and last < self._computed:
             return
+        own = self.scene.frame_current
         self._count_as_baked(False)
         try:
             self._step(last + 1, stop)
+        except Cancelled:
+            self.show(own)
+            raise
         finally:
             self._count_as_baked(True)
 
@@ -101,6 +107,26 @@ class Simulations:
         """The caches are the user's again."""
         if self._computed is not None:
             self._count_as_baked(False)
+
+
+def _with_backgrounds(scene: Any) -> Iterator[Any]:
+    """The scene, the one behind it, and so on."""
+    while scene is not None:
+        yield scene
+        scene = scene.background_set
+
+
+def _with_instances(objects: Iterable[Any]) -> list[Any]:
+    """Each object once, and those of the collections that they instance, which need be nowhere else."""
+    found = dict.fromkeys(objects)
+    waiting = list(found)
+    while waiting:
+        obj = waiting.pop()
+        if obj.instance_type == "COLLECTION" and obj.instance_collection is not None:
+            new = [other for other in obj.instance_collection.all_objects if other not in found]
+            found.update(dict.fromkeys(new))
+            waiting += new
+    return list(found)
 
 
 def _is_kept(cache: Any) -> bool:

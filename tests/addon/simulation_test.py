@@ -3,11 +3,13 @@ stepping the scene to it gives."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
 import pytest
 from gradus import simulation
+from gradus.export import Cancelled
 from support import images, recording, simulations
 from support.exports import Exports
 
@@ -34,13 +36,17 @@ def new_scene(kind: str, first: int = 1, last: int = LAST, temporal: bool = Fals
 
 
 def check(kind: str, found: list[tuple[int, simulations.Places]], frames: range, starts_at: int = 1) -> None:
-    truth = simulations.in_order(new_scene(kind, starts_at), starts_at, LAST)
+    compare(simulations.in_order(new_scene(kind, starts_at), starts_at, LAST), found, frames)
+
+
+def compare(truth: dict[int, simulations.Places], found: list[tuple[int, simulations.Places]], frames: range) -> None:
+    first = min(truth)
     assert [frame for frame, _ in found] == list(frames), "each frame is exported once, in order"
     for frame, places in found:
         assert set(places) == set(truth[frame]), frame
         for name, place in places.items():
             assert place == pytest.approx(truth[frame][name], abs=TOLERANCE), (frame, name)
-    moving = {name for name in truth[LAST] if truth[LAST][name] != pytest.approx(truth[starts_at].get(name, ()), abs=TOLERANCE)}
+    moving = {name for name in truth[LAST] if truth[LAST][name] != pytest.approx(truth[first].get(name, ()), abs=TOLERANCE)}
     assert moving, "the scene simulates something"
 
 
@@ -83,6 +89,59 @@ def test_c6_layers_and_frames_around_for_vectors_change_nothing(kind: str, tempo
     found = dict(exports.of)
     for name in ("ViewLayer", "Second"):
         check(kind, found[name], range(1, LAST + 1))
+
+
+# ------------------------------------------------------------------------------------------------ simulations that are elsewhere
+
+
+def put_into_an_instanced_collection(scene: bpy.types.Scene) -> None:
+    """Into one inside another, so that the scene holds nothing but an instance of that."""
+    inner, outer = (bpy.data.collections.new(name) for name in ("Inner", "Outer"))
+    for obj in [obj for obj in scene.objects if obj.type == "MESH"]:
+        scene.collection.objects.unlink(obj)
+        inner.objects.link(obj)
+    for collection, user in ((inner, outer), (outer, scene.collection)):
+        instance = bpy.data.objects.new("Instance", None)
+        instance.instance_type, instance.instance_collection = "COLLECTION", collection
+        user.objects.link(instance)
+
+
+def put_into_the_background(scene: bpy.types.Scene) -> None:
+    background = bpy.data.scenes.new("Background")
+    for obj in [obj for obj in scene.objects if obj.type == "MESH"]:
+        scene.collection.objects.unlink(obj)
+        background.collection.objects.link(obj)
+    scene.background_set = background
+
+
+@pytest.mark.parametrize("put_away", [put_into_an_instanced_collection, put_into_the_background])
+def test_c6_a_simulation_that_the_scene_shows_from_elsewhere(put_away: Callable, temporal: bool, exports: Exports, tmp_path: Path) -> None:
+    """It was not looked for there: it stood still, and no warning told."""
+    scene = new_scene("cloth", temporal=temporal)
+    put_away(scene)
+    render(scene, tmp_path)
+    truth = new_scene("cloth")
+    put_away(truth)
+    compare(simulations.in_order(truth, 1, LAST), exports.of["ViewLayer"], range(1, LAST + 1))
+
+
+def test_a_rigid_body_in_the_background_is_found() -> None:
+    scene = new_scene("rigid body")
+    other = bpy.data.scenes.new("Before the background")
+    other.background_set = scene
+    assert simulation.Simulations(other).names == ["Rigid Body World"]
+
+
+def test_a_cancel_on_the_way_leaves_the_scene_at_its_frame() -> None:
+    """It stayed where it had been stepped to."""
+    scene = new_scene("cloth", first=4)
+    scene.frame_set(4)
+    with pytest.raises(Cancelled):
+        simulation.Simulations(scene).compute(LAST, lambda: scene.frame_current == 2)
+    assert scene.frame_current == 4
+
+
+# ------------------------------------------------------------------------------------------------ what is left behind
 
 
 def test_caches_are_the_users_again_after_the_render(exports: Exports, tmp_path: Path) -> None:
