@@ -82,6 +82,7 @@ ENTRIES = {
     "I3": "killed at any moment, and the rerun",
     "I4": "frames alone, in a row, and by several workers",
     "I5": "environments: no home, other locales, odd paths",
+    "I6": "the output that farms read",
     "I7": "options on the command line",
     "I8": "frames that do not change cost nothing",
     "I9": "files say how they were made",

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
-import signal
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -16,7 +15,7 @@ import numpy as np
 import pytest
 from gradus import animation, native, renderer, store
 from gradus.export import ExportError
-from support import application, images, recording, simulations
+from support import images, recording, simulations
 from support.animation import key
 from support.exports import Exports
 
@@ -126,6 +125,48 @@ def test_differences_over_time_follow_the_surface(moving: bpy.types.Scene, tmp_p
     assert not passes[1]["Gradient T"].any(), "the last frame has none after it"
 
 
+def test_c6_what_stays_keeps_its_links_when_others_come_go_and_are_renamed(
+    moving: bpy.types.Scene, exports: Exports, tmp_path: Path
+) -> None:
+    """The square comes last among the objects: how many there are before it changes from frame to frame, and its name does."""
+    square = bpy.data.objects["Moving"]
+    guest = recording.add(recording.grid(1, 0.5, name="Guest"), "Guest", (1.5, 0.0, 0.0))
+    row = recording.add(recording.grid(1, 0.2, name="Row"), "Row", (0.0, 0.0, -1.0))  # behind the square
+    for frame in range(1, 5):
+        guest.hide_render = frame == 2
+        guest.keyframe_insert("hide_render", frame=frame)
+    copies = row.modifiers.new("Copies", "ARRAY")
+    key(copies, "count", {1: 1, 4: 4})
+    part = recording.add(recording.grid(1, 0.1, name="Part"), "Part")
+    part.parent, row.instance_type = row, "VERTS"
+    moving.collection.objects.unlink(square)
+    moving.collection.objects.link(square)
+    exports.before = lambda frame: setattr(square, "name", f"Name {frame}")
+    moving.frame_end = 4
+    animate(moving, tmp_path)
+    links = {frame: images.read(tmp_path / f"f_{frame:04d}.exr")["Gradient T Link"] for frame in range(1, 5)}
+    on_square, on_guest = (HEIGHT // 2, WIDTH // 4), (HEIGHT // 2, 28)
+    assert all(links[frame][on_square][2] == 1.0 for frame in (1, 2, 3)), "it stays"
+    assert links[1][on_guest][2] == 0.0, "it goes"
+    assert links[2][on_guest][2] == 0.0, "it comes: what it hides has no partner"
+    assert links[3][on_guest][2] == 1.0, "it stays"
+    rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH]
+    for link in links.values():
+        x, y = columns + link[..., 0], rows - link[..., 1]
+        assert ((x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)).all(), "no link leads out of the picture"
+
+
+def test_i9_the_files_of_an_animation_say_how_they_were_made(moving: bpy.types.Scene, tmp_path: Path) -> None:
+    moving.frame_end = 3
+    moving.gradus.seed = 7
+    animate(moving, tmp_path)
+    for frame in (1, 2, 3):
+        spec = images.oiio.ImageInput.open(str(tmp_path / f"f_{frame:04d}.exr")).spec()
+        found = {name: spec.getattribute(f"gradus.{name}") for name in ("integrator", "reconstruction", "samples", "seed")}
+        assert found == {"integrator": "gradient", "reconstruction": "l2", "samples": "4.0", "seed": "7"}
+        assert re.match(r"\d+\.\d+\.\d+", spec.getattribute("gradus.version"))
+
+
 def test_samples_are_those_of_the_frames_own_settings(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
     for frame, samples in ((4, 4), (5, 8)):
         moving.gradus.samples = samples
@@ -135,7 +176,7 @@ def test_samples_are_those_of_the_frames_own_settings(moving: bpy.types.Scene, l
     assert [line["samples"] for line in lines()] == [4, 4, 4, 4, 8, 8]
 
 
-def test_what_stands_still_is_sampled_once(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
+def test_i8_what_stands_still_is_sampled_once(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
     bpy.data.objects["Moving"].animation_data_clear()
     animate(moving, tmp_path)
     assert [line["stopped"] for line in lines()] == ["samples", *["unchanged"] * 9]
@@ -333,80 +374,3 @@ def test_single_frames_are_told_from_the_command_line() -> None:
     assert not animation._asks_for_single_frames(["blender", "-s", "1", "-a"])
     assert not animation._asks_for_single_frames(["blender", "-a", "--", "-f"])
     assert not animation._asks_for_single_frames(["python3"])
-
-
-SETUP = """
-import bpy
-scene = bpy.context.scene
-scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 32, 18, 100
-scene.gradus.reconstruction, scene.gradus.samples = 'L2', {samples}
-cube = bpy.data.objects['Cube']
-for frame in (1, 20):
-    cube.location.x = 0.1 * frame
-    cube.keyframe_insert('location', frame=frame)
-print('SETUP DONE', flush=True)
-"""
-FAULT = """
-from gradus import store
-sync = store.Session.sync
-def fail(session, depsgraph, *arguments):
-    if depsgraph.scene_eval.frame_current == 5:
-        raise RuntimeError('a fault')
-    return sync(session, depsgraph, *arguments)
-store.Session.sync = fail
-"""
-
-
-def arguments(folder: Path, *more: str, samples: int = 2, script: str = "") -> list[str]:
-    expression = SETUP.format(samples=samples) + script
-    return ["--addons", "gradus", "-E", "GRADUS", "--python-expr", expression, "-o", f"{folder}/f_####", "-F", "PNG", *more]
-
-
-@pytest.mark.parametrize(
-    ("asked", "frames", "follows"),
-    [
-        (("-s", "2", "-e", "9", "-j", "3", "-a"), [2, 5, 8], True),
-        (("-s", "1", "-e", "9", "-f", "3"), [3], False),
-        (("-f", "4..5"), [4, 5], False),
-    ],
-)
-def test_c3_frames_of_the_command_line(
-    blender: Callable[..., application.Outcome], tmp_path: Path, asked: tuple[str, ...], frames: list[int], follows: bool
-) -> None:
-    stats = tmp_path / "stats.jsonl"
-    outcome = blender(*arguments(tmp_path, *asked), "--", "--gradus-stats", str(stats))
-    assert outcome.code == 0, outcome.output
-    assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [f"f_{frame:04d}.png" for frame in frames]
-    lines = [json.loads(line) for line in stats.read_text().splitlines()]
-    assert [line["frame"] for line in lines] == frames
-    assert all((line.get("spp_offset", 0) > 0) == follows for line in lines)
-
-
-def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
-    outcome = blender(*arguments(tmp_path, "-s", "1", "-e", "10", "-a", script=FAULT))
-    assert outcome.code == 1, outcome.output
-    assert "a fault" in outcome.output
-    assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [f"f_{frame:04d}.png" for frame in range(1, 5)]
-
-
-@pytest.mark.application
-@pytest.mark.parametrize("seconds", [0.1, 0.6, 1.5])
-def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds: float) -> None:
-    temporary = tmp_path / "temporary"
-    temporary.mkdir()
-    asked = arguments(tmp_path, "-s", "1", "-e", "20", "-a", samples=20000, script="scene.gradus.noise_threshold = 0.0\n")
-    process = application.start(*asked, folder=tmp_path / "home", env={"TMPDIR": str(temporary)})
-    for line in process.stdout:
-        if b"SETUP DONE" in line:
-            break
-    time.sleep(seconds)
-    begin = time.monotonic()
-    process.send_signal(signal.SIGINT)
-    try:
-        output, _ = process.communicate(timeout=30)
-    finally:
-        process.kill()
-    assert process.returncode == 1, output
-    assert time.monotonic() - begin < 1.0
-    assert list(tmp_path.glob("f_*.png")) == []
-    assert os.listdir(temporary) == [], "frames that were kept for their neighbours are gone"

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
+import mathutils
 import numpy as np
 import pytest
 from support import animation, recording
@@ -135,6 +136,45 @@ def test_c1_rotation(vectors: Callable[[], np.ndarray]) -> None:
     x, y = 15.0, 10.0
     pixel = found[height // 2 + int(y), width // 2 + int(x)]
     assert np.allclose(pixel, (angle * (y + 0.5), -angle * (x + 0.5), angle * (y + 0.5), -angle * (x + 0.5)), atol=0.02)
+
+
+def test_c1_camera_orbit(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
+    """A perspective camera goes around what it looks at: where a ray meets the floor, and where the other cameras see that."""
+    recording.add(recording.grid(1, 40.0))
+    camera, pivot = scene.camera, recording.add(None, "Pivot")
+    camera.parent, camera.data.type, camera.data.lens, camera.data.sensor_width = pivot, "PERSP", 50.0, 36.0
+    camera.location, camera.rotation_euler = (0.0, -4.0, 4.0), (math.pi / 4, 0.0, 0.0)
+    turns = {1: -0.1, 2: 0.0, 3: 0.15}
+    animation.key(pivot, "rotation_euler", {frame: (0, 0, angle) for frame, angle in turns.items()})
+    scene.gradus.pixel_filter, scene.gradus.filter_width = "GAUSSIAN", 0.01
+    found = vectors()
+    height, width, _ = found.shape
+    scale = width / (2 * 18.0 / 50.0)  # pixels of a metre at distance 1
+    y, x = np.mgrid[0:height, 0:width] + 0.5
+    film = np.stack([x - width / 2, y - height / 2], axis=2)
+    pose = np.array(mathutils.Matrix.Translation((0, -4, 4)) @ mathutils.Matrix.Rotation(math.pi / 4, 4, "X"))
+    rays = np.concatenate([film / scale, -np.ones((height, width, 1))], axis=2) @ pose[:3, :3].T
+    floor = pose[:3, 3] - rays * (4.0 / rays[..., 2:])
+
+    def seen(angle: float) -> np.ndarray:
+        matrix = np.linalg.inv(np.array(mathutils.Matrix.Rotation(angle, 4, "Z")) @ pose)
+        local = floor @ matrix[:3, :3].T + matrix[:3, 3]
+        return scale * local[..., :2] / -local[..., 2:]
+
+    expected = np.concatenate([seen(turns[1]) - film, film - seen(turns[3])], axis=2)
+    away = np.abs(found - expected).max(axis=2)
+    assert np.abs(expected).max() > 1.0
+    assert np.quantile(away, 0.999) < 0.02  # the filter is half a hundredth wide
+
+
+def test_c1_skin(vectors: Callable[[], np.ndarray]) -> None:
+    bpy.ops.object.armature_add()
+    armature = bpy.context.object
+    obj = recording.add(recording.grid(2, 1.5))
+    obj.vertex_groups.new(name=armature.pose.bones[0].name).add(range(9), 1.0, "REPLACE")
+    obj.modifiers.new("Armature", "ARMATURE").object = armature
+    animation.key(armature.pose.bones[0], "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.125, 0, 0)})
+    assert np.allclose(_covered(vectors()), (-4.0, 0.0, -2.0, 0.0), atol=0.01)
 
 
 def test_c1_topology_change_does_not_crash(vectors: Callable[[], np.ndarray]) -> None:

@@ -26,16 +26,30 @@ ENVIRONMENTS = {
 }
 
 
-def frame(blender: Callable[..., Outcome], out: Path, **options: object) -> Outcome:
-    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", SETUP, "-o", f"{out}/f_####", "-F", "PNG", "-f", "1"]
-    return blender(*head, "--", "--gradus-samples", "1", "--gradus-filter-width", "1.25", **options)
+ALONE, AHEAD = ("-f", "1"), ("-s", "1", "-e", "2", "-a")
+"""The frames of an animation are kept in temporary files."""
 
 
+def frame(blender: Callable[..., Outcome], out: Path, asked: tuple[str, ...] = ALONE, **options: object) -> Outcome:
+    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", SETUP, "-o", f"{out}/f_####", "-F", "PNG", *asked]
+    return blender(*head, "--", "--gradus-samples", "2", "--gradus-filter-width", "1.25", **options)
+
+
+@pytest.mark.parametrize("asked", [ALONE, AHEAD], ids=["alone", "ahead"])
 @pytest.mark.parametrize("name", list(ENVIRONMENTS))
-def test_i5_environments(blender: Callable[..., Outcome], tmp_path: Path, name: str) -> None:
-    outcome = frame(blender, tmp_path, env=ENVIRONMENTS[name])
+def test_i5_environments(blender: Callable[..., Outcome], tmp_path: Path, name: str, asked: tuple[str, ...]) -> None:
+    outcome = frame(blender, tmp_path, asked, env=ENVIRONMENTS[name])
     assert outcome.code == 0, outcome.output
-    assert (tmp_path / "f_0001.png").stat().st_size > 100
+    assert all(path.stat().st_size > 100 for path in tmp_path.glob("f_*.png"))
+    assert len(list(tmp_path.glob("f_*.png"))) == (1 if asked == ALONE else 2)
+
+
+def test_i5_a_temporary_folder_that_takes_no_files(blender: Callable[..., Outcome], tmp_path: Path) -> None:
+    """Single frames need none; an animation says what is missing."""
+    assert frame(blender, tmp_path, env={"TMPDIR": "/proc"}).code == 0
+    outcome = frame(blender, tmp_path / "ahead", AHEAD, env={"TMPDIR": "/proc"})
+    assert outcome.code == 1, outcome.output
+    assert "Gradus: cannot make a temporary folder in /proc" in outcome.output
 
 
 def test_i5_paths_outside_ascii(blender: Callable[..., Outcome], tmp_path: Path) -> None:
