@@ -1,4 +1,6 @@
-// Key of all that a commit depends on (contract 7.2: the scene key of a frame).
+// Key of all that a frame shows (contract 7.2: the scene key of a frame). Of contents alone: the keys under which a caller holds meshes,
+// materials and images differ from one session to the next.
+#include "scene/image.h"
 #include "scene/scene_state.h"
 
 namespace gradus {
@@ -7,14 +9,37 @@ namespace {
 
 void hash_matrix(const float* m, ContentHash* hash) { hash->bytes(m, 16 * sizeof(float)); }
 
-void hash_light(const LightSource& light, ContentHash* hash) {
+// 0 for what is not there.
+class Contents {
+ public:
+  explicit Contents(const Scene::State& state) : state_(state) {}
+
+  uint64_t mesh(uint64_t key) const {
+    const auto found = state_.meshes.find(key);
+    return found == state_.meshes.end() ? 0 : found->second->content_hash;
+  }
+  uint64_t image(uint64_t key) const {
+    const auto found = state_.images.find(key);
+    return found == state_.images.end() ? 0 : found->second.image->content_hash;
+  }
+  uint64_t material(uint64_t key) const {
+    const auto found = state_.materials.find(key);
+    if (found == state_.materials.end()) return 0;
+    return found->second->hash_with([this](uint64_t its_image) { return image(its_image); });
+  }
+
+ private:
+  const Scene::State& state_;
+};
+
+void hash_light(const LightSource& light, const Contents& contents, ContentHash* hash) {
   const GradusLight& d = light.desc;
   for (const uint32_t v : {d.type, d.flags, d.visibility, d.max_bounces, uint32_t(d.pass_index)}) hash->value(v);
   hash_matrix(d.matrix, hash);
   for (const float v : {d.strength[0], d.strength[1], d.strength[2], d.radius, d.angle, d.size[0], d.size[1], d.spread, d.cone, d.blend,
                         d.sun_radiance_per_irradiance})
     hash->value(v);
-  hash->value(d.material);
+  hash->value(contents.material(d.material));
 }
 
 void hash_camera(const GradusCamera& c, const CameraKeys& keys, ContentHash* hash) {
@@ -32,42 +57,23 @@ void hash_camera(const GradusCamera& c, const CameraKeys& keys, ContentHash* has
   hash->array(keys.windows);
 }
 
-void hash_world(const GradusWorld& w, ContentHash* hash) {
+void hash_world(const GradusWorld& w, const Contents& contents, ContentHash* hash) {
   for (const uint32_t v : {w.visibility, w.importance, w.map_size, w.mist_falloff}) hash->value(v);
-  hash->value(w.material);
+  hash->value(contents.material(w.material));
   for (const float v : {w.mist_start, w.mist_depth, w.ao_distance}) hash->value(v);
-}
-
-void hash_images(const Scene::State& state, ContentHash* hash) {
-  for (const auto& [key, image] : state.images) {
-    hash->value(key);
-    hash->value(image.source.color_space);
-    hash->value(image.source.alpha_mode);
-    for (const auto& tile : image.source.tiles) {
-      hash->value(tile.number);
-      hash->value(tile.path);
-      hash->array(tile.data);
-    }
-  }
 }
 
 }  // namespace
 
 uint64_t content_key(const Scene::State& state) {
+  const Contents contents(state);
   ContentHash hash;
   state.instances.hash(&hash);
-  for (const uint64_t key : state.instances.meshes) {
-    const auto mesh = state.meshes.find(key);
-    hash.value(mesh == state.meshes.end() ? uint64_t(0) : mesh->second->content_hash);
-  }
-  for (const auto& [key, material] : state.materials) {
-    hash.value(key);
-    hash.value(material->content_hash());
-  }
-  hash_images(state, &hash);
-  for (const LightSource& light : state.lights) hash_light(light, &hash);
+  for (const uint64_t key : state.instances.meshes) hash.value(contents.mesh(key));
+  for (const uint64_t key : state.instances.materials) hash.value(contents.material(key));
+  for (const LightSource& light : state.lights) hash_light(light, contents, &hash);
   if (state.has_camera) hash_camera(state.camera, state.camera_keys, &hash);
-  if (state.has_world) hash_world(state.world, &hash);
+  if (state.has_world) hash_world(state.world, contents, &hash);
   return hash.result();
 }
 

@@ -32,6 +32,7 @@ class Image {
   bool ignores_alpha = false;  // alpha reads 1
   bool has_alpha = false;      // some texel is not opaque
   Rgb mean = Rgb(0.0f);        // scene-linear
+  uint64_t content_hash = 0;   // of what it was made of, wherever that lies
 };
 
 // Stored value to scene-linear; outside 0…1 by the formula.

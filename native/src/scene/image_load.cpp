@@ -1,6 +1,7 @@
 // Decoding of all tiles of an image.
 #include <utility>
 
+#include "base/hash.h"
 #include "color/color.h"
 #include "scene/image.h"
 #include "scene/image_convert.h"
@@ -23,7 +24,9 @@ bool wrap_pixels(const ImageSource::Tile& tile, DecodedImage* image, std::string
   return true;
 }
 
-bool decode_tile(const ImageSource::Tile& tile, DecodedImage* image, std::string* problem) {
+bool decode_tile(const ImageSource::Tile& tile, DecodedImage* image, std::string* problem, ContentHash* hash) {
+  for (const uint32_t v : {tile.number, tile.width, tile.height}) hash->value(v);
+  hash->array(tile.data);
   if (tile.source == GRADUS_IMAGE_FLOAT || tile.source == GRADUS_IMAGE_BYTE) {
     return wrap_pixels(tile, image, problem);
   }
@@ -31,7 +34,9 @@ bool decode_tile(const ImageSource::Tile& tile, DecodedImage* image, std::string
     return read_image(tile.data, image, problem);
   }
   std::vector<uint8_t> bytes;
-  return read_file(tile.path, &bytes, problem) && read_image(bytes, image, problem);
+  const bool is_read = read_file(tile.path, &bytes, problem);
+  hash->array(bytes);
+  return is_read && read_image(bytes, image, problem);
 }
 
 std::string describe(const ImageSource& source, const ImageSource::Tile& tile, const std::string& problem) {
@@ -45,13 +50,16 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
   auto image = std::make_shared<Image>();
   image->name = source.name;
   image->ignores_alpha = source.alpha_mode == GRADUS_ALPHA_NONE;
+  ContentHash hash;
+  hash.value(source.color_space);
+  for (const uint32_t v : {source.alpha_mode, uint32_t(source.is_float)}) hash.value(v);
   Rgb sum(0.0f);
   for (const ImageSource::Tile& tile : source.tiles) {
     DecodedImage decoded;
     std::string problem;
     ImageTile stored;
     Rgb mean = kMissingColor;
-    if (decode_tile(tile, &decoded, &problem)) {
+    if (decode_tile(tile, &decoded, &problem, &hash)) {
       problem = decoded.warning;
       stored = convert_tile(std::move(decoded), color, source.color_space, source.alpha_mode == GRADUS_ALPHA_STRAIGHT);
       mean = mean_color(stored);
@@ -65,6 +73,7 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
     sum += mean;
   }
   image->mean = image->tiles.empty() ? kMissingColor : sum / static_cast<float>(image->tiles.size());
+  image->content_hash = hash.result();
   return image;
 }
 

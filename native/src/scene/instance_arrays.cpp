@@ -78,8 +78,6 @@ std::string InstanceArrays::name(size_t i) const {
 }
 
 void InstanceArrays::hash(ContentHash* hash) const {
-  hash->array(meshes);
-  hash->array(ids);
   hash->array(matrices);
   hash->array(matrices_previous);
   hash->array(matrices_next);
@@ -92,7 +90,6 @@ void InstanceArrays::hash(ContentHash* hash) const {
   hash->array(shadow_terminator_offsets);
   hash->array(material_first);
   hash->array(material_count);
-  hash->array(materials);
   hash->array(shutter_first);
   hash->array(shutter_count);
   hash->array(shutter_matrices);

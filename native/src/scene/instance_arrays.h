@@ -32,6 +32,7 @@ struct InstanceArrays {
 
   // What a message calls instance i.
   std::string name(size_t i) const;
+  // Without ids and the keys of meshes and materials, which are the caller's names for them.
   void hash(ContentHash* hash) const;
 };
 

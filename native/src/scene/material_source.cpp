@@ -42,11 +42,9 @@ void check_node(const GradusMaterial& d, uint32_t i, const Check& check) {
   }
 }
 
-void hash_nodes(const std::vector<GradusNode>& nodes, const std::vector<GradusInput>& inputs, ContentHash* hash) {
-  for (const GradusNode& n : nodes) {
-    for (const uint32_t v : {n.op, n.mode, n.first_input, n.input_count, n.first_float, n.float_count}) hash->value(v);
-    hash->value(n.resource);
-  }
+bool names_image(const GradusNode& n) { return n.op == GRADUS_OP_IMAGE || n.op == GRADUS_OP_ENVIRONMENT; }
+
+void hash_inputs(const std::vector<GradusInput>& inputs, ContentHash* hash) {
   for (const GradusInput& in : inputs) {
     hash->value(in.node);
     hash->value(in.output);
@@ -65,19 +63,25 @@ MaterialSource::MaterialSource(const GradusMaterial& d) : desc_(d), name_(d.name
   floats_.assign(d.floats, d.floats + d.float_count);
   for (uint32_t i = 0; i < d.name_count; ++i) names_.emplace_back(d.names[i] ? d.names[i] : "");
   for (const std::string& name : names_) name_pointers_.push_back(name.c_str());
-  ContentHash hash;
-  hash_nodes(nodes_, inputs_, &hash);
-  hash.array(floats_);
-  for (const std::string& name : names_) hash.value(name);
-  for (const uint32_t v : {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
-    hash.value(v);
-  content_hash_ = hash.result();
+  content_hash_ = hash_with([](uint64_t key) { return key; });
 }
 
-bool MaterialSource::looks_at_images() const {
-  return std::any_of(nodes_.begin(), nodes_.end(),
-                     [](const GradusNode& n) { return n.op == GRADUS_OP_IMAGE || n.op == GRADUS_OP_ENVIRONMENT; });
+uint64_t MaterialSource::hash_with(const std::function<uint64_t(uint64_t key)>& image) const {
+  ContentHash hash;
+  for (const GradusNode& n : nodes_) {
+    for (const uint32_t v : {n.op, n.mode, n.first_input, n.input_count, n.first_float, n.float_count}) hash.value(v);
+    hash.value(names_image(n) ? image(n.resource) : n.resource);
+  }
+  hash_inputs(inputs_, &hash);
+  hash.array(floats_);
+  for (const std::string& name : names_) hash.value(name);
+  const GradusMaterial& d = desc_;
+  for (const uint32_t v : {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
+    hash.value(v);
+  return hash.result();
 }
+
+bool MaterialSource::looks_at_images() const { return std::any_of(nodes_.begin(), nodes_.end(), names_image); }
 
 GradusMaterial MaterialSource::view() const {
   GradusMaterial d = desc_;

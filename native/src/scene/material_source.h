@@ -1,6 +1,7 @@
 // Owning copy of a GradusMaterial, so that it can be compiled at commit, when the images it names are known.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ class MaterialSource {
   // Pointers into this object; valid as long as it.
   GradusMaterial view() const;
   uint64_t content_hash() const { return content_hash_; }
+  // The same with hashes of the images in the place of their keys.
+  uint64_t hash_with(const std::function<uint64_t(uint64_t key)>& image) const;
   // What it compiles to depends on images, too.
   bool looks_at_images() const;
   const std::string& name() const { return name_; }

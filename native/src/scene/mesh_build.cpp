@@ -177,7 +177,6 @@ void copy_generated(const GradusMesh& m, MeshData* out) {
 
 uint64_t hash_mesh(const MeshData& mesh) {
   ContentHash hash;
-  hash.value(mesh.name);
   hash.array(mesh.key_times);
   hash.array(mesh.positions);
   hash.array(mesh.shutter_positions);

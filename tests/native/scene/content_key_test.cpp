@@ -1,0 +1,112 @@
+// The scene key of a frame: that of what is seen, whatever its parts are called (contract 7.2).
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "scene/image_test_support.h"
+#include "scene/scene_fixture.h"
+#include "support/image_files.h"
+
+namespace gradus::test {
+namespace {
+
+// Of a material that shows an image.
+void set_image_material(uint64_t key, uint64_t image, Scene* scene) {
+  const GradusNode nodes[2] = {{GRADUS_OP_IMAGE, 0, 0, 1, 0, 0, image}, {GRADUS_OP_EMISSION, 0, 1, 2, 0, 0, 0}};
+  const GradusInput inputs[3] = {{-1, 0, {}}, {0, 0, {}}, {-1, 0, {1, 1, 1, 1}}};
+  GradusMaterial desc{};
+  desc.struct_size = sizeof(desc);
+  desc.nodes = nodes;
+  desc.node_count = 2;
+  desc.inputs = inputs;
+  desc.input_count = 3;
+  desc.surface = 1;
+  desc.name = "image";
+  scene->set_material(key, desc);
+}
+
+void set_image_file(uint64_t key, const std::string& path, Scene* scene) {
+  GradusImageTile tile{};
+  tile.path = path.c_str();
+  GradusImage desc{};
+  desc.struct_size = sizeof(desc);
+  desc.color_space = "sRGB";
+  desc.name = "image";
+  desc.tiles = &tile;
+  desc.tile_count = 1;
+  scene->set_image(key, desc);
+}
+
+constexpr uint64_t kFirstPicture = 1, kSecondPicture = 2;
+
+std::string picture_path(uint64_t which) {
+  return gradus::testing::write_temporary("content_key_" + std::to_string(which) + ".exr", {uint8_t(which)});
+}
+
+struct Names {
+  uint64_t small, large, plain, first, second;  // two meshes, and materials: of one colour, and of two images
+};
+
+// Two balls, a lamp and a world, whose parts the caller calls by these names.
+uint64_t key_of(const Names& names) {
+  TestScene scene;
+  scene.mesh(names.small, sphere(Vec3(0.0f), 1.0f, 4, 8));
+  scene.mesh(names.large, sphere(Vec3(0.0f), 2.0f, 4, 8));
+  scene.material(names.plain, MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)));
+  for (const auto& [name, picture] : {std::pair(names.first, kFirstPicture), std::pair(names.second, kSecondPicture)}) {
+    set_image_file(name, picture_path(picture), &scene.scene);
+    set_image_material(name, name, &scene.scene);
+  }
+  scene.instance(names.small, Mat4(1.0f), GRADUS_VISIBLE_ALL, names.plain);
+  scene.instance(names.large, translation(Vec3(5, 0, 0)), GRADUS_VISIBLE_ALL, names.first);
+  GradusLight light = make_light(GRADUS_LIGHT_POINT, Mat4(1.0f), Rgb(1.0f));
+  light.material = names.second;
+  scene.lights({light});
+  scene.world(names.plain);
+  return scene.commit()->content_key;
+}
+
+// Keys count up by first appearance: a job that goes on at a later frame has other ones than the job that began at the first, and its
+// frames were refused as those of another scene.
+TEST(C7_ContentKey, ASessionWithOtherKeysHasTheSame) { EXPECT_EQ(key_of({1, 2, 3, 4, 5}), key_of({19, 7, 50, 40, 30})); }
+
+TEST(C7_ContentKey, AnExchangeOfMeshesOrMaterialsShows) {
+  const uint64_t key = key_of({1, 2, 3, 4, 5});
+  TestScene scene;
+  const auto changed = [&](bool meshes, bool materials) {
+    TestScene exchanged;
+    exchanged.mesh(1, sphere(Vec3(0.0f), meshes ? 2.0f : 1.0f, 4, 8));
+    exchanged.mesh(2, sphere(Vec3(0.0f), meshes ? 1.0f : 2.0f, 4, 8));
+    exchanged.material(3, MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)));
+    exchanged.material(4, MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.7f)));
+    exchanged.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, materials ? 4 : 3);
+    exchanged.instance(2, translation(Vec3(5, 0, 0)), GRADUS_VISIBLE_ALL, materials ? 3 : 4);
+    return exchanged.commit()->content_key;
+  };
+  EXPECT_EQ(changed(false, false), changed(false, false));
+  EXPECT_NE(changed(true, false), changed(false, false));
+  EXPECT_NE(changed(false, true), changed(false, false));
+  EXPECT_NE(changed(true, true), changed(false, false));
+  EXPECT_NE(key, changed(false, false));
+}
+
+// Its path alone was looked at: the frame counted as unchanged.
+TEST(C7_ContentKey, AnImageThatIsRewrittenUnderItsNameShows) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));
+  scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 2);
+  const auto key_with = [&](const gradus::testing::FileBytes& bytes) {
+    const std::string path = gradus::testing::write_temporary("content_key_rewritten.exr", bytes);
+    set_image_file(3, path, &scene.scene);
+    set_image_material(2, 3, &scene.scene);
+    const uint64_t key = scene.commit()->content_key;
+    std::remove(path.c_str());
+    return key;
+  };
+  const uint64_t before = key_with({1, 2, 3});
+  EXPECT_NE(key_with({1, 2, 4}), before);
+  EXPECT_EQ(key_with({1, 2, 3}), before);
+}
+
+}  // namespace
+}  // namespace gradus::test
