@@ -1,4 +1,5 @@
-"""Where the raw frames of a scene are kept: STORE/<scene>/<layer>[.<view>]/f<frame>.base.exr (contract 7.2)."""
+"""Where the raw frames of a scene are kept: STORE/<scene>/<layer>[.<view>]/f<frame>.exr of a frame on its own, and .base.exr and
+.offset.exr of one of an animation, which the library writes (contract 7.2). None takes the place of another."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ def folder_of(folder: str, scene: str, layer: str, view: str) -> Path:
 
 
 def frame_path(folder: str, scene: str, layer: str, view: str, frame: int) -> Path:
-    return folder_of(folder, scene, layer, view) / f"f{frame:+08d}.base.exr"
+    return folder_of(folder, scene, layer, view) / f"f{frame:+08d}.exr"
 
 
 def save(library: native.Library, render: int, folder: str, scene: Any, layer: Any, view: str) -> None:

@@ -29,7 +29,8 @@ void check_usage(const ReconstructArguments& args, uint32_t reconstruction, uint
     return;
   }
   if (!args.frames.empty()) refuse("--frames", "folders of frames");
-  if (args.window_size > 0) refuse("--window-size", "folders of frames");
+  if (args.window_size) refuse("--window-size", "folders of frames");
+  if (args.window_overlap) refuse("--window-overlap", "folders of frames");
   if (args.exposure >= 0.0) refuse("--film-exposure", "folders of frames");
   if (const std::string bad = exr_only(args.output); !bad.empty()) throw CLI::ValidationError("--output", bad);
 }
@@ -92,10 +93,12 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
   command->add_option("-o,--output", args->output, "Image to write, FILE.exr; of an animation the folder for 0001.exr and so on")
       ->required();
   command->add_option("--frames", args->frames, "Of an animation: FIRST-LAST; all if not given");
-  command
-      ->add_option("--window-size", args->window_size,
-                   "Of an animation: frames that are reconstructed together, half of them with the next ones, too (10 if not given)")
+  command->add_option("--window-size", args->window_size, "Of an animation: frames that are reconstructed together (10 if not given)")
       ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--window-overlap", args->window_overlap,
+                   "Of an animation: those of them that are reconstructed with the next ones, too (half if not given)")
+      ->check(CLI::Range(0, 500));
   command->add_option("--film-exposure", args->exposure, "Of an animation: factor on all radiance")->check(CLI::NonNegativeNumber);
   command
       ->add_option("--reconstruction", args->reconstruction,

@@ -22,12 +22,12 @@ struct RenderArguments {
   OptionFlags options;
 };
 
-// FILE.exr itself, or in a store: STORE/<scene>/ViewLayer/f<frame>.base.exr (contract 7.2).
+// FILE.exr itself, or in a store: STORE/<scene>/ViewLayer/f<frame>.exr; frames of animations have other names (contract 7.2).
 fs::path frame_path(const RenderArguments& args, int32_t frame) {
   const fs::path output = args.output;
   if (output.extension() == ".exr") return output;
   char name[32];
-  std::snprintf(name, sizeof(name), "f%+08d.base.exr", frame);
+  std::snprintf(name, sizeof(name), "f%+08d.exr", frame);
   return output / fs::path(args.scene).stem() / "ViewLayer" / name;
 }
 

@@ -1,6 +1,7 @@
 // What `gradus reconstruct` is told, for one frame and for those of a sequence.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ struct ReconstructArguments {
   std::string input, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes, frames;
   std::vector<std::string> merged;
   float alpha = 0.0f;
-  double exposure = -1.0;    // below 0: as it was sampled for
-  uint32_t window_size = 0;  // 0: as the library has it
+  double exposure = -1.0;                               // below 0: as it was sampled for
+  std::optional<uint32_t> window_size, window_overlap;  // not given: as the library has them, and half of the size
 };
 
 // Those of `asked` that are there: all of them, unless it is everything. Throws with the names of what is missing.

@@ -8,6 +8,7 @@
 
 #include "frame/image_exr.h"
 #include "frame/store.h"
+#include "reconstruct/space_time/window_grid.h"
 #include "settings/pass_table.h"
 #include "stored_sequence.h"
 
@@ -39,10 +40,19 @@ std::string picture_path(const std::string& folder, int32_t frame) {
   return (fs::path(folder) / name.data()).string();
 }
 
+WindowShape windows_of(const ReconstructArguments& args) {
+  WindowShape windows;
+  if (args.window_size) windows = {int(*args.window_size), int(*args.window_size / 2)};
+  if (args.window_overlap) windows.overlap = int(*args.window_overlap);
+  return windows;
+}
+
 void check_usage(const ReconstructArguments& args) {
   if (args.reconstruction == "none")
     throw CLI::ValidationError("--reconstruction", "none is for single frames; --passes noisy_image writes it");
   check_apart("--output", args.output, args.input);
+  const WindowShape windows = windows_of(args);
+  if (2 * windows.overlap > windows.frames) throw CLI::ValidationError("--window-overlap", "windows share at most half of their frames");
   if (fs::exists(args.output) && !fs::is_directory(args.output)) {
     throw CLI::ValidationError("--output", args.output + " is no folder, which the pictures of " + args.input + " need");
   }
@@ -64,8 +74,9 @@ client::Sequence open(const client::Device& device, const ReconstructArguments& 
   settings.first = range.first;
   settings.last = range.last;
   settings.step = uint32_t(stored.step());
-  settings.window_size = args.window_size;
-  settings.window_overlap = args.window_size / 2;
+  const WindowShape windows = windows_of(args);
+  settings.window_size = uint32_t(windows.frames);
+  settings.window_overlap = uint32_t(windows.overlap);
   settings.folder = stored.folder().c_str();
   return client::Sequence(device, settings);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <regex>
 #include <set>
 
@@ -14,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Numbers of the files of one kind.
+// Numbers of the files of one kind; "": of frames on their own.
 std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind) {
-  const std::regex name("f([+-][0-9]{7,8})\\." + kind + "\\.exr");
+  const std::regex name("f([+-][0-9]{7,8})" + (kind.empty() ? "" : "\\." + kind) + "\\.exr");
   std::set<int32_t> numbers;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     std::smatch match;
@@ -36,11 +37,13 @@ StoredSequence::StoredSequence(const std::string& folder) : folder_(folder) {
   const std::set<int32_t> base = numbers_in(folder, "base"), offset = numbers_in(folder, "offset");
   std::set_intersection(base.begin(), base.end(), offset.begin(), offset.end(), std::back_inserter(frames_));
   if (frames_.empty()) {
-    throw invalid_argument(
-        folder + (base.empty() ? " holds no stored frames" : " holds stored frames, but none of a sequence: reconstruct them one by one"));
+    throw invalid_argument(folder + (base.empty() && numbers_in(folder, "").empty()
+                                         ? " holds no stored frames"
+                                         : " holds stored frames, but none of a sequence: reconstruct them one by one"));
   }
-  if (frames_.size() > 1) step_ = INT32_MAX;
-  for (size_t i = 1; i < frames_.size(); ++i) step_ = std::min(step_, frames_[i] - frames_[i - 1]);
+  int32_t step = 0;
+  for (size_t i = 1; i < frames_.size(); ++i) step = std::gcd(step, frames_[i] - frames_[i - 1]);
+  if (step > 0) step_ = step;
 }
 
 std::string StoredSequence::path(int32_t frame) const {

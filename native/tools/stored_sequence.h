@@ -16,7 +16,7 @@ class StoredSequence {
   std::string path(int32_t frame) const;
   // In order; those of which base and offset are there.
   const std::vector<int32_t>& frames() const { return frames_; }
-  // Least distance of two frames: between those there is none.
+  // The largest that meets all frames.
   int32_t step() const { return step_; }
   // Those of [first, last] that the steps meet.
   std::vector<int32_t> expected(int32_t first, int32_t last) const;

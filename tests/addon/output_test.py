@@ -97,8 +97,8 @@ def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:
 
 
 def test_frame_store_names_are_escaped_and_differ() -> None:
-    assert str(frame_store.frame_path("/s", "My Scene", "View/Layer", "left", -5)) == "/s/My%20Scene/View%2FLayer.left/f-0000005.base.exr"
-    assert frame_store.frame_path("/s", "a", "b", "", 1048574).name == "f+1048574.base.exr"
+    assert str(frame_store.frame_path("/s", "My Scene", "View/Layer", "left", -5)) == "/s/My%20Scene/View%2FLayer.left/f-0000005.exr"
+    assert frame_store.frame_path("/s", "a", "b", "", 1048574).name == "f+1048574.exr"
     assert frame_store.escape("a%20b") != frame_store.escape("a b")
 
 

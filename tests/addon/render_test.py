@@ -268,7 +268,7 @@ def test_scene_file_and_frame_store(cube: bpy.types.Scene, render: Render, tmp_p
     render(cube, frame=4)
     assert (tmp_path / "s_4.gradus").stat().st_size > 100
     stored = list((tmp_path / "store").rglob("*.exr"))
-    assert [path.name for path in stored] == ["f+0000004.base.exr"]
+    assert [path.name for path in stored] == ["f+0000004.exr"]
     assert stored[0].parent.parent.name == frame_store_name(cube.name)
 
 

@@ -77,7 +77,7 @@ def render(job: dict, folder: Path, bounces: dict[str, int]) -> dict:
         stats = store.summaries[(scene.name, bpy.context.view_layer.name)]
         answer["stats"] = {name: stats[name] for name in STATS}
     if "frame" in job:
-        shutil.move(next((folder / "frames").rglob("*.base.exr")), job["frame"])
+        shutil.move(next((folder / "frames").rglob("*.exr")), job["frame"])
     layer = bpy.context.view_layer.name
     channels = [f"{layer}.Combined.{c}" for c in "RGB"] + [f"{layer}.Error.X"] if wants_error else list("RGB")
     np.save(job["out"], read_exr(target, channels))

@@ -83,7 +83,7 @@ std::vector<float> channel_of(const fs::path& path, const char* name) {
   return values;
 }
 
-const char* const kStored = "store/good/ViewLayer/f+0000000.base.exr";
+const char* const kStored = "store/good/ViewLayer/f+0000000.exr";
 
 TEST_F(Tool, RendersReconstructsAndCompares) {
   const Outcome rendered = run("render good.gradus -o store --samples 16 --integrator gradient --image combined.exr --stats stats.jsonl");
@@ -395,6 +395,45 @@ TEST_F(ToolSequence, ChangesHowFramesAreReconstructed) {
   }
 }
 
+// The overlap was always half of the window: what an animation had otherwise could not be made again.
+TEST_F(ToolSequence, WindowsHaveTheOverlapThatIsAskedFor) {
+  const auto picture_with = [&](const std::string& windows) {
+    const Outcome made = run("reconstruct store/anim/layer -o other --frames 2 " + windows);
+    EXPECT_EQ(made.code, 0) << made.err;
+    return load_rgb((folder / "other/0002.exr").string(), "").rgb;
+  };
+  EXPECT_EQ(picture_with("--window-size 4 --window-overlap 2"), picture_with("--window-size 4"));
+  EXPECT_NE(picture_with("--window-size 4 --window-overlap 0"), picture_with("--window-size 4"));
+  const Outcome wrong = run("reconstruct store/anim/layer -o other --window-size 4 --window-overlap 3");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("at most half"), std::string::npos) << wrong.err;
+}
+
+// Of frames 1, 4 and 6 the step was 2: frame 4 was none of them.
+TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllOfThem) {
+  for (const int frame : {2, 3, 5}) {
+    for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
+  }
+  const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("lacks frames 2 to 3, 5"), std::string::npos) << outcome.err;
+  EXPECT_EQ(run("reconstruct store/anim/layer -o pictures --frames 4").code, 0);
+}
+
+// A still had the name of an animation's own half: it took its place.
+TEST_F(ToolSequence, AStillBesideAnAnimationLeavesItAsItIs) {
+  for (const char* part : {".base.exr", ".offset.exr"}) {
+    fs::copy_file(folder / kFolder / (std::string("f+0000001") + part), folder / kFolder / (std::string("f+0000000") + part));
+  }
+  const std::string before = stored();
+  fs::create_directories(folder / "stills/good");
+  fs::create_directory_symlink(folder / kFolder, folder / "stills/good/ViewLayer");
+  const Outcome still = run("render good.gradus -o stills");  // of frame 0
+  ASSERT_EQ(still.code, 0) << still.err;
+  EXPECT_TRUE(fs::remove(folder / kFolder / "f+0000000.exr"));
+  EXPECT_EQ(stored(), before);
+}
+
 // Plain paths with features.
 TEST_F(ToolSequence, WritesWhatAutoDelivered) {
   render(GRADUS_RECONSTRUCTION_AUTO);
@@ -448,8 +487,8 @@ TEST_F(ToolSequence, WrongUsageIsNamed) {
       {"store/anim/layer -o p --reconstruction none", 2, "--passes noisy_image"},
       {"still/good/ViewLayer -o p", 1, "none of a sequence"},
       {"store -o p", 1, "holds no stored frames"},
-      {"still/good/ViewLayer/f+0000000.base.exr -o p.exr --frames 1-2", 2, "is for folders"},
-      {"still/good/ViewLayer/f+0000000.base.exr -o p.exr --window-size 4", 2, "is for folders"},
+      {"still/good/ViewLayer/f+0000000.exr -o p.exr --frames 1-2", 2, "is for folders"},
+      {"still/good/ViewLayer/f+0000000.exr -o p.exr --window-size 4", 2, "is for folders"},
   };
   for (const auto& [arguments, code, cause] : wrong) {
     const Outcome outcome = run(std::string("reconstruct ") + arguments);

@@ -1,0 +1,157 @@
+"""Animations that go on from a frame store: the bits of one that was never ended, whatever changes from frame to frame."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from support import images, recording
+from support.animation import key
+
+WIDTH, HEIGHT = 32, 18
+Scene = bpy.types.Scene
+
+
+@pytest.fixture
+def square(scene: Scene) -> Scene:
+    """A square before a grey world, twenty frames long."""
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    recording.add(recording.grid(2), "Square")
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (0.3, 0.3, 0.3)
+    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.frame_start, scene.frame_end = 1, 20
+    scene.gradus.reconstruction, scene.gradus.samples = "L2", 2
+    return scene
+
+
+@pytest.fixture
+def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
+    """lines(): the stats of all delivered frames, in order."""
+    path = tmp_path / "stats.jsonl"
+    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
+    yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def animate(scene: Scene, folder: Path, first: int = 0, last: int = 0) -> None:
+    if last:
+        scene.frame_start, scene.frame_end = first, last
+    images.use_exr(scene, folder / "f_####.exr")
+    bpy.ops.render.render(animation=True, scene=scene.name)
+
+
+def pictures(folder: Path) -> dict[int, np.ndarray]:
+    return {int(path.stem.removeprefix("f_")): images.read(path)["Combined"] for path in sorted(folder.glob("f_*.exr"))}
+
+
+def require_equal(found: dict[int, np.ndarray], whole: dict[int, np.ndarray], frames: range) -> None:
+    differing = [frame for frame in frames if not np.array_equal(found[frame], whole[frame])]
+    assert differing == []
+
+
+# ------------------------------------------------------------------------------------------------ what changes
+
+
+def deform(_scene: Scene, _folder: Path) -> None:
+    """A mesh of other positions in each frame."""
+    square = bpy.data.objects["Square"]
+    square.shape_key_add(name="Basis")
+    shape = square.shape_key_add(name="Bent")
+    shape.data[0].co.z += 1.0
+    for frame, value in ((0, 0.0), (21, 1.0)):
+        shape.value = value
+        shape.keyframe_insert("value", frame=frame)
+
+
+def show_a_film(_scene: Scene, folder: Path) -> None:
+    """A material with another picture in each frame."""
+    for number in range(21):
+        picture = images.oiio.ImageBuf(images.oiio.ImageSpec(2, 2, 3, "uint8"))
+        images.oiio.ImageBufAlgo.fill(picture, (number / 21.0, 0.5, 0.2))
+        assert picture.write(str(folder / f"film_{number:04d}.png"))
+    square = bpy.data.objects["Square"]
+    material = bpy.data.materials.new("Film")
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.load(str(folder / "film_0000.png"))
+    texture.image.source = "SEQUENCE"
+    texture.image_user.frame_duration, texture.image_user.frame_start = 20, 1
+    texture.image_user.use_auto_refresh = True
+    links.new(texture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+    square.data.materials.append(material)
+
+
+def let_objects_appear(_scene: Scene, _folder: Path) -> None:
+    """Objects before and behind it in the order of the scene, each with a mesh and a material of its own, some of them for a while."""
+    for name, first, last in (("A", 3, 9), ("Z", 5, 30), ("B", 12, 30)):
+        material = bpy.data.materials.new(name)
+        material.diffuse_color = (0.2, 0.4, 0.6, 1.0)
+        found = recording.add(recording.grid(3), name)
+        found.data.materials.append(material)
+        found.scale = (0.3, 0.3, 0.3)
+        found.location.z = 0.5
+        for frame in range(31):
+            found.hide_render = not first <= frame <= last
+            found.keyframe_insert("hide_render", frame=frame)
+
+
+def cut_between_cameras(scene: Scene, _folder: Path) -> None:
+    """Cameras that are bound to markers, from frame 4 and 15 on."""
+    first = scene.camera
+    key(first, "location", {0: (-0.5, 0.0, 5.0), 21: (0.5, 0.0, 5.0)})
+    second = recording.add_camera(type="ORTHO", ortho_scale=3.0)
+    second.rotation_euler = (0.0, 1.0, 0.0)
+    second.location = (5.0, 0.0, 3.0)
+    for frame, camera in ((1, first), (4, second), (15, first)):
+        scene.timeline_markers.new(f"cut {frame}", frame=frame).camera = camera
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+@pytest.mark.parametrize("change", [deform, show_a_film, let_objects_appear, cut_between_cameras])
+def test_c7_an_animation_goes_on_where_it_ended(
+    square: Scene, tmp_path: Path, change: Callable[[Scene, Path], None], persistent: bool
+) -> None:
+    """Keys of meshes, images and objects count up as they appear: frames were refused as those of another scene."""
+    whole, rest = tmp_path / "whole", tmp_path / "rest"
+    for folder in (whole, rest):
+        folder.mkdir()
+    change(square, tmp_path)
+    square.render.use_persistent_data = persistent
+    square.gradus.frame_store = str(tmp_path / "store")
+    animate(square, whole)
+    square.render.use_overwrite = False
+    expected = pictures(whole)
+    for frame in range(1, 17):
+        (rest / f"f_{frame:04d}.exr").write_bytes((whole / f"f_{frame:04d}.exr").read_bytes())
+    animate(square, rest)
+    assert not np.array_equal(expected[5], expected[16]), "the scene changes"
+    require_equal(pictures(rest), expected, range(1, 21))
+
+
+def test_c8_cameras_of_markers_cut_the_animation(square: Scene, tmp_path: Path) -> None:
+    cut_between_cameras(square, tmp_path)
+    square.view_layers[0].gradus.use_pass_gradients = True
+    animate(square, tmp_path, 1, 6)
+    linked = {frame: images.read(tmp_path / f"f_{frame:04d}.exr")["Gradient T Link"][..., 2].any() for frame in range(1, 6)}
+    assert linked == {1: True, 2: True, 3: False, 4: True, 5: True}
+
+
+# ------------------------------------------------------------------------------------------------ one store for several jobs
+
+
+def test_c7_a_still_beside_an_animation_leaves_its_frames(square: Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
+    """It had the name of an animation's own half, whose other half stayed: the frame was made of samples of both."""
+    deform(square, tmp_path)
+    square.gradus.frame_store = str(tmp_path / "store")
+    before, after = tmp_path / "before", tmp_path / "after"
+    animate(square, before, 1, 6)
+    render(square, frame=3)
+    animate(square, after, 1, 6)
+    require_equal(pictures(after), pictures(before), range(1, 7))
