@@ -87,6 +87,7 @@ ENTRIES = {
     "I8": "frames that do not change cost nothing",
     "I9": "files say how they were made",
     "J1": "memory over many frames",
+    "J2": "memory over changes of topology, exports anew and cancels",
     "K1": "cancelled within a second",
     "K2": "every phase asks whether to go on",
     "K3": "many cancels leave no trace",

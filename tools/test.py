@@ -31,7 +31,7 @@ HOSTS = {
 LIMIT = {"native": 900, "host": 300, "full": 3600}  # seconds for one program or file
 
 # L6: a picture of 160 x 120 pixels with all passes, and scenes, commits, renders, reconstruction and frames in the tests of the C API;
-# nothing of them depends on the clock. Memory that is lost is an error, too.
+# nothing of them depends on the clock. J2: animations that change or are cancelled. Memory that is lost is an error, too.
 VALGRIND = (
     "valgrind",
     "-q",
@@ -40,7 +40,9 @@ VALGRIND = (
     "--leak-check=full",
     f"--suppressions={ROOT / 'tests/support/valgrind.supp'}",
 )
-VALGRIND_TESTS = "L6_*:Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.LightAddsUp*/World:All/Passes.LightAddsUp*/RoughGlass"
+VALGRIND_TESTS = (
+    "L6_*:J2_*:Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.LightAddsUp*/World:All/Passes.LightAddsUp*/RoughGlass"
+)
 
 
 @dataclass

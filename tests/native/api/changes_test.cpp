@@ -1,0 +1,25 @@
+// J2: animations whose meshes and instances change, and renders that are cancelled. Under LeakSanitizer (make test-full) nothing may be
+// left; tests/memory counts what the library holds.
+#include "api/changing_scene.h"
+
+namespace gradus::test {
+namespace {
+
+class J2_Changes : public WithScene<> {};
+
+TEST_F(J2_Changes, FramesAreReleased) {
+  for (int32_t frame = 0; frame < 15; ++frame) render_changing(scene, frame);
+}
+
+TEST_F(J2_Changes, CancelledFramesAreReleased) {
+  for (int32_t frame = 0; frame < 20; ++frame) cancel_changing(scene, frame);
+}
+
+TEST_F(J2_Changes, SequencesAreReleasedWhereverTheyEnd) {
+  constexpr int32_t kLast = 5;
+  animate_changing(device, scene, kLast);
+  for (int number = 0; number < 2 * kLast; ++number) animate_changing(device, scene, kLast, number);
+}
+
+}  // namespace
+}  // namespace gradus::test
