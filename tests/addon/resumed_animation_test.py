@@ -155,3 +155,44 @@ def test_c7_a_still_beside_an_animation_leaves_its_frames(square: Scene, render:
     render(square, frame=3)
     animate(square, after, 1, 6)
     require_equal(pictures(after), pictures(before), range(1, 7))
+
+
+def test_c7_two_steps_in_one_store_are_linked(square: Scene, lines: Callable[[], list[dict[str, Any]]], tmp_path: Path) -> None:
+    """Frames of every second one replay the one two before: half of the pairs of the whole had no links."""
+    deform(square, tmp_path)
+    square.view_layers[0].gradus.use_pass_gradients = True
+    square.gradus.frame_store = str(tmp_path / "store")
+    square.frame_step = 2
+    animate(square, tmp_path / "second", 1, 7)
+    square.frame_step = 1
+    both, whole = tmp_path / "both", tmp_path / "whole"
+    animate(square, both, 1, 7)
+    square.gradus.frame_store = str(tmp_path / "another store")
+    animate(square, whole, 1, 7)
+    require_equal(pictures(both), pictures(whole), range(1, 8))
+
+
+def test_c7_parts_of_a_still_stretch_are_the_whole(square: Scene, tmp_path: Path) -> None:
+    """The later part is rendered first: it does not know yet that its frames are those of the earlier one."""
+    key(bpy.data.objects["Square"], "location", {6: (0.0, 0.0, 0.0), 9: (1.0, 0.0, 0.0)})
+    parts, again, whole = (tmp_path / name for name in ("parts", "again", "whole"))
+    square.gradus.frame_store = str(tmp_path / "store")
+    for first, last in ((5, 8), (1, 4)):
+        animate(square, parts, first, last)
+    animate(square, again, 1, 8)
+    square.gradus.frame_store = str(tmp_path / "another store")
+    animate(square, whole, 1, 8)
+    require_equal(pictures(again), pictures(whole), range(1, 9))
+
+
+def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: Path) -> None:
+    """The frame before the range was taken as it lay in the store, and all frames of the stretch with it."""
+    square.gradus.frame_store = str(tmp_path / "store")
+    animate(square, tmp_path / "old", 1, 4)
+    found, expected = tmp_path / "found", tmp_path / "expected"
+    square.gradus.seed = 7
+    animate(square, found, 5, 8)
+    square.gradus.frame_store = str(tmp_path / "another store")
+    animate(square, expected, 5, 8)
+    require_equal(pictures(found), pictures(expected), range(5, 9))
+    assert not np.array_equal(pictures(found)[5], pictures(tmp_path / "old")[4])

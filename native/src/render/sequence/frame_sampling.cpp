@@ -5,19 +5,12 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "render/sequence/halves.h"
 #include "settings/options.h"
 #include "temporal/pixel_links.h"
 
 namespace gradus {
 namespace {
-
-// Of a time limit; the other half takes as long, and the differences over time make it no shorter (contract 4.6).
-constexpr float kBaseShareOfTime = 0.4f;
-
-// Of a noise threshold: half of the samples have twice the squared error of all.
-constexpr float kBaseShareOfThreshold = 1.41421356f;
-
-uint32_t base_samples(uint32_t samples) { return samples - samples / 2; }
 
 constexpr const char* kWayOut = ": remove it, or choose another frame store";
 
@@ -66,10 +59,10 @@ FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input
 
 LoopInput FrameSampling::base_input() const {
   LoopInput input = input_;
-  input.settings.samples = base_samples(input.settings.samples);
+  input.settings.samples = samples_of(FramePart::kBase, input.settings.samples);
   input.settings.time_limit *= kBaseShareOfTime;
   input.settings.noise_threshold *= kBaseShareOfThreshold;
-  if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase)) input.resumed = stored_base_;
+  if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase, input_.settings)) input.resumed = stored_base_;
   input.whole_samples = input_.settings.samples;
   return input;
 }
@@ -115,7 +108,9 @@ void FrameSampling::render() {
     const std::lock_guard lock(mutex_);
     phase_ = GRADUS_PHASE_SAMPLING;
   }
-  if (!stored_base_ && repeats_before()) return repeat_before();
+  const bool repeats = repeats_before();
+  const bool is_repeated = stored_base_ && repeats && stored_base_->frame_number == sequence_->before_->stream_frame;
+  if (repeats && !is_repeated) return repeat_before();
   sample_parts();
 }
 
@@ -124,21 +119,13 @@ std::shared_ptr<const Frame> FrameSampling::stored(FramePart part) const {
   const int32_t number = input_.settings.frame;
   if (!folder.holds(number)) return nullptr;
   const std::shared_ptr<const Frame> frame = load_or_name_the_way_out(folder, number, part);
-  // The file of an earlier frame that was as this one, and now has too few samples: taken anew, or from that frame again.
-  if (frame->frame_number != number && !has_as_many(*frame, part)) return nullptr;
+  // The file of an earlier frame that was as this one, and is no longer, or has too few samples: taken anew, or from that frame again.
+  if (frame->frame_number != number && (!has_as_many(*frame, part, input_.settings) || differs_from_before())) return nullptr;
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // that of the first of several frames that are alike
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = frame->settings.integrator;  // what it came to
   require_same(*frame, folder.path(number, part), settings, input_.snapshot->content_key);
   return frame;
-}
-
-bool FrameSampling::has_as_many(const Frame& frame, FramePart part) const {
-  const GradusSettings& asked = input_.settings;
-  const uint32_t samples = part == FramePart::kBase ? base_samples(asked.samples) : asked.samples / 2;
-  // Frames with a time limit have as many as it left them.
-  if (asked.time_limit > 0.0f && asked.time_limit <= frame.settings.time_limit / kBaseShareOfTime) return true;
-  return frame.settings.samples >= samples && frame.settings.noise_threshold <= kBaseShareOfThreshold * asked.noise_threshold;
 }
 
 bool FrameSampling::repeats_before() const {
@@ -147,6 +134,11 @@ bool FrameSampling::repeats_before() const {
   return before && before->is_sampled && before->snapshot->content_key == input_.snapshot->content_key &&
          are_alike(before->settings, now) && before->settings.samples >= now.samples &&
          before->settings.noise_threshold <= now.noise_threshold;
+}
+
+bool FrameSampling::differs_from_before() const {
+  const FrameBefore* before = sequence_->before_.get();
+  return before && before->is_sampled && !repeats_before();
 }
 
 void FrameSampling::run(RenderLoop* loop) {
@@ -187,15 +179,18 @@ void FrameSampling::sample_parts() {
 void FrameSampling::sample_offset(const Frame& base, bool samples_base) {
   LoopInput input = input_;
   input.whole_samples = input.settings.samples;
-  input.settings.samples /= 2;
-  const std::shared_ptr<const Frame> found = stored(FramePart::kOffset);
+  input.settings.samples = samples_of(FramePart::kOffset, input.settings.samples);
+  std::shared_ptr<const Frame> found = stored(FramePart::kOffset);
+  if (found && base.frame_number != input_.settings.frame) return;  // both are those of the earlier frame
+  if (found && !replays_before(*found)) found.reset();
   const bool counted = has_counts(input_.settings);
-  if (found && !counted && has_as_many(*found, FramePart::kOffset)) return;
+  if (found && !counted && has_as_many(*found, FramePart::kOffset, input_.settings)) return;
   if (found && !samples_base && input.settings.time_limit > 0.0f) return;  // as many as the time of its base allowed
   input.replay = follow(base);
   const std::vector<uint32_t>& counts = input.replay->counts;
   if (found && counted && samples_of_pixels(*found) == counts) return;
-  if (!counted) input.resumed = found;
+  const bool goes_on = found && !counted && !has_counts(found->settings) && found->replayed.pixel == input.replay->sources.pixel;
+  if (goes_on) input.resumed = found;
   if (counted) input.settings.samples = *std::max_element(counts.begin(), counts.end());
   auto offset = std::make_unique<RenderLoop>(std::move(input));
   {
@@ -206,14 +201,24 @@ void FrameSampling::sample_offset(const Frame& base, bool samples_base) {
   save(*offset_->frame(), FramePart::kOffset);
 }
 
+bool FrameSampling::follows_before() const {
+  const FrameBefore* before = sequence_->before_.get();
+  const GradusSettings& now = input_.settings;
+  return before && before->settings.width == now.width && before->settings.height == now.height &&
+         show_same_region(before->settings, now) && !is_cut(before->snapshot->camera, input_.snapshot->camera);
+}
+
+bool FrameSampling::replays_before(const Frame& offset) const {
+  if (!sequence_->before_) return true;
+  return offset.replayed.stream_frame == (follows_before() ? sequence_->before_->stream_frame : input_.settings.frame);
+}
+
 std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
   auto replay = std::make_shared<Replay>();
   const size_t pixels = size_t(base.region.area());
   replay->sources = {input_.settings.frame, std::vector<int32_t>(pixels, kNoLink)};
   const FrameBefore* before = sequence_->before_.get();
-  const bool follows = before && before->settings.width == input_.settings.width && before->settings.height == input_.settings.height &&
-                       show_same_region(before->settings, input_.settings) && !is_cut(before->snapshot->camera, input_.snapshot->camera);
-  if (follows) {
+  if (follows_before()) {
     const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, input_.settings.width, input_.settings.height); };
     const Camera camera_before = camera(*before->snapshot), camera_now = camera(*input_.snapshot);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
@@ -227,7 +232,8 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
   replay->counts = replayed_counts(replay->sources, before, mean);
   const double seconds = base_.what_it_took().seconds.sample;
   if (input_.settings.time_limit > 0.0f && seconds > 0.0) {
-    limit_mean((1.0 - kBaseShareOfTime) * input_.settings.time_limit / seconds * mean, &replay->counts);
+    const double taken = mean - (base_.resumes() ? mean_samples(*stored_base_) : 0.0);
+    limit_mean((1.0 - kBaseShareOfTime) * input_.settings.time_limit / seconds * taken, &replay->counts);
   }
   return replay;
 }

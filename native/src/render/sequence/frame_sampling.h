@@ -26,14 +26,17 @@ class FrameSampling final : public RenderTask {
 
   // What the folder has of the frame, if it fits.
   std::shared_ptr<const Frame> stored(FramePart part) const;
-  // As many samples as are asked for, or as many as it may have.
-  bool has_as_many(const Frame& frame, FramePart part) const;
   bool repeats_before() const;
+  bool differs_from_before() const;
   void repeat_before();
   void sample_parts();
   void sample_offset(const Frame& base, bool samples_base);
   void run(RenderLoop* loop);
   void save(const Frame& frame, FramePart part) const;
+  bool follows_before() const;
+  // Whether a stored offset is of what the frame follows now: other steps or parts of a job have other frames before it. Where nobody has
+  // told what comes before, it is.
+  bool replays_before(const Frame& offset) const;
   std::shared_ptr<const Replay> follow(const Frame& base) const;
   LoopInput base_input() const;
   // From here on it is the frame before.

@@ -6,6 +6,7 @@
 #include "render/resume.h"
 #include "render/sequence/frame_delivery.h"
 #include "render/sequence/frame_sampling.h"
+#include "render/sequence/halves.h"
 #include "settings/options.h"
 #include "temporal/spooled_window.h"
 
@@ -18,6 +19,13 @@ uint32_t integrator_of(const GradusSettings& settings) {
   const uint32_t r = settings.reconstruction;
   const bool by_features = r == GRADUS_RECONSTRUCTION_AUTO || r == GRADUS_RECONSTRUCTION_REGULARIZED;
   return by_features ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
+}
+
+// Whether a stored frame is what the sequence would sample of the snapshot.
+bool is_frame_of(const Frame& stored, const Snapshot& snapshot, GradusSettings settings) {
+  if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = stored.settings.integrator;  // what it came to
+  return stored.scene_key == snapshot.content_key && are_alike(stored.settings, settings) &&
+         has_as_many(stored, FramePart::kBase, settings);
 }
 
 }  // namespace
@@ -103,6 +111,7 @@ void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSet
   resolved.integrator = integrator_of(settings);
   std::shared_ptr<const Frame> base;  // that of another part of the job
   if (folder_.holds(settings.frame)) base = folder_.load(settings.frame, FramePart::kBase);
+  if (base && !is_frame_of(*base, *snapshot, resolved)) base.reset();
   before_ = make_before(std::move(snapshot), resolved, base.get());
 }
 

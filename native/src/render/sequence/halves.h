@@ -1,0 +1,26 @@
+// How the two halves of a frame share its samples, its time and its noise (contract 4.2).
+#pragma once
+
+#include "frame/frame.h"
+#include "render/sequence/sequence_folder.h"
+
+namespace gradus {
+
+// Of a time limit; the other half takes as long, and the differences over time make it no shorter (contract 4.6).
+inline constexpr float kBaseShareOfTime = 0.4f;
+
+// Of a noise threshold: half of the samples have twice the squared error of all.
+inline constexpr float kBaseShareOfThreshold = 1.41421356f;
+
+inline uint32_t samples_of(FramePart part, uint32_t samples) { return part == FramePart::kBase ? samples - samples / 2 : samples / 2; }
+
+// Whether a half has as many samples as are asked of the frame, or as many as it may have.
+inline bool has_as_many(const Frame& half, FramePart part, const GradusSettings& asked) {
+  // Frames with a time limit have as many as it left them, whatever their settings say.
+  const bool is_limited = half.settings.time_limit > 0.0f;
+  if (is_limited && asked.time_limit > 0.0f && asked.time_limit <= half.settings.time_limit / kBaseShareOfTime) return true;
+  const uint64_t samples = is_limited ? half.samples.total() : half.settings.samples;
+  return samples >= samples_of(part, asked.samples) && half.settings.noise_threshold <= kBaseShareOfThreshold * asked.noise_threshold;
+}
+
+}  // namespace gradus

@@ -1,0 +1,149 @@
+// What a sequence finds in its folder, and what it takes of that: its frames are those of a job that was never ended (contract 7.2).
+#include <gtest/gtest.h>
+
+#include "sequence_fixture.h"
+
+namespace gradus::test {
+namespace {
+
+std::shared_ptr<Sequence> make_steps(int32_t first, int32_t last, uint32_t step, const std::string& folder) {
+  return std::make_shared<Sequence>(two_threads(), SequenceSettings{first, last, step, {}, folder});
+}
+
+void expect_same(const std::vector<Delivered>& found, const std::vector<Delivered>& whole) {
+  ASSERT_EQ(found.size(), whole.size());
+  for (size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(found[i].noisy, whole[i].noisy) << i;
+    EXPECT_EQ(found[i].combined, whole[i].combined) << i;
+  }
+}
+
+// Frames 3 and 5 replayed those two before them: half of the pairs had no links.
+TEST(C7_StoredFrames, OffsetsOfAnotherStepAreSampledAnew) {
+  Pan pan(1.3f);
+  const Folder both, fresh;
+  const auto second = make_steps(1, 5, 2, both.path());
+  for (const int32_t frame : {1, 3, 5}) sample(second.get(), pan.at(frame), settings_of(frame));
+  const auto found = render(&pan, make_sequence(1, 5, both.path()).get(), 1, 5);
+  expect_same(found, render(&pan, make_sequence(1, 5, fresh.path()).get(), 1, 5));
+}
+
+// Still up to frame 6; rendered from 5 on before 1 to 4, whose frames those are.
+TEST(C7_StoredFrames, PartsOfAStillStretchAreTheWholeWhenTheyAreAllThere) {
+  Pan still(0.0f), moved(1.3f);
+  const auto shown = [&](int32_t frame) { return frame <= 6 ? still.at(frame) : moved.at(frame); };
+  const auto sample_all = [&](Sequence* sequence, int32_t first, int32_t last) {
+    for (int32_t t = first; t <= last; ++t) sample(sequence, shown(t), settings_of(t));
+  };
+  const Folder parts, fresh;
+  const auto later = make_sequence(5, 8, parts.path());
+  later->pass_by(shown(4), with_passes(settings_of(4)));
+  sample_all(later.get(), 5, 8);
+  sample_all(make_sequence(1, 4, parts.path()).get(), 1, 4);
+  const auto again = make_sequence(1, 8, parts.path()), whole = make_sequence(1, 8, fresh.path());
+  for (Sequence* sequence : {again.get(), whole.get()}) sample_all(sequence, 1, 8);
+  for (int32_t t = 1; t <= 8; ++t) {
+    const Delivered found = deliver(again.get(), t), expected = deliver(whole.get(), t);
+    EXPECT_EQ(found.noisy, expected.noisy) << t;
+    EXPECT_EQ(found.combined, expected.combined) << t;
+  }
+}
+
+// The frame before has another scene than it had: samples that follow it were added to those that follow the old one, as if all did.
+TEST(C7_StoredFrames, SamplesOfOtherSourcesAreNotAddedUp) {
+  Pan pan(1.3f);
+  const auto sample_both = [&](const std::string& folder, int32_t shown_first, uint32_t samples) {
+    const auto sequence = make_sequence(1, 2, folder);
+    sample(sequence.get(), pan.at(shown_first), settings_of(1, samples));
+    sample(sequence.get(), pan.at(2), settings_of(2, samples));
+    return deliver(sequence.get(), 2);
+  };
+  const Folder folder, fresh;
+  sample_both(folder.path(), 1, 4);
+  folder.remove(1);
+  const Delivered more = sample_both(folder.path(), 3, 12), whole = sample_both(fresh.path(), 3, 12);
+  EXPECT_EQ(more.noisy, whole.noisy);
+  EXPECT_EQ(more.combined, whole.combined);
+}
+
+// An adaptive frame that repeats the one before took an offset of its own at a rerun: "do not belong together".
+TEST(C7_StoredFrames, StillAdaptiveFramesAreFoundAgain) {
+  Pan pan(0.0f);
+  const Folder folder;
+  std::vector<float> before;
+  for (int i = 0; i < 2; ++i) {
+    const auto sequence = make_sequence(1, 3, folder.path());
+    for (int32_t t = 1; t <= 3; ++t) {
+      GradusSettings settings = settings_of(t, 40);
+      settings.noise_threshold = 1e-3f;
+      sample(sequence.get(), pan.at(t), settings);
+    }
+    const Delivered frame = deliver(sequence.get(), 3);
+    if (i > 0) {
+      EXPECT_EQ(frame.noisy, before);
+    }
+    before = frame.noisy;
+  }
+}
+
+// The pace of a base that went on was that of all its samples, in the time of those that this run took.
+TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesThatItsRunTook) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const SequenceFolder files(folder.path());
+  const auto sample_both = [&](float first_limit, float limit) {
+    const auto sequence = make_sequence(1, 2, folder.path());
+    for (int32_t t = 1; t <= 2; ++t) {
+      GradusSettings settings = settings_of(t, 1u << 20);
+      settings.time_limit = t == 1 ? first_limit : limit;
+      sample(sequence.get(), pan.at(t), settings);
+    }
+    return mean_samples(*files.load(2, FramePart::kBase));
+  };
+  const double before = sample_both(0.5f, 0.25f), after = sample_both(1.5f, 0.3f);
+  const double offset = mean_samples(*files.load(2, FramePart::kOffset));
+  EXPECT_GT(after, before) << "it goes on";
+  EXPECT_LT(offset, 1.5 * 1.2 * (after - before));
+}
+
+// The samples that they were asked for were taken for those that the time had left them.
+TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto limited = make_sequence(1, 2, folder.path());
+  for (int32_t t = 1; t <= 2; ++t) {
+    GradusSettings settings = settings_of(t, 100);
+    settings.time_limit = 0.02f;
+    sample(limited.get(), pan.at(t), settings);
+  }
+  const auto sequence = make_sequence(1, 2, folder.path());
+  for (int32_t t = 1; t <= 2; ++t) sample(sequence.get(), pan.at(t), settings_of(t, 100));
+  const Delivered frame = deliver(sequence.get(), 2);
+  EXPECT_EQ(frame.stats["spp_base"], 50.0);
+  EXPECT_EQ(frame.stats["spp_offset"], 50.0);
+}
+
+// Whatever the store had for the frame before the range was repeated: other seeds, fewer samples, an older scene.
+TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsRepeatedOnlyIfItIsOfTheJob) {
+  Pan pan(0.0f), other(1.3f);
+  const auto of_seed = [](int32_t frame, uint32_t seed, uint32_t samples) {
+    GradusSettings settings = settings_of(frame, samples);
+    settings.seed = seed;
+    return settings;
+  };
+  const auto base_of = [&](const std::shared_ptr<const Snapshot>& stored, const GradusSettings& its_settings) {
+    const Folder folder;
+    sample(make_sequence(1, 4, folder.path()).get(), stored, its_settings);
+    const auto sequence = make_sequence(5, 6, folder.path());
+    sequence->pass_by(pan.at(4), with_passes(of_seed(4, 1, 8)));
+    sample(sequence.get(), pan.at(5), of_seed(5, 1, 8));
+    return SequenceFolder(folder.path()).load(5, FramePart::kBase)->frame_number;
+  };
+  EXPECT_EQ(base_of(pan.at(4), of_seed(4, 1, 8)), 4);
+  EXPECT_EQ(base_of(pan.at(4), of_seed(4, 2, 8)), 5) << "another seed";
+  EXPECT_EQ(base_of(pan.at(4), of_seed(4, 1, 4)), 5) << "fewer samples";
+  EXPECT_EQ(base_of(other.at(4), of_seed(4, 1, 8)), 5) << "another scene";
+}
+
+}  // namespace
+}  // namespace gradus::test
