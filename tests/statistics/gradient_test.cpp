@@ -225,6 +225,27 @@ TEST(B7_SharedVertex, LightFoundBehindItIsWeighedByEachPathsOwnDensity) {
   difference.check("dx", 8);
 }
 
+// The same point of the lens for both ends of a difference: out of focus, one of them seen through its middle would be sharp.
+TEST(B7_Lens, DifferencesAreThoseOfTheBlurredImage) {
+  PathScene scene;
+  Surface light;
+  light.emission = Rgb(1.0f);
+  scene.quad(Vec3(-1.5f, -1.5f, 0), Vec3(1.5f, 0, 0), Vec3(0, 3, 0), scene.material(light));
+  scene.camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
+  scene.camera_desc.aperture_radius = 0.3f;
+  scene.camera_desc.focus_distance = 1.5f;
+  DifferenceStatistics difference;
+  for (uint32_t seed = 0; seed < 32; ++seed) {
+    GradusSettings settings = test::test_settings(kWidth, kHeight);
+    settings.seed = seed;
+    const IntegratorContext c = scene.context(settings);
+    Frame frame = test::make_test_frame(settings, true);
+    test::sample_frame(*make_gradient_integrator(c), 0, 16, &frame);
+    difference.add(read_images(frame, 0), true);
+  }
+  difference.check("dx");
+}
+
 // What depends on the kind of a bounce.
 struct KindCase {
   const char* name;

@@ -1,12 +1,14 @@
-// B3, C4 to C6: pictures of sequences against plain path tracing of the same frames.
+// B3, C4 to C6: pictures of sequences against plain path tracing of the same frames, or against what a still of each would be.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
 
 #include "base/device.h"
+#include "render/render.h"
 #include "render/sequence/sequence.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
@@ -23,14 +25,15 @@ constexpr int kSeeds = 24;
 
 using Snapshots = std::vector<std::shared_ptr<const Snapshot>>;
 
-GradusSettings settings_of(int32_t frame, uint32_t seed, uint32_t samples) {
+GradusSettings settings_of(int32_t frame, uint32_t seed, uint32_t samples, uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   GradusSettings settings = test::test_settings(kSide, kSide);
   settings.frame = frame;
   settings.seed = seed;
   settings.samples = samples;
   settings.max_bounces = 4;
   settings.filter_width = 0.01f;  // pixels of a cell share their jitter: along an edge their errors would be one
-  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  settings.reconstruction = reconstruction;
+  settings.integrator = reconstruction == GRADUS_RECONSTRUCTION_AUTO ? GRADUS_INTEGRATOR_AUTO : GRADUS_INTEGRATOR_GRADIENT;
   return settings;
 }
 
@@ -69,9 +72,12 @@ std::vector<float> run(RenderTask* task) {
 }
 
 // Pictures of all frames.
-std::vector<std::vector<float>> sequence_pictures(const Snapshots& frames, uint32_t seed, uint32_t samples) {
+std::vector<std::vector<float>> sequence_pictures(const Snapshots& frames, uint32_t seed, uint32_t samples,
+                                                  uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   const auto sequence = std::make_shared<Sequence>(test::test_device(), SequenceSettings{0, int32_t(frames.size()) - 1, 1, {}, ""});
-  for (size_t t = 0; t < frames.size(); ++t) run(sequence->sample(frames[t], settings_of(int32_t(t), seed, samples)).get());
+  for (size_t t = 0; t < frames.size(); ++t) {
+    run(sequence->sample(frames[t], settings_of(int32_t(t), seed, samples, reconstruction)).get());
+  }
   std::vector<std::vector<float>> pictures;
   for (size_t t = 0; t < frames.size(); ++t) pictures.push_back(run(sequence->deliver(int32_t(t), nullptr).get()));
   return pictures;
@@ -88,17 +94,33 @@ std::vector<float> plain_picture(const std::shared_ptr<const Snapshot>& frame, i
   return result;
 }
 
-// By frames: moments of pictures over seeds, of a sequence's and of plain path tracing.
+// By the same reconstruction, without the frames beside it.
+std::vector<float> still_picture(const std::shared_ptr<const Snapshot>& frame, const GradusSettings& settings) {
+  Render render(test::test_device(), frame, settings);
+  render.wait(-1.0);
+  std::vector<float> rgba(size_t(kSide) * kSide * 4);
+  render.read_pass(GRADUS_PASS_COMBINED, rgba.data(), rgba.size());
+  return gray(rgba);
+}
+
+// By frames: moments of pictures over seeds, of a sequence's and of frames by themselves: of plain path tracing, which L2 has the mean of,
+// or of the same reconstruction.
 struct Compared {
   std::vector<Moments> sequence, plain;
 };
 
-Compared compare(const Snapshots& frames, const std::function<std::vector<float>(const std::vector<float>&)>& read, uint32_t samples = 4) {
+Compared compare(const Snapshots& frames, const std::function<std::vector<float>(const std::vector<float>&)>& read, uint32_t samples = 4,
+                 uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   std::vector<std::vector<std::vector<float>>> of_sequence(kSeeds), of_plain(kSeeds);
   tbb::parallel_for(0, kSeeds, [&](int k) {
-    for (const auto& picture : sequence_pictures(frames, uint32_t(k), samples)) of_sequence[size_t(k)].push_back(read(picture));
+    for (const auto& picture : sequence_pictures(frames, uint32_t(k), samples, reconstruction)) {
+      of_sequence[size_t(k)].push_back(read(picture));
+    }
     for (size_t t = 0; t < frames.size(); ++t) {
-      of_plain[size_t(k)].push_back(read(plain_picture(frames[t], int(t), uint32_t(1000 + k), 2 * samples)));
+      const auto seed = uint32_t(1000 + k);
+      const bool by_paths = reconstruction == GRADUS_RECONSTRUCTION_L2;
+      of_plain[size_t(k)].push_back(read(by_paths ? plain_picture(frames[t], int(t), seed, 2 * samples)
+                                                  : still_picture(frames[t], settings_of(int32_t(t), seed, samples, reconstruction))));
     }
   });
   Compared result;
@@ -140,41 +162,95 @@ std::vector<float> whole(const std::vector<float>& image) {
   return {std::accumulate(image.begin(), image.end(), 0.0f) / float(image.size())};
 }
 
-// A lamp that goes off: its light is gone in that very frame (impulse lag 0).
-TEST(C5_Sequence, ALampThatGoesOffLeavesNoLight) {
-  const Snapshots frames = frames_of(6, [](int t, PathScene* scene) {
-    add_box(scene, test::matte(Rgb(0.5f)));
-    add_ceiling_light(scene, t < 3 ? 20.0f : 0.2f, 0.5f);
-    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
-  });
-  const Compared c = compare(frames, whole);
-  for (size_t t = 0; t < frames.size(); ++t) {
-    EXPECT_NEAR(c.sequence[t].mean(0) / c.plain[t].mean(0), 1.0, 0.05) << "frame " << t;
+class Ghosts : public testing::TestWithParam<uint32_t> {
+ protected:
+  // Frames have the mean that they have by themselves, and their noise is small enough to tell what is left of brighter ones.
+  void check(const Snapshots& frames, const std::function<std::vector<float>(const std::vector<float>&)>& read) const {
+    const Compared c = compare(frames, read, 4, GetParam());
+    double brightest = 0.0;
+    for (const Moments& plain : c.plain) brightest = std::max(brightest, plain.mean(0));
+    for (size_t t = 0; t < frames.size(); ++t) {
+      const double noise = std::sqrt(c.sequence[t].variance_of_mean(0) + c.plain[t].variance_of_mean(0)), expected = c.plain[t].mean(0);
+      EXPECT_NEAR(c.sequence[t].mean(0), expected, 0.02 * expected + 3.0 * noise) << "frame " << t;
+      EXPECT_LT(noise, 0.03 * brightest) << "frame " << t << ": the test says something";
+    }
   }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Ghosts,
+                         testing::Values(GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_AUTO),
+                         [](const auto& info) {
+                           return info.param == GRADUS_RECONSTRUCTION_L2            ? "L2"
+                                  : info.param == GRADUS_RECONSTRUCTION_REGULARIZED ? "Regularized"
+                                                                                    : "Auto";
+                         });
+
+// A lamp that goes off: its light is gone in that very frame (impulse lag 0).
+TEST_P(Ghosts, C5_ALampThatGoesOffLeavesNoLight) {
+  check(frames_of(6,
+                  [](int t, PathScene* scene) {
+                    add_box(scene, test::matte(Rgb(0.5f)));
+                    add_ceiling_light(scene, t < 3 ? 20.0f : 0.2f, 0.5f);
+                    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
+                  }),
+        whole);
+}
+
+std::vector<float> middle(const std::vector<float>& image) {
+  double sum = 0.0;
+  for (uint32_t y = 11; y < 21; ++y) {
+    for (uint32_t x = 11; x < 21; ++x) sum += image[y * kSide + x];
+  }
+  return {float(sum / 100.0)};
+}
+
+// What is in the middle of the picture goes aside, on and on.
+TEST_P(Ghosts, C5_AnObjectThatLeavesARegionLeavesNoTrace) {
+  check(frames_of(8,
+                  [](int t, PathScene* scene) {
+                    add_box(scene, test::matte(Rgb(0.5f)));
+                    add_ceiling_light(scene, 10.0f, 0.5f);
+                    const float x = std::clamp(0.25f * float(t - 1), 0.0f, 0.7f);
+                    scene->ball(Vec3(x, -0.2f, 0.3f), 0.4f, scene->material(test::matte(Rgb(0.8f, 0.1f, 0.1f))));
+                    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
+                  }),
+        middle);
 }
 
 // An object that is there in some frames only, and one whose triangles are others in every frame.
-TEST(C6_Sequence, ObjectsThatComeAndGoLeaveNoGhost) {
-  const Snapshots frames = frames_of(9, [](int t, PathScene* scene) {
+TEST_P(Ghosts, C6_ObjectsThatComeAndGoLeaveNoGhost) {
+  check(frames_of(9,
+                  [](int t, PathScene* scene) {
+                    add_box(scene, test::matte(Rgb(0.5f)));
+                    add_ceiling_light(scene, 10.0f, 0.5f);
+                    const uint64_t red = scene->material(test::matte(Rgb(0.8f, 0.1f, 0.1f)));
+                    if (t < 3 || t == 7) scene->ball(Vec3(0.0f, -0.2f, 0.3f), 0.5f, red);
+                    scene->ball(Vec3(-0.6f, -0.7f, 0.0f), 0.25f, red, 4 + t);
+                    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
+                  }),
+        middle);
+}
+
+// Under a light that changes a little, so that every frame is sampled: half as much as frames by themselves, and less.
+TEST(C4_Sequence, FlickersLessThanFramesByThemselves) {
+  const Snapshots frames = frames_of(16, [](int t, PathScene* scene) {
     add_box(scene, test::matte(Rgb(0.5f)));
-    add_ceiling_light(scene, 10.0f, 0.5f);
-    const uint64_t red = scene->material(test::matte(Rgb(0.8f, 0.1f, 0.1f)));
-    if (t < 3 || t == 7) scene->ball(Vec3(0.0f, -0.2f, 0.3f), 0.5f, red);
-    scene->ball(Vec3(-0.6f, -0.7f, 0.0f), 0.25f, red, 4 + t);
+    add_ceiling_light(scene, 10.0f + 0.02f * float(t), 0.5f);
     scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 0.9f);
   });
-  const auto middle = [](const std::vector<float>& image) {
+  const auto flicker = [](const std::vector<std::vector<float>>& pictures) {
     double sum = 0.0;
-    for (uint32_t y = 11; y < 21; ++y) {
-      for (uint32_t x = 11; x < 21; ++x) sum += image[y * kSide + x];
+    for (size_t t = 1; t < pictures.size(); ++t) {
+      for (size_t i = 0; i < pictures[t].size(); ++i) sum += std::fabs(pictures[t][i] - pictures[t - 1][i]);
     }
-    return std::vector<float>{float(sum / 100.0)};
+    return sum;
   };
-  const Compared c = compare(frames, middle);
-  for (size_t t = 0; t < frames.size(); ++t) {
-    const double noise = std::sqrt(c.sequence[t].variance_of_mean(0) + c.plain[t].variance_of_mean(0));
-    EXPECT_NEAR(c.sequence[t].mean(0), c.plain[t].mean(0), 0.02 * c.plain[t].mean(0) + 3.0 * noise) << "frame " << t;
-    EXPECT_LT(noise, 0.03 * c.plain[t].mean(0)) << "frame " << t << ": the test says something";
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_AUTO}) {
+    std::vector<std::vector<float>> stills;
+    for (size_t t = 0; t < frames.size(); ++t) stills.push_back(still_picture(frames[t], settings_of(int32_t(t), 5, 8, reconstruction)));
+    const double ratio = flicker(sequence_pictures(frames, 5, 8, reconstruction)) / flicker(stills);
+    EXPECT_LT(ratio, 0.5) << reconstruction;
+    std::printf("  reconstruction %u: flicker %.3f of that of frames by themselves\n", reconstruction, ratio);
   }
 }
 

@@ -241,7 +241,7 @@ TEST_P(Truths, A6_NoGlobalBias) {
 
 INSTANTIATE_TEST_SUITE_P(All, Truths,
                          ::testing::Combine(::testing::Values(Truth::Box, Truth::GlassBalls, Truth::RoughMetal, Truth::Textures,
-                                                              Truth::Environment, Truth::Sky, Truth::ManyLights),
+                                                              Truth::Environment, Truth::Sky, Truth::ManyLights, Truth::Motion),
                                             ::testing::Values(Estimator::Path, Estimator::Gradient)),
                          [](const ::testing::TestParamInfo<Case>& info) {
                            return std::string(kNames[int(std::get<0>(info.param))]) +
