@@ -91,12 +91,14 @@ def test_vectors_and_blur_are_read_together(blurred: bpy.types.Scene) -> None:
     obj = recording.add(recording.grid(1), "Deforming")
     moving_key_shape(obj, (0, 0, 1), {0: 0.0, 10: 1.0})
     key(obj, "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+    key(blurred.camera, "location", {0: (0, 0, 5), 10: (0, 0, 15)})
     blurred.view_layers[0].use_pass_vector = True
     recorded = export(blurred)
     (mesh,) = recorded.meshes.values()
     assert np.allclose(mesh.positions[:, 0, 2], [0.4, 0.5, 0.6], atol=1e-5)
     assert np.allclose(mesh.shutter[:, 0, 2], [0.475, 0.5, 0.525], atol=1e-5)
     assert np.allclose([recorded.instances[name][0][3][0] for name in ("previous", "next")], [4.0, 6.0], atol=1e-5)
+    assert np.allclose([recorded.camera.matrix_previous[14], recorded.camera.matrix_next[14]], [9.0, 11.0], atol=1e-4)
 
 
 def test_a_mesh_that_changes_its_topology_stands_still_with_one_warning(blurred: bpy.types.Scene) -> None:

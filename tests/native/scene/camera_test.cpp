@@ -151,6 +151,37 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
   EXPECT_TRUE(result.passed) << result.text;
 }
 
+// At each moment its rays are those of a camera that rests where it is then, with the window that it has then.
+TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
+  for (const bool orthographic : {false, true}) {
+    BlenderCamera blender;
+    blender.orthographic = orthographic;
+    GradusCamera moving = make_camera(blender, 640, 360, kPose);
+    std::vector<Mat4> matrices;
+    std::vector<float> windows;
+    const auto at_rest = [&](float time) {
+      GradusCamera camera = make_camera(blender, 640, 360, translation(Vec3(0.5f * time, -time, 2.0f * time)) * kPose);
+      for (float& value : camera.window) value *= 1.0f + time;
+      return camera;
+    };
+    for (const float time : {0.0f, 0.5f, 1.0f}) {
+      const GradusCamera key = at_rest(time);
+      matrices.push_back(translation(Vec3(0.5f * time, -time, 2.0f * time)) * kPose);
+      windows.insert(windows.end(), key.window, key.window + 4);
+    }
+    moving.shutter_key_count = 3;
+    moving.shutter_matrices = &matrices[0][0][0];
+    moving.shutter_windows = windows.data();
+    const Camera camera(moving, 640, 360);
+    for (const float time : {0.0f, 0.2f, 0.5f, 0.9f, 1.0f}) {
+      const Ray ray = camera.ray({Vec2(500, 70), Vec2(0.0f), time}), expected = Camera(at_rest(time), 640, 360).ray({Vec2(500, 70)});
+      EXPECT_LT(glm::length(ray.origin - expected.origin), 1e-5f) << time;
+      EXPECT_LT(glm::length(ray.direction - expected.direction), 1e-5f) << time;
+      EXPECT_EQ(ray.time, time);
+    }
+  }
+}
+
 TEST(A3_LensSampling, RoundAndPolygonal) {
   expect_uniform_lens(0, 0.0f, 1.0f);
   expect_uniform_lens(3, 0.3f, 1.0f);

@@ -85,6 +85,20 @@ TEST(Motion, RaysThatLeaveDoNotMeetTheirSurfaceAgain) {
   EXPECT_GT(tried, 20000);
 }
 
+TEST(Motion, RaysFromASurfaceAreAtItsTime) {
+  const auto snapshot = moving_spheres();
+  std::mt19937 random(6);
+  for (int i = 0; i < 100; ++i) {
+    Hit hit, other;
+    if (!snapshot->intersect(random_ray(random), GRADUS_VISIBLE_CAMERA, &hit)) continue;
+    if (!snapshot->intersect(random_ray(random), GRADUS_VISIBLE_CAMERA, &other)) continue;
+    other.time = hit.time;
+    const SurfacePoint from = snapshot->surface_point(hit), to = snapshot->surface_point(other);
+    EXPECT_EQ(spawn_ray(from, random_direction(random)).time, hit.time);
+    EXPECT_EQ(spawn_ray_to(from, to).time, hit.time);
+  }
+}
+
 TEST(Motion, PacketsHaveTheTimesOfTheirRays) {
   const auto snapshot = moving_spheres();
   std::mt19937 random(5);

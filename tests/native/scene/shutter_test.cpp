@@ -54,6 +54,14 @@ TEST(Shutter, WithoutACurveAllMomentsAreAlike) {
   EXPECT_FLOAT_EQ(shutter.frame_time(0.5f), 0.25f);
 }
 
+// Links and vectors are of the frame itself, wherever in the exposure it lies.
+TEST(Shutter, KnowsWhenTheFrameIs) {
+  EXPECT_FLOAT_EQ(make_shutter(-0.25f, 0.25f, {}).time_of_frame(), 0.5f);
+  EXPECT_FLOAT_EQ(make_shutter(-0.5f, 0.0f, {}).time_of_frame(), 1.0f);
+  EXPECT_FLOAT_EQ(make_shutter(-0.1f, 0.4f, {}).time_of_frame(), 0.2f);
+  EXPECT_EQ(make_shutter(0.0f, 0.0f, {}).time_of_frame(), 0.0f);
+}
+
 TEST(Shutter, DoesNotOpenForWhatIsBroken) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   EXPECT_FALSE(make_shutter(0.0f, 0.0f, {}).opens());

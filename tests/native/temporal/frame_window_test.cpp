@@ -120,6 +120,16 @@ class FiveFrames : public testing::Test {
   std::vector<std::shared_ptr<Frame>> base_, replay_;
 };
 
+// All samples of a pixel count alike, whichever half of the frame they are of.
+TEST_F(FiveFrames, SharesAreThoseOfTheSamples) {
+  const Frame &base = *base_[1], &replay = *replay_[1];
+  const TemporalFrame frame = make_temporal_frame(base, replay);
+  for (size_t i = 0; i < frame.replay_share.size(); ++i) {
+    const uint32_t own = base.count[0][i] + base.count[1][i], other = replay.count[0][i] + replay.count[1][i];
+    EXPECT_NEAR(frame.replay_share[i] * float(own + other), float(other), 1e-5f) << own << ' ' << other;
+  }
+}
+
 // As the bits of rows: absent differences are no numbers.
 TEST_F(FiveFrames, SpooledRowsAreThoseOfTheFramesInMemory) {
   std::vector<std::shared_ptr<const TemporalFrame>> frames;

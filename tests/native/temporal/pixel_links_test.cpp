@@ -98,6 +98,15 @@ TEST_F(LinkedFrames, WhatVanishesOrBecomesAnotherMeshHasNoPartner) {
   }
 }
 
+// The wall behind it leads to where it is now, and nothing leads back.
+TEST_F(LinkedFrames, WhatAppearsHasNoPartner) {
+  const CentreView* there = view();
+  scene_.scene.remove_last();
+  const std::vector<int32_t> found = links(view(), there);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) EXPECT_EQ(found[size_t(pixel(x, y))], in_square(x, y) ? kNoLink : pixel(x, y));
+}
+
 // Of several pixels that come to lie in one, the nearest: a square that shrinks to half its size.
 TEST_F(LinkedFrames, ShrinkingIsOneToOne) {
   const CentreView* from = view();
@@ -109,7 +118,18 @@ TEST_F(LinkedFrames, ShrinkingIsOneToOne) {
   EXPECT_EQ(linked, 16);
 }
 
-TEST_F(LinkedFrames, ACutIsNoMotion) {
+// A step of one pixel: what it covers is within a pixel of where the square came from, and leads to the same pixels.
+TEST_F(LinkedFrames, OfTwoThatMeetInAPixelTheNearestHasIt) {
+  const CentreView* from = view();
+  scene_.scene.move(1, translation(Vec3(kPixel, 0, 0)));
+  const std::vector<int32_t> found = links(from, view());
+  for (int y = 12; y < 20; ++y) {
+    for (int x = 12; x < 20; ++x) EXPECT_EQ(found[size_t(pixel(x, y))], pixel(x + 1, y)) << x << ' ' << y;
+    EXPECT_EQ(found[size_t(pixel(20, y))], kNoLink) << "the wall that it covers";
+  }
+}
+
+TEST_F(LinkedFrames, C8_ACutIsNoMotion) {
   const GradusCamera camera = view()->snapshot->camera;
   GradusCamera turned = camera, zoomed = camera, other = camera;
   turned.matrix[8] = 0.6f, turned.matrix[10] = 0.8f;

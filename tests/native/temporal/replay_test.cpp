@@ -1,5 +1,6 @@
 // Temporal offset frames: the random numbers of one frame, replayed in the next (contract 1.1, 4.2).
 #include <cmath>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -21,8 +22,10 @@ GradusSettings settings_of(int32_t frame, uint32_t seed = 0) {
   return settings;
 }
 
-Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSources* sources = nullptr) {
-  Frame frame = make_test_frame(context.settings, true);
+const Region kWhole{0, 0, int32_t(kSize), int32_t(kSize)};
+
+Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSources* sources = nullptr, const Region& region = kWhole) {
+  Frame frame(kSize, kSize, region, 3, 1, true);
   WorkUnit unit;
   unit.tile = frame.region;
   unit.count = samples;
@@ -31,8 +34,7 @@ Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSo
   return frame;
 }
 
-SampleSources sources_of(const IntegratorContext& before, const IntegratorContext& now) {
-  const Region region{0, 0, int32_t(kSize), int32_t(kSize)};
+SampleSources sources_of(const IntegratorContext& before, const IntegratorContext& now, const Region& region = kWhole) {
   const std::vector<int32_t> links =
       link_pixels(view_centres(*before.snapshot, before.camera, region), view_centres(*now.snapshot, now.camera, region));
   return {before.settings.frame, inverse_links(links)};
@@ -55,6 +57,46 @@ TEST_P(Replays, OfAStillSceneHaveTheBitsOfTheFrameBefore) {
 
 INSTANTIATE_TEST_SUITE_P(All, Replays, testing::Values(Scenario::DiffuseArea, Scenario::Glass, Scenario::Transparent, Scenario::World),
                          [](const auto& info) { return std::string(name_of(info.param)); });
+
+// Moments of the shutter and points of the lens are random numbers like others.
+TEST(Replay, SeesWhatWasSeenAtItsMomentsThroughTheLens) {
+  PathScene scene;
+  build(Scenario::Moving, &scene);
+  scene.camera_desc.aperture_radius = 0.1f;
+  const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
+  SampleSources sources{7, std::vector<int32_t>(size_t(kSize) * kSize)};
+  std::iota(sources.pixel.begin(), sources.pixel.end(), 0);
+  const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources);
+  for (int half = 0; half < kHalves; ++half) EXPECT_TRUE(base.components[0].primal[half] == offset.components[0].primal[half]);
+}
+
+// Pixels of a region are counted from its corner, and their random numbers from that of the film.
+TEST(Replay, OfABorderTakesTheNumbersOfItsOwnPixels) {
+  PathScene scene;
+  build(Scenario::DiffuseArea, &scene);
+  const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
+  const Region border{9, 5, 31, 22};
+  SampleSources sources = sources_of(before, now, border);
+  const Frame base = sampled(before, 4, nullptr, border), offset = sampled(now, 4, &sources, border);
+  for (int half = 0; half < kHalves; ++half) EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
+}
+
+// What has no partner is sampled by both halves of its frame: the same numbers twice would tell nothing new.
+TEST(Replay, HolesHaveNumbersOfTheirOwn) {
+  PathScene scene;
+  build(Scenario::DiffuseArea, &scene);
+  const IntegratorContext now = scene.context(settings_of(8));
+  const SampleSources holes{7, std::vector<int32_t>(size_t(kSize) * kSize, kNoLink)};
+  const Frame own = sampled(now, 4), offset = sampled(now, 4, &holes);
+  size_t lit = 0, alike = 0;
+  for (size_t i = 0; i < holes.pixel.size(); ++i) {
+    const Radiance &a = own.components[0].primal[0][i], &b = offset.components[0].primal[0][i];
+    lit += a.x > 0.0f;
+    alike += a.x > 0.0f && a == b;
+  }
+  EXPECT_GT(lit, holes.pixel.size() / 2);
+  EXPECT_LT(alike, lit / 10);  // the lamp itself
+}
 
 // A camera that moves aside by 5.3 pixels.
 struct Pan {

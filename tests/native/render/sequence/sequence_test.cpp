@@ -146,6 +146,24 @@ TEST(C7_Sequence, PartsOfAJobMakeTheFramesOfTheWhole) {
   }
 }
 
+// Windows lie on a grid of frame numbers, whatever frame a job begins with: with its neighbours in the store, its pictures are those of the
+// whole.
+TEST(C7_Sequence, APartBesideStoredFramesHasThePicturesOfTheWhole) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const std::vector<Delivered> whole = render(&pan, make_sequence(1, 14, folder.path()).get(), 1, 14);
+  const std::vector<Delivered> part = render(&pan, make_sequence(7, 9, folder.path()).get(), 7, 9);
+  for (size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i].combined, whole[6 + i].combined) << 7 + i;
+}
+
+// Its first frame follows none, and its first windows are shorter: the raw frames that follow are those of the whole.
+TEST(C7_Sequence, WithoutAStoreTheRawFramesOfAPartAreThoseOfTheWhole) {
+  Pan pan(1.3f);
+  const std::vector<Delivered> whole = render(&pan, make_sequence(1, 8).get(), 1, 8);
+  const std::vector<Delivered> part = render(&pan, make_sequence(5, 8).get(), 5, 8);
+  for (size_t i = 1; i < part.size(); ++i) EXPECT_EQ(part[i].noisy, whole[4 + i].noisy) << 5 + i;
+}
+
 // What AUTO came to is in the file, and it is AUTO that asks for it again.
 TEST(C7_Sequence, FramesOfAutomaticSettingsAreFoundAgain) {
   Pan pan(1.3f);
