@@ -1,6 +1,6 @@
 """Shows that the tests catch the seeded faults (M4): make faults.
 
-    faults.py [--only PART_OF_A_NAME_OR_FILE] [--table FILE]
+    faults.py [--only PART_OF_A_NAME_OR_FILE] [--new] [--table FILE]
 
 Each fault is put into a copy of the sources in build-faults/, built, and the tests that are named with it must fail. Before, the same tests
 must pass without any. The table goes to docs/faults.md.
@@ -19,11 +19,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from fault import Fault, Test
+from motion_faults import MOTION
 from reconstruction_faults import RECONSTRUCTION
 from renderer_faults import RENDERER
+from sequence_faults import SEQUENCES
 
 ROOT = Path(__file__).resolve().parents[2]
-FAULTS = (*RENDERER, *RECONSTRUCTION)
+FAULTS = (*RENDERER, *RECONSTRUCTION, *MOTION, *SEQUENCES)
 COPY = ROOT / "build-faults"
 LIMIT = 200  # seconds for one choice of tests; one that does not end has caught its fault, too
 
@@ -138,9 +140,13 @@ def write(table: Path, rows: dict[str, str]) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="faults whose name or file holds this; the others' rows of the table stay as they are")
+    parser.add_argument("--new", action="store_true", help="faults that the table has no row of")
     parser.add_argument("--table", type=Path, default=ROOT / "docs" / "faults.md", help="where the table goes")
     options = parser.parse_args()
     faults = [fault for fault in FAULTS if options.only in fault.name or options.only in fault.file]
+    rows = rows_of(options.table)
+    if options.new:
+        faults = [fault for fault in faults if key(fault) not in rows]
     copy_sources()
     require_places(faults)
 
@@ -151,7 +157,6 @@ def main() -> int:
         sys.exit("these fail without a fault: " + "; ".join(broken))
     print(f"{len(tests)} choices of tests pass without a fault", flush=True)
 
-    rows = rows_of(options.table)
     for fault in faults:
         with seeded(fault):
             build(fault.tests)

@@ -1,0 +1,216 @@
+"""Faults in motion blur, cameras and vectors: moments, keys, eyes and lenses."""
+
+from __future__ import annotations
+
+from fault import Fault, Test, native, statistics
+
+CAMERA = "native/src/scene/camera.cpp"
+EMITTERS = "native/src/scene/emitters.cpp"
+MESH = "native/src/scene/mesh.cpp"
+OFFSET_RAYS = "native/src/integrator/gradient/offset_rays.cpp"
+SEGMENT = "native/src/path/segment.cpp"
+SHUTTER = "native/src/scene/shutter.cpp"
+STEREO = "native/src/scene/spherical_stereo.cpp"
+EXPORTED_MOTION = "addon/gradus/export/motion.py"
+EXPORTED_SHUTTER = "addon/gradus/export/shutter.py"
+EXPORTER = "addon/gradus/export/exporter.py"
+
+MOVED = "camera_sample_.moved(Vec2(kOffsetX[k], kOffsetY[k]))"
+MOVED_FILM = "camera_sample_.film + Vec2(kOffsetX[k], kOffsetY[k])"
+
+
+def blur(choice: str) -> Test:
+    return Test("tests/addon/motion_blur_test.py", choice)
+
+
+OF_MOTION = (native("Motion.*"),)
+OF_VECTORS = (blur("vectors_and_blur"),)
+
+MOMENT = "moment lost"
+SHUTTER_SETTINGS = "shutter ignored"
+KEYS = "keys mixed up"
+CAMERAS = "wrong camera"
+VECTORS = "vectors of another moment"
+
+MOTION = (
+    Fault(
+        18,
+        MOMENT,
+        "shifted paths see the opening of the shutter",
+        OFFSET_RAYS,
+        MOVED,
+        f"{{{MOVED_FILM}, camera_sample_.lens}}",
+        (statistics("*/Scenarios.B7_GradientsAreDifferencesOfTheImage/Moving"),),
+    ),
+    Fault(
+        18,
+        MOMENT,
+        "shifted paths go through the middle of the lens",
+        OFFSET_RAYS,
+        MOVED,
+        f"{{{MOVED_FILM}, Vec2(0.0f), camera_sample_.time}}",
+        (statistics("B7_Lens.DifferencesAreThoseOfTheBlurredImage"),),
+    ),
+    Fault(
+        18,
+        MOMENT,
+        "rays that leave a surface forget when they are",
+        SEGMENT,
+        "direction, distance, from.hit.time}",
+        "direction, distance, 0.0f}",
+        (native("Motion.RaysThatLeaveDoNotMeetTheirSurfaceAgain"),),
+    ),
+    Fault(
+        18,
+        MOMENT,
+        "shifted paths meet their bases at the opening of the shutter",
+        SEGMENT,
+        "direction, from.hit.time);",
+        "direction, 0.0f);",
+        (native("Motion.RaysFromASurfaceAreAtItsTime"),),
+    ),
+    Fault(
+        18,
+        MOMENT,
+        "light is looked for at the opening of the shutter",
+        EMITTERS,
+        "return ray_between(start, target, view.direction, from.hit.time);",
+        "return ray_between(start, target, view.direction, 0.0f);",
+        (native("MovingShadow.LightIsLookedForAtTheMomentOfThePath"),),
+    ),
+    Fault(
+        19,
+        SHUTTER_SETTINGS,
+        "its curve",
+        SHUTTER,
+        "if (cumulative_.empty()) return u;",
+        "if (cumulative_.empty() || u >= 0.0f) return u;",
+        (native("Shutter.MomentsAreDistributedAsTheCurveIs"),),
+    ),
+    Fault(
+        19,
+        SHUTTER_SETTINGS,
+        "where in the exposure the frame is",
+        SHUTTER,
+        "std::clamp(-open_ / (close_ - open_), 0.0f, 1.0f)",
+        "0.5f",
+        (native("Shutter.KnowsWhenTheFrameIs"),),
+    ),
+    Fault(
+        19,
+        SHUTTER_SETTINGS,
+        "the exposure ends where it should begin",
+        EXPORTED_SHUTTER,
+        '{"START": 0.0, "END": -length}',
+        '{"START": -length, "END": 0.0}',
+        (blur("exposure"),),
+    ),
+    Fault(
+        19,
+        SHUTTER_SETTINGS,
+        "steps of an object",
+        EXPORTED_SHUTTER,
+        "Blur(min(2**steps + 1, MAX_KEYS), deform)",
+        "Blur(3, deform)",
+        (blur("steps_and_switches"),),
+    ),
+    Fault(
+        20,
+        KEYS,
+        "a mesh deforms backwards",
+        EXPORTED_MOTION,
+        "return None if found is None else _joined(found)",
+        "return None if found is None else _joined(found[::-1])",
+        (blur("deforming_mesh_has"),),
+    ),
+    Fault(
+        20,
+        KEYS,
+        "velocities are metres per frame",
+        EXPORTED_MOTION,
+        "np.float32(time / frames_per_second)",
+        "np.float32(time)",
+        (blur("velocities_blur"),),
+    ),
+    Fault(
+        20,
+        KEYS,
+        "a deformation is shaded where it lies, at its nearest key",
+        MESH,
+        "p[k] = a[v] * (1.0f - place.share) + b[v] * place.share;",
+        "p[k] = place.share < 0.5f ? a[v] : b[v];",
+        (native("Motion.HitsLieOnTheRayAtItsTime"),),
+    ),
+    Fault(
+        20,
+        KEYS,
+        "normals do not turn",
+        MESH,
+        "k < 3 && mesh.shutter_keys > 0; ++k",
+        "k < 3 && mesh.shutter_keys > 99; ++k",
+        (native("Motion.NormalsTurnWithADeformation"),),
+    ),
+    Fault(
+        21,
+        CAMERAS,
+        "it rests while the shutter is open",
+        CAMERA,
+        "const Mat4 m = keys_.at(time);",
+        "const Mat4 m = keys_.at(0.0f * time);",
+        (native("Camera.MovesAndZoomsWhileTheShutterIsOpen"),),
+    ),
+    Fault(
+        21,
+        CAMERAS,
+        "it does not zoom while the shutter is open",
+        CAMERA,
+        "a[i] * (1.0f - place.share) + b[i] * place.share;",
+        "a[i] + 0.0f * b[i];",
+        (native("Camera.MovesAndZoomsWhileTheShutterIsOpen"),),
+    ),
+    Fault(
+        21,
+        CAMERAS,
+        "the lens of a panorama lies across its axis, not across each direction",
+        CAMERA,
+        "panorama_lens_axes(desc_, direction, &u, &v);",
+        "panorama_lens_axes(desc_, Vec3(0, 0, -1), &u, &v);",
+        (native("*Panorama.RaysOfAFilmPointMeetAtTheDistanceOfFocus*"),),
+    ),
+    Fault(
+        21,
+        CAMERAS,
+        "the eyes are exchanged",
+        STEREO,
+        "const Vec3 side = glm::cross(*direction, up);",
+        "const Vec3 side = glm::cross(up, *direction);",
+        (native("SphericalStereo.RaysLeaveTheEyesCircle"),),
+    ),
+    Fault(
+        22,
+        VECTORS,
+        "those of instances, where blur is read, too",
+        EXPORTER,
+        "around = (moments[time] for time in motion.AROUND)",
+        "around = (moments[time] for time in sorted(moments)[:2])",
+        OF_VECTORS,
+    ),
+    Fault(
+        22,
+        VECTORS,
+        "that of the camera, where blur is read, too",
+        EXPORTER,
+        "around = [moments[time].camera for time in motion.AROUND]",
+        "around = [moments[time].camera for time in sorted(moments)[:2]]",
+        OF_VECTORS,
+    ),
+    Fault(
+        22,
+        VECTORS,
+        "those of meshes, where blur is read, too",
+        EXPORTED_MOTION,
+        "found = [moments[time].positions.get(key) for time in AROUND]",
+        "found = [moments[time].positions.get(key) for time in sorted(moments)[:2]]",
+        OF_VECTORS,
+    ),
+)

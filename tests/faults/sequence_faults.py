@@ -1,0 +1,386 @@
+"""Faults in animations: replays, links, differences over time, windows, stored frames, and what Blender gets of them."""
+
+from __future__ import annotations
+
+from fault import Fault, Test, native
+
+SAMPLING = "native/src/render/sequence/frame_sampling.cpp"
+SEQUENCE = "native/src/render/sequence/sequence.cpp"
+FILE_WRITER = "native/src/frame/file_writer.cpp"
+PIXELS = "native/src/integrator/pixel_loop.cpp"
+LINKS = "native/src/temporal/pixel_links.cpp"
+TEMPORAL_FRAME = "native/src/temporal/temporal_frame.cpp"
+FRAME_WINDOW = "native/src/temporal/frame_window.cpp"
+SPOOLED = "native/src/temporal/spooled_window.cpp"
+MOTION = "native/src/motion/snapshot_motion.cpp"
+GRID = "native/src/reconstruct/space_time/window_grid.cpp"
+BLEND = "native/src/reconstruct/space_time/window_blend.cpp"
+REGULARIZED = "native/src/reconstruct/space_time/regularized_windows.cpp"
+TRACKS = "native/src/reconstruct/space_time/solve_tracks.cpp"
+ANIMATION = "addon/gradus/animation.py"
+
+OF_REPLAYS = (native("*Replays.OfAStillSceneHaveTheBitsOfTheFrameBefore*"),)
+OF_SHARES = (native("FiveFrames.SharesAreThoseOfTheSamples"),)
+OF_ROWS = (native("TwoFrames.RowsInTimeAreDifferencesAlongTheLinks"),)
+OF_REGULARIZED = (native("C5_RegularizedWindow.ALampThatIsSwitchedShowsAtOnce"),)
+OF_SETTINGS = (native("C7_Sequence.FramesOfOtherSettingsOrScenesAreRefusedByName"),)
+
+
+def animation(choice: str) -> Test:
+    return Test("tests/addon/temporal_animation_test.py", choice)
+
+
+REPLAY = "wrong numbers replayed"
+LINK = "wrong links"
+CUT = "cut not found"
+DIFFERENCE = "wrong difference over time"
+HALVES = "halves of a frame mixed"
+WINDOWS = "wrong windows"
+STORE = "wrong stored frame"
+CHANGE = "wrong change over time"
+HOST = "wrong frame in the host"
+
+SEQUENCES = (
+    Fault(
+        23,
+        REPLAY,
+        "those of the frame's own seed",
+        PIXELS,
+        "frame.region.y0 + pixel / width, unit.sources->stream_frame}",
+        "frame.region.y0 + pixel / width, context.settings.frame}",
+        OF_REPLAYS,
+    ),
+    Fault(
+        23,
+        REPLAY,
+        "cells have the jitter of the frame's own seed",
+        PIXELS,
+        "unit.sources != nullptr ? unit.sources->stream_frame : context.settings.frame",
+        "unit.sources != nullptr ? context.settings.frame : context.settings.frame",
+        OF_REPLAYS,
+    ),
+    Fault(
+        23,
+        REPLAY,
+        "those of the same pixel, whatever moves",
+        PIXELS,
+        "{StreamKind::Pixel, frame.region.x0 + pixel % width, frame.region.y0 + pixel / width,",
+        "{StreamKind::Pixel, pixel < 0 ? width : x, y,",
+        (native("Replay.MakesDifferencesOverTimeQuieter"),),
+    ),
+    Fault(
+        23,
+        REPLAY,
+        "pixels of a border are counted from the film's corner",
+        PIXELS,
+        "frame.region.x0 + pixel % width",
+        "pixel % width",
+        (native("Replay.OfABorderTakesTheNumbersOfItsOwnPixels"),),
+    ),
+    Fault(
+        23,
+        REPLAY,
+        "a hole is not tagged: it has the frame's own numbers twice",
+        PIXELS,
+        "return {StreamKind::Hole, x, y, context.settings.frame};",
+        "return {StreamKind::Pixel, x, y, context.settings.frame};",
+        (native("Replay.HolesHaveNumbersOfTheirOwn"),),
+    ),
+    Fault(
+        23,
+        REPLAY,
+        "as many as the frame's mean, not as the frame before has taken",
+        SAMPLING,
+        "if (source != kNoLink) counts[i] = before->counts[size_t(source)];",
+        "if (source < kNoLink) counts[i] = before->counts[size_t(source)];",
+        (native("A8_Sequence.ReplaysTakeTheCountsOfWhatTheyReplay"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "two pixels lead to one",
+        LINKS,
+        "    if (!nearest) links[i] = kNoLink;\n",
+        "",
+        (native("LinkedFrames.ShrinkingIsOneToOne"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "the farthest of two has the pixel",
+        LINKS,
+        "distances[i] < distances[size_t(other)]",
+        "distances[i] > distances[size_t(other)]",
+        (native("LinkedFrames.OfTwoThatMeetInAPixelTheNearestHasIt"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "they need not lead back",
+        LINKS,
+        "if (next == kNoLink || !returns(back, from.region, i, next)) return;",
+        "if (next == kNoLink || (i > links.size() && !returns(back, from.region, i, next))) return;",
+        (native("LinkedFrames.WhatAppearsHasNoPartner"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "a mesh of other triangles is the same",
+        MOTION,
+        "if (a.topology_hash == b.topology_hash)",
+        "if (a.topology_hash == b.topology_hash || true)",
+        (native("LinkedFrames.WhatVanishesOrBecomesAnotherMeshHasNoPartner"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "objects are counted, not known",
+        MOTION,
+        "instance_[i] = found->second;",
+        "instance_[i] = uint32_t(std::min(i, to.instances.size() - 1));",
+        (animation("c6_what_stays"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "from the next frame to this one",
+        TEMPORAL_FRAME,
+        "follows && !next.repeats ? inverse_links(replayed.pixel) : links",
+        "follows && !next.repeats ? replayed.pixel : links",
+        (native("FiveFrames.LinksAreThoseThatTheNextFrameHasFollowed"),),
+    ),
+    Fault(
+        25,
+        CUT,
+        "all frames are linked",
+        SAMPLING,
+        " && !is_cut(before->snapshot->camera, input_.snapshot->camera)",
+        "",
+        (native("C8_Sequence.ACutSeparatesWhatLiesBeforeAndAfter"),),
+    ),
+    Fault(
+        25,
+        CUT,
+        "a zoom is none",
+        LINKS,
+        "zoom < kCutZoom && zoom > 1.0f / kCutZoom",
+        "zoom > 0.0f * kCutZoom",
+        (native("LinkedFrames.C8_ACutIsNoMotion"),),
+    ),
+    Fault(
+        26,
+        DIFFERENCE,
+        "with the wrong sign",
+        FRAME_WINDOW,
+        "next[size_t(link) * channels + c] - base[i * channels + c]",
+        "base[i * channels + c] - next[size_t(link) * channels + c]",
+        OF_ROWS,
+    ),
+    Fault(
+        26,
+        DIFFERENCE,
+        "of the next frame's own samples, which are independent",
+        FRAME_WINDOW,
+        "plane_of(frames_[size_t(t) + 1]->replay.*part, kind)",
+        "plane_of(frames_[size_t(t) + 1]->base.*part, kind)",
+        OF_ROWS,
+    ),
+    Fault(
+        26,
+        DIFFERENCE,
+        "of the pixel itself, not along its link",
+        FRAME_WINDOW,
+        "next[size_t(link) * channels + c]",
+        "next[i * channels + c]",
+        OF_ROWS,
+    ),
+    Fault(
+        26,
+        DIFFERENCE,
+        "there is none between frames that are alike",
+        TEMPORAL_FRAME,
+        "frame->repeats = own->frame_number == stream;",
+        "frame->repeats = own->frame_number == stream + 1;",
+        (native("FiveFrames.LinksAreThoseThatTheNextFrameHasFollowed"),),
+    ),
+    Fault(
+        27,
+        HALVES,
+        "base and offset are exchanged",
+        SEQUENCE,
+        "part(FramePart::kBase), part(FramePart::kOffset)",
+        "part(FramePart::kOffset), part(FramePart::kBase)",
+        (native("Sequence.GradientTLeadsToTheNextFrame"),),
+    ),
+    Fault(
+        27,
+        HALVES,
+        "the base alone, in windows",
+        FRAME_WINDOW,
+        "return base + share * (replay - base);",
+        "return base + 0.0f * share * (replay - base);",
+        (native("TwoFrames.RowsInSpaceAreMeansOverAllSamples"),),
+    ),
+    Fault(
+        27,
+        HALVES,
+        "the base alone, in passes",
+        SEQUENCE,
+        "  add_sums(frame.get(), *offset);\n",
+        "",
+        (native("C3_Sequence.DeliversEveryFrameFromFirstToLast"),),
+    ),
+    Fault(
+        27,
+        HALVES,
+        "a half each, whatever their samples",
+        TEMPORAL_FRAME,
+        "own + other > 0.0f ? other / (own + other) : 0.0f",
+        "own + other > 0.0f ? 0.5f : 0.0f",
+        OF_SHARES,
+    ),
+    Fault(
+        28,
+        WINDOWS,
+        "their shares do not add up to 1",
+        GRID,
+        "begins ? s * s : 1.0f - s * s",
+        "begins ? s * s : 1.0f - s",
+        (native("B2_Windows.SharesOfAFrameAddUpToOne"),),
+    ),
+    Fault(
+        28,
+        WINDOWS,
+        "the grid begins with the job",
+        SEQUENCE,
+        "return int(from_first / step + (first >= 0 ? first / step : -((step - 1 - first) / step)));",
+        "return int(from_first / step + 0 * first);",
+        (native("C7_Sequence.APartBesideStoredFramesHasThePicturesOfTheWhole"),),
+    ),
+    Fault(
+        28,
+        WINDOWS,
+        "the last one has the frame",
+        BLEND,
+        "gradus::add(begun->second.image, &picture.image);",
+        "scale(&picture.image, 1.0f / share);",
+        (native("B2_Windows.OverlapsAreBlended"),),
+    ),
+    Fault(
+        28,
+        WINDOWS,
+        "halves' differences are the values",
+        SPOOLED,
+        "rows.read_half_differences(kind, 0, y, row.data());",
+        "rows.read_row(kind, 0, y, row.data());",
+        (native("FiveFrames.SpooledRowsAreThoseOfTheFramesInMemory"),),
+    ),
+    Fault(
+        29,
+        STORE,
+        "of other settings",
+        SAMPLING,
+        'if (sampling_key(stored.settings) != sampling_key(settings)) refuse("was sampled with other settings");',
+        'if (sampling_key(stored.settings) == 0) refuse("was sampled with other settings");',
+        OF_SETTINGS,
+    ),
+    Fault(
+        29,
+        STORE,
+        "of another scene",
+        SAMPLING,
+        "if (stored.scene_key != scene_key)",
+        "if (stored.scene_key != scene_key && scene_key == 0)",
+        OF_SETTINGS,
+    ),
+    Fault(
+        29,
+        STORE,
+        "of another job, beside this one's",
+        SEQUENCE,
+        "return are_alike(other->settings, like.settings) && other->channels == like.channels;",
+        "return other->channels == like.channels;",
+        (native("C7_Sequence.NeighboursOfAnotherJobAreLeftOut"),),
+    ),
+    Fault(
+        29,
+        STORE,
+        "with too few samples",
+        SAMPLING,
+        "if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase)) input.resumed = stored_base_;",
+        "if (stored_base_ && input.settings.samples == 0) input.resumed = stored_base_;",
+        (native("C7_Sequence.MoreSamplesAreAddedToStoredFrames"),),
+    ),
+    Fault(
+        29,
+        STORE,
+        "its part file stays",
+        FILE_WRITER,
+        "rename(temporary_.c_str(), path_.c_str()) != 0",
+        "(unlink(path_.c_str()), link(temporary_.c_str(), path_.c_str())) != 0",
+        (native("C7_Sequence.TwoJobsOnTheSameFramesMakeTheSameBits"),),
+    ),
+    Fault(
+        29,
+        STORE,
+        "it has its name before it is whole",
+        FILE_WRITER,
+        "  temporary_ = part.name;\n",
+        "  rename(part.name.c_str(), path.c_str());\n  temporary_ = path;\n",
+        (native("F6_Store.KilledAtAnyMomentLeavesAWholeFileOrNone"),),
+    ),
+    Fault(
+        30,
+        CHANGE,
+        "that of the frame before",
+        REGULARIZED,
+        "estimate.change = regress_change(source, t, features,",
+        "estimate.change = regress_change(source, std::max(t - 1, 0), features,",
+        OF_REGULARIZED,
+    ),
+    Fault(
+        30,
+        CHANGE,
+        "its links alone, and no change",
+        TRACKS,
+        "return channel < step.difference.channels() ? step.difference.row(y, channel) : zeros.data();",
+        "return channel < 0 ? step.difference.row(y, channel) : zeros.data();",
+        (native("B2_Tracks.EqualTheDenseSolution"), *OF_REGULARIZED),
+    ),
+    Fault(
+        30,
+        CHANGE,
+        "what pictures say against it does not count",
+        REGULARIZED,
+        "if (excess > 0.0f)",
+        "if (excess < 0.0f)",
+        (native("C5_RegularizedWindow.AChangeThatNobodySampledLeavesNoGhost"),),
+    ),
+    Fault(
+        31,
+        HOST,
+        "a fault ends the frames before it, too",
+        ANIMATION,
+        "if self._fault is not None and self._fault[0] <= frame:",
+        "if self._fault is not None:",
+        (animation("i2_a_fault_waits and raise_in_export"),),
+    ),
+    Fault(
+        31,
+        HOST,
+        "the scene stays at the last frame that was sampled",
+        ANIMATION,
+        "    finally:\n        show(own)\n",
+        "    finally:\n        pass\n",
+        (animation("files_of_frames_are_saved"),),
+    ),
+    Fault(
+        31,
+        HOST,
+        "parts of a job are not linked",
+        ANIMATION,
+        "                if self._has_folder and begins:\n",
+        "                if self._has_folder and not begins:\n",
+        (animation("c7_parts"),),
+    ),
+)
