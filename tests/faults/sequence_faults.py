@@ -307,8 +307,8 @@ SEQUENCES = (
         STORE,
         "with too few samples",
         SAMPLING,
-        "if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase)) input.resumed = stored_base_;",
-        "if (stored_base_ && input.settings.samples == 0) input.resumed = stored_base_;",
+        "if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase, input_.settings))",
+        "if (stored_base_ && input.settings.samples == 0)",
         (native("C7_Sequence.MoreSamplesAreAddedToStoredFrames"),),
     ),
     Fault(
