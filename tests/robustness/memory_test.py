@@ -1,11 +1,4 @@
-"""J1: late frames need the memory of early ones. 400 frames with every change, 1000 in the full run. J2: so do those whose meshes and
-objects change, and those that come after many that were cancelled.
-
-What is allocated is counted, which Blender's allocator (jemalloc) tells: the same within 0.3 MB. Resident memory says less: every render
-has a thread of its own, these take turns in jemalloc's arenas, and it keeps pages of each for some seconds: 5 MB up and down on a quiet
-machine, 30 MB on a busy one, 0.4 MB with one arena. It still shows what is mapped past the allocator, so its least of the last quarter may
-be no more than that above its least of the second.
-"""
+"""J1: late frames need the memory of early ones. 400 frames with every change, 1000 in the full run."""
 
 from __future__ import annotations
 
@@ -13,32 +6,9 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from support.application import Outcome
+from support.memory import SAMPLES, check_memory
 
-# What is there after a step of a job: MEMORY step, bytes allocated, bytes resident, threads, descriptors, temporary files.
-COUNT = """
-import bpy, ctypes, os, tempfile
-from pathlib import Path
-scene = bpy.context.scene
-scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 36, 100
-scene.gradus.samples = SAMPLES
-page = os.sysconf("SC_PAGESIZE")
-
-jemalloc = ctypes.CDLL(None)
-
-def allocated():
-    # By the statistics as of now.
-    epoch, value, size = ctypes.c_uint64(1), ctypes.c_size_t(), ctypes.c_size_t(8)
-    assert jemalloc.mallctl(b"epoch", None, None, ctypes.byref(epoch), size) == 0
-    assert jemalloc.mallctl(b"stats.allocated", ctypes.byref(value), ctypes.byref(size), None, 0) == 0
-    return value.value
-
-def count(step):
-    resident = int(Path("/proc/self/statm").read_text().split()[1]) * page
-    things = [len(os.listdir(folder)) for folder in ("/proc/self/task", "/proc/self/fd", os.environ["TMPDIR"])]
-    print("MEMORY", step, allocated(), resident, *things, flush=True)
-"""
 # An animated scene: a cube that turns, so that every frame is exported anew; what a frame leaves behind is counted after it.
 TURNING = """
 cube = scene.objects["Cube"]
@@ -47,88 +17,9 @@ cube.rotation_euler = (1.0, 2.0, 3.0)
 cube.keyframe_insert("rotation_euler", frame=1000)
 bpy.app.handlers.render_post.append(lambda scene, *_: count(scene.frame_current))
 """
-# Other triangles in every frame, one or two objects, and names that change.
-CHANGING = """
-cube = scene.objects["Cube"]
-cube.modifiers.new("Copies", "ARRAY")
-guest = cube.copy()
-scene.collection.objects.link(guest)
-guest.location.x = 3.0
-for frame in range(1, FRAMES + 1):
-    cube.modifiers[0].count = 1 + frame % 5
-    cube.modifiers[0].keyframe_insert("count", frame=frame)
-    guest.hide_render = frame % 3 == 0
-    guest.keyframe_insert("hide_render", frame=frame)
-
-def rename(scene, *_):
-    guest.name = f"Guest {scene.frame_current}"
-    count(scene.frame_current)
-
-bpy.app.handlers.render_post.append(rename)
-"""
-# Animations of three frames that end after so many questions whether they should.
-CANCELLED = """
-from gradus import renderer
-scene.frame_start, scene.frame_end = 1, 3
-scene.gradus.noise_threshold = 0.0
-cube = scene.objects["Cube"]
-cube.keyframe_insert("location", frame=1)
-cube.location.x = 1.0
-cube.keyframe_insert("location", frame=3)
-asked = allowed = 0
-
-def stop_requested(engine):
-    global asked
-    asked += 1
-    return asked > allowed
-
-renderer.stop_requested = stop_requested
-for step in range(1, FRAMES + 1):
-    asked, allowed = 0, step % 12
-    scene.gradus.samples = SAMPLES if allowed < 10 else 100000  # the last ones end while they are sampled
-    bpy.ops.render.render(animation=True)
-    count(step)
-"""
 FRAMES = 1000 if os.environ.get("GRADUS_TEST_FULL") == "1" else 400
-MEGABYTE = 1 << 20
-GROWTH, SWING = 1 * MEGABYTE, 48 * MEGABYTE
-
-
-SAMPLES = pytest.mark.parametrize("samples", [1, 2], ids=["frame by frame", "over windows"])
-
-
-def check_memory(blender: Callable[..., Outcome], folder: Path, script: str, steps: int, samples: int, *arguments: str) -> None:
-    """Of a job of so many steps, after a quarter of them."""
-    temporary = folder / "temporary"
-    temporary.mkdir()
-    script = (COUNT + script).replace("SAMPLES", str(samples)).replace("FRAMES", str(steps))
-    head = ["--addons", "gradus", "-E", "GRADUS", "--python-exit-code", "3", "--python-expr", script, "-o", f"{folder}/f_####", "-F", "PNG"]
-    outcome = blender(*head, *arguments, limit=1800, env={"TMPDIR": str(temporary)})
-    assert outcome.code == 0, outcome.output
-    lines = [line.split()[1:] for line in outcome.output.splitlines() if line.startswith("MEMORY ")]
-    found = {int(step): tuple(map(int, counts)) for step, *counts in lines}
-    assert len(found) == steps
-    warm_up = steps // 4
-    for what, limit in ((0, GROWTH), (1, SWING)):
-        before = min(found[step][what] for step in range(warm_up, steps // 2))
-        after = min(found[step][what] for step in range(steps - warm_up, steps + 1))
-        assert after - before <= limit, f"{(after - before) / MEGABYTE:.1f} MB in {steps // 2} steps"
-    for what in (2, 3, 4):  # threads, descriptors, temporary files
-        late, early = ([found[step][what] for step in range(first, first + warm_up)] for first in (steps - warm_up, warm_up))
-        assert max(late) <= max(early)
-    assert not list(temporary.glob("gradus*")), "and none of ours in the end"
 
 
 @SAMPLES
 def test_j1_memory_does_not_grow_with_frames(blender: Callable[..., Outcome], tmp_path: Path, samples: int) -> None:
     check_memory(blender, tmp_path, TURNING, FRAMES, samples, "-s", "1", "-e", str(FRAMES), "-a")
-
-
-@SAMPLES
-def test_j2_memory_does_not_grow_with_changes(blender: Callable[..., Outcome], tmp_path: Path, samples: int) -> None:
-    check_memory(blender, tmp_path, CHANGING, 200, samples, "-s", "1", "-e", "200", "-a")
-
-
-@SAMPLES
-def test_j2_memory_does_not_grow_with_cancels(blender: Callable[..., Outcome], tmp_path: Path, samples: int) -> None:
-    check_memory(blender, tmp_path, CANCELLED, 200, samples)
