@@ -82,6 +82,7 @@ class Animation:
         self._next = frames.first
         self._begun = False
         self._shots: dict[tuple[str, int], Any] = {}
+        self._alone: dict[int, str] = {}  # frames that are rendered on their own in their turn, and why
         self._fault: tuple[int, Exception] | None = None
         self._sequences: dict[str, int] = {}
         for view in job.views:
@@ -100,7 +101,12 @@ class Animation:
         """Whether the frame is one of this animation, and was not delivered yet."""
         if list(self._sequences) != views or frame not in self.frames.up_to(self.frames.last):
             return False
-        return frame >= self._next or all((view, frame) in self._shots for view in views)
+        return frame >= self._next or frame in self._alone or all((view, frame) in self._shots for view in views)
+
+    def why_alone(self, job: Any) -> str:
+        """Why the job's frame is rendered on its own; "" it is not."""
+        frame = job.scene.frame_current
+        return _why_not_over_time(job) if frame >= self._next else self._alone.get(frame, "")
 
     # Ahead
 
@@ -151,7 +157,7 @@ class Animation:
         job.is_silent = True
         try:
             for view in self._export(job, show, self._next - self.frames.step):
-                self.library.sequence_pass_by(self._sequences[view], job.session.scene, byref(job.shot.settings))
+                self._pass_view_by(job, view)
         except (Cancelled, ExportCancelled):
             raise
         except Exception:
@@ -160,8 +166,15 @@ class Animation:
             job.is_silent = False
             self.library.take_scene_warnings(job.session.scene)
 
+    def _pass_view_by(self, job: Any, view: str) -> None:
+        self.library.sequence_pass_by(self._sequences[view], job.session.scene, byref(job.shot.settings))
+
     def _sample(self, job: Any, show: Callable[[int], None], number: int, display: Display) -> None:
         for view in self._export(job, show, number):
+            if why := _why_not_over_time(job):
+                self._alone[number] = why
+                self._pass_view_by(job, view)
+                continue
             handle = ctypes.c_uint64()
             self.library.sequence_sample(self._sequences[view], job.session.scene, byref(job.shot.settings), byref(handle))
             try:
@@ -254,15 +267,21 @@ def of_job(job: Any) -> Animation | None:
         if frames is None or job.frame_by_frame:
             return None
         _running[key] = Animation(job, frames, folder)
-    return _running[key]
+    job.frame_by_frame = _running[key].why_alone(job)
+    return None if job.frame_by_frame else _running[key]
 
 
 def _why_not(job: Any) -> str:
     """What is against differences over time; "" nothing."""
-    if not job.host_value("use_temporal"):
-        return "temporal is off"
     if not bpy.app.background and simulation.of_scene(job.depsgraph.scene) is not None:
         return "simulations are not baked"  # see simulation.py
+    return _why_not_over_time(job)
+
+
+def _why_not_over_time(job: Any) -> str:
+    """What is against them in the frame that the job shows."""
+    if not job.host_value("use_temporal"):
+        return "temporal is off"
     applies, why_not = ctypes.c_uint32(), ctypes.c_char_p()
     job.session.library.sequence_applies(byref(job.shot.settings), byref(applies), byref(why_not))
     return (why_not.value or b"").decode("utf-8", "replace")

@@ -16,7 +16,7 @@ import pytest
 from gradus import animation, native, renderer, store
 from gradus.export import ExportError
 from support import images, recording, simulations
-from support.animation import key
+from support.animation import key, step
 from support.exports import Exports
 
 WIDTH, HEIGHT = 32, 18
@@ -245,6 +245,97 @@ def test_the_files_of_frames_are_saved_as_the_scene_is_in_them(moving: bpy.types
     assert len(brightness[True]) == 6
     assert np.allclose(brightness[True], brightness[False], atol=0.01)
     assert brightness[True][0] > 2.0 * brightness[True][5]
+
+
+# ------------------------------------------------------------------------------------------------ frames unlike those beside them
+
+
+def animate_with_store(scene: bpy.types.Scene, folder: Path) -> Path:
+    """Looks at the frame before the first one, as parts of a job do."""
+    folder.mkdir()
+    scene.gradus.frame_store = str(folder / "store")
+    animate(scene, folder)
+    return folder
+
+
+def expect_ranges_alone(scene: bpy.types.Scene, whole: Path, ranges: list[tuple[int, int]]) -> None:
+    """The frames of each range are those of an animation of that range."""
+    for first, last in ranges:
+        scene.frame_start, scene.frame_end = first, last
+        part = animate_with_store(scene, whole.with_name(f"{first}"))
+        for frame in range(first, last + 1):
+            assert np.array_equal(combined(whole, frame), combined(part, frame)), frame
+
+
+def key_film(scene: bpy.types.Scene) -> None:
+    step(scene, "render.film_transparent", {1: False, 5: True})
+
+
+def key_holdout(_scene: bpy.types.Scene) -> None:
+    step(bpy.data.objects["Moving"], "is_holdout", {1: False, 5: True})
+
+
+def key_reconstruction(scene: bpy.types.Scene) -> None:
+    step(scene, "gradus.reconstruction", {1: "L2", 5: "REGULARIZED"})  # which takes plain paths under AUTO
+
+
+@pytest.mark.parametrize("change", [key_film, key_holdout, key_reconstruction])
+def test_c8_frames_with_other_channels_or_planes_are_a_cut(
+    moving: bpy.types.Scene, exports: Exports, tmp_path: Path, change: Callable[..., None]
+) -> None:
+    """They ended the animation."""
+    moving.view_layers[0].gradus.use_pass_gradients = False
+    change(moving)
+    whole = animate_with_store(moving, tmp_path / "whole")
+    assert frames_in(whole) == list(range(1, 11))
+    assert exports.frames() == list(range(11)), "the frame before the first one is looked at"
+    expect_ranges_alone(moving, whole, [(1, 4), (5, 10)])
+
+
+@pytest.mark.parametrize(
+    ("path", "usual", "alone", "why"),
+    [
+        ("gradus.samples", 4, 1, "there is one sample per pixel"),
+        ("gradus.integrator", "GRADIENT", "PATH", "the integrator is path"),
+        ("gradus.reconstruction", "L2", "NONE", "reconstruction is none"),
+        ("gradus.use_temporal", True, False, "temporal is off"),
+    ],
+)
+def test_c8_a_frame_without_differences_over_time_is_the_still_and_cuts(
+    moving: bpy.types.Scene,
+    render: Callable[..., images.Passes],
+    exports: Exports,
+    lines: Any,
+    tmp_path: Path,
+    path: str,
+    usual: Any,
+    alone: Any,
+    why: str,
+) -> None:
+    """It ended the animation, as a fault of that frame."""
+    moving.view_layers[0].gradus.use_pass_gradients = False
+    if path == "gradus.integrator":
+        moving.gradus.reconstruction = "REGULARIZED"  # L2 has no picture of plain paths, alone or not
+    step(moving, path, {1: usual, 5: alone, 6: usual})
+    whole = animate_with_store(moving, tmp_path / "whole")
+    assert frames_in(whole) == list(range(1, 11))
+    assert sorted(exports.frames()) == [0, 1, 2, 3, 4, 5, 5, 6, 7, 8, 9, 10], "it is shown to the next one, and in its turn"
+    assert [line["frame"] for line in lines() if line["plan"].get("frame_by_frame") == why] == [5]
+    assert [line["frame"] for line in lines() if not line.get("spp_offset")] == [5]
+    assert np.array_equal(combined(whole, 5), render(moving, frame=5)["Combined"])
+    expect_ranges_alone(moving, whole, [(1, 4), (6, 10)])
+    require_nothing_kept()
+
+
+def test_c7_a_frame_of_its_own_does_not_disturb_a_frame_store(moving: bpy.types.Scene, tmp_path: Path) -> None:
+    moving.gradus.frame_store = str(tmp_path / "store")
+    step(moving, "gradus.samples", {0: 1, 2: 4, 5: 1, 6: 4})
+    whole, again = tmp_path / "whole", tmp_path / "again"
+    for folder in (whole, again):
+        folder.mkdir()
+        animate(moving, folder)
+    for frame in range(1, 11):
+        assert np.array_equal(combined(whole, frame), combined(again, frame)), frame
 
 
 # ------------------------------------------------------------------------------------------------ parts of an animation

@@ -19,11 +19,25 @@ def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
     make_linear(owner.id_data)
 
 
+def step(block: bpy.types.ID, path: str, frames: dict[int, Any]) -> None:
+    """The same for values that jump; the path may lead into a group of the block's properties."""
+    group, _, name = path.rpartition(".")
+    for frame, value in frames.items():
+        setattr(block.path_resolve(group) if group else block, name, value)
+        block.keyframe_insert(path, frame=frame)
+    _interpolate(block, "CONSTANT", path)
+
+
 def make_linear(block: bpy.types.ID) -> None:
     """All keys of a datablock, and of what shares its action."""
+    _interpolate(block, "LINEAR")
+
+
+def _interpolate(block: bpy.types.ID, interpolation: str, path: str = "") -> None:
     for curve in _curves(block):
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
+        if path in ("", curve.data_path):
+            for point in curve.keyframe_points:
+                point.interpolation = interpolation
     block.animation_data.action.update_tag()
 
 

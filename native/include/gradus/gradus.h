@@ -569,7 +569,7 @@ GRADUS_API GradusError gradus_sequence_needs(GradusSequence sequence, int32_t fr
  * again, or goes on from its samples where it has fewer than are asked for; one that is as the frame before neither. */
 GRADUS_API GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene, const GradusSettings* settings,
                                               GradusRender* render);
-/* The scene shows settings->frame, which is not sampled here: the next frame follows it. For parts of a job that share a folder. */
+/* The scene shows settings->frame, which is not sampled here: the next follows it. For parts of a job, and frames on their own, at which windows are cut. */
 GRADUS_API GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusScene scene, const GradusSettings* settings);
 /* Frames beyond `last` do not come after all: what is there is delivered without them. */
 GRADUS_API GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last);

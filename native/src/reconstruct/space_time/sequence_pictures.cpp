@@ -15,6 +15,7 @@ SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& s
       blend_(grid_, [this](int frame, Reconstructed picture) { ready_[frame] = std::move(picture); }) {}
 
 bool SequencePictures::has(int frame) const {
+  if (!grid_.contains(frame)) return false;
   return !next_window_ || ready_.count(frame) > 0 || *next_window_ <= grid_.first_with(frame) ||
          (*next_window_ <= grid_.last_with(frame) && blend_.has_begun(frame));
 }

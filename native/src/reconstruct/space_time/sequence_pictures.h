@@ -36,6 +36,8 @@ class SequencePictures {
   const SequenceMethod& method() const { return method_; }
   // There are no frames beyond this one after all.
   void end_at(int frame) { grid_.end_at(frame); }
+  // The frames that have a share in the picture of one of them.
+  FrameRange around(int frame) const { return grid_.around(frame); }
   // Whether the picture can be taken: it was not yet, nor a later one.
   bool has(int frame) const;
   // Channels interleaved. Each picture is taken once, in order, with gaps as the caller likes; the first one may be any. Empty: cancelled,

@@ -30,6 +30,9 @@ class WindowGrid {
   // The windows that hold a frame of the range.
   int first_with(int frame) const;
   int last_with(int frame) const;
+  // The frames of these windows.
+  FrameRange around(int frame) const { return {frames(first_with(frame)).first, frames(last_with(frame)).last}; }
+  bool contains(int frame) const { return range_.contains(frame); }
   // Share of a window in a frame's picture: a Hann window over what two of them share, where they add up to 1. 1 where there is no other.
   float share(int window, int frame) const;
   // There are no frames beyond this one after all: windows that are still to come end there. Shares stay as they were.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "frame/pass_planes.h"
 #include "settings/options.h"
+#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {
@@ -14,13 +16,27 @@ uint64_t key_without_frame(GradusSettings settings) {
 
 }  // namespace
 
+FrameForm form_of(const Frame& frame) {
+  const bool features = (feature_passes() & ~kept_passes(frame)) == 0;
+  return {frame.region, frame.channels, frame.gradients, features, frame.settings};
+}
+
+bool have_same_pixels(const FrameForm& a, const FrameForm& b) {
+  return a.region.x0 == b.region.x0 && a.region.y0 == b.region.y0 && a.region.x1 == b.region.x1 && a.region.y1 == b.region.y1;
+}
+
+bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstruction) {
+  const bool features = a.features == b.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
+  return have_same_pixels(a, b) && a.channels == b.channels && a.gradients == b.gradients && features;
+}
+
 std::unique_ptr<const FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
                                                const Frame* base) {
   auto before = std::make_unique<FrameBefore>();
   before->snapshot = std::move(snapshot);
   before->settings = settings;
   before->stream_frame = base != nullptr ? base->frame_number : settings.frame;
-  before->is_sampled = base != nullptr;
+  if (base != nullptr) before->form = form_of(*base);
   if (base != nullptr && has_counts(settings)) before->counts = samples_of_pixels(*base);
   return before;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "frame/frame.h"
@@ -12,13 +13,25 @@
 
 namespace gradus {
 
+// What frames must have in common to share a window.
+struct FrameForm {
+  Region region;  // with its guard ring
+  int channels = 0;
+  bool gradients = false, features = false;
+  GradusSettings settings{};
+};
+FrameForm form_of(const Frame& frame);
+bool have_same_pixels(const FrameForm& a, const FrameForm& b);
+// Whether one window can hold both: they have all that it reads of its frames.
+bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstruction);
+
 // The frame before the next one that is sampled.
 struct FrameBefore {
   std::shared_ptr<const Snapshot> snapshot;
   GradusSettings settings{};
-  int32_t stream_frame = 0;      // whose random numbers it has taken: its own, or those of the first of several that are alike
-  std::vector<uint32_t> counts;  // samples of each pixel; empty: as many as the settings say, or not known
-  bool is_sampled = false;
+  int32_t stream_frame = 0;       // whose random numbers it has taken: its own, or those of the first of several that are alike
+  std::vector<uint32_t> counts;   // samples of each pixel; empty: as many as the settings say, or not known
+  std::optional<FrameForm> form;  // of its own half; nothing: it was not sampled
 };
 // base: its own half; nullptr where it was not sampled.
 std::unique_ptr<const FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings, const Frame* base);

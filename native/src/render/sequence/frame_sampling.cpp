@@ -131,9 +131,8 @@ std::shared_ptr<const Frame> FrameSampling::stored(FramePart part) const {
 bool FrameSampling::repeats_before() const {
   const FrameBefore* before = sequence_->before_.get();
   const GradusSettings& now = input_.settings;
-  return before && before->is_sampled && before->snapshot->content_key == input_.snapshot->content_key &&
-         are_alike(before->settings, now) && before->settings.samples >= now.samples &&
-         before->settings.noise_threshold <= now.noise_threshold;
+  return before && before->form && before->snapshot->content_key == input_.snapshot->content_key && are_alike(before->settings, now) &&
+         before->settings.samples >= now.samples && before->settings.noise_threshold <= now.noise_threshold;
 }
 
 bool FrameSampling::differs_from_before() const {
@@ -229,7 +228,8 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
   }
   if (!has_counts(input_.settings)) return replay;
   const double mean = mean_samples(base);
-  replay->counts = replayed_counts(replay->sources, before, mean);
+  const bool is_counted = before && before->form && have_same_pixels(*before->form, form_of(base));
+  replay->counts = replayed_counts(replay->sources, is_counted ? before : nullptr, mean);
   const double seconds = base_.what_it_took().seconds.sample;
   if (input_.settings.time_limit > 0.0f && seconds > 0.0) {
     const double taken = mean - (base_.resumes() ? mean_samples(*stored_base_) : 0.0);
@@ -241,6 +241,7 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
 void FrameSampling::finish(const std::shared_ptr<const Frame>& base) {
   sequence_->before_ = make_before(input_.snapshot, input_.settings, base.get());
   sequence_->records_[input_.settings.frame] = record_;
+  sequence_->forms_[input_.settings.frame] = form_of(*base);
   const std::lock_guard lock(mutex_);
   frame_ = base;
 }

@@ -63,26 +63,32 @@ FrameRange Sequence::own_places() const {
   return range;
 }
 
-// Frames beside the range, as long as they are there and were sampled as `like` was: others belong to another job.
-FrameRange Sequence::places_with_neighbours(const Frame& like) const {
+FrameRange Sequence::places_with_neighbours() const {
   FrameRange range = own_places();
   if (folder_.is_temporary()) return range;
-  const auto fits = [&](int place) {
-    const int32_t frame = frame_at(place);
-    if (!folder_.holds(frame)) return false;
-    const std::shared_ptr<const Frame> other = folder_.load(frame, FramePart::kBase);
-    return are_alike(other->settings, like.settings) && other->channels == like.channels;
-  };
   const int most = settings_.windows.frames;  // more have no share
-  for (int i = 0; i < most && fits(range.first - 1); ++i) --range.first;
-  for (int i = 0; i < most && last_ == settings_.last && fits(range.last + 1); ++i) ++range.last;
+  for (int i = 0; i < most && folder_.holds(frame_at(range.first - 1)); ++i) --range.first;
+  for (int i = 0; i < most && last_ == settings_.last && folder_.holds(frame_at(range.last + 1)); ++i) ++range.last;
   return range;
 }
 
+const FrameForm& Sequence::form_at(int place) {
+  const int32_t frame = frame_at(place);
+  const auto known = forms_.find(frame);
+  if (known != forms_.end()) return known->second;
+  return forms_[frame] = form_of(*folder_.load(frame, FramePart::kBase));
+}
+
+bool Sequence::goes_on_at(int place, uint32_t reconstruction) {
+  if (passed_by_.count(frame_at(place)) > 0 || passed_by_.count(frame_at(place - 1)) > 0) return false;
+  const FrameForm &here = form_at(place), &before = form_at(place - 1);
+  const FrameRange own = own_places();
+  const bool one_job = own.contains(place) && own.contains(place - 1);  // its settings may change from frame to frame
+  return (one_job || are_alike(before.settings, here.settings)) && share_windows(before, here, reconstruction);
+}
+
 FrameRange Sequence::needs(int32_t frame) const {
-  WindowGrid grid(own_places(), settings_.windows);
-  const int place = place_of(frame);
-  const FrameRange places{grid.frames(grid.first_with(place)).first, grid.frames(grid.last_with(place)).last};
+  const FrameRange places = WindowGrid(own_places(), settings_.windows).around(place_of(frame));
   return {std::max(frame_at(places.first), settings_.first), std::min(frame_at(places.last), last_)};
 }
 
@@ -109,6 +115,7 @@ std::unique_ptr<RenderTask> Sequence::sample(std::shared_ptr<const Snapshot> sna
 void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
+  if (settings.frame >= settings_.first && settings.frame <= settings_.last) passed_by_.insert(settings.frame);
   std::shared_ptr<const Frame> base;  // that of another part of the job
   if (folder_.holds(settings.frame)) base = folder_.load(settings.frame, FramePart::kBase);
   if (base && !is_frame_of(*base, *snapshot, resolved)) base.reset();
@@ -143,12 +150,22 @@ std::shared_ptr<Frame> Sequence::open_frame(int32_t number, double* offset_sampl
 }
 
 SequencePictures* Sequence::pictures(const SequenceMethod& method, const Frame& frame) {
-  if (!pictures_ || !(pictures_->method() == method) || !pictures_->has(place_of(frame.frame_number))) {
+  const int place = place_of(frame.frame_number);
+  if (!pictures_ || !(pictures_->method() == method) || !pictures_->has(place)) {
+    FrameRange places = places_with_neighbours();
+    const int begin = WindowGrid(places, settings_.windows).around(place).first;
+    int first = place;
+    while (first > begin && goes_on_at(first, method.reconstruction)) --first;
+    if (first > begin) places.first = first;
     SequenceSource source{[this](const FrameRange& window) { return open_window(window); },
-                          [this](int place) { return open_frame(frame_at(place)); }};
-    pictures_ = std::make_unique<SequencePictures>(places_with_neighbours(frame), settings_.windows, std::move(source), method);
+                          [this](int at) { return open_frame(frame_at(at)); }};
+    pictures_ = std::make_unique<SequencePictures>(places, settings_.windows, std::move(source), method);
     if (last_ < settings_.last) pictures_->end_at(place_of(last_));
   }
+  int last = place;
+  const int end = pictures_->around(place).last;
+  while (last < end && goes_on_at(last + 1, method.reconstruction)) ++last;
+  if (last < end) pictures_->end_at(last);
   return pictures_.get();
 }
 
@@ -157,6 +174,8 @@ void Sequence::forget_before(int32_t frame) {
     folder_.forget(records_.begin()->first);
     records_.erase(records_.begin());
   }
+  forms_.erase(forms_.begin(), forms_.lower_bound(frame));
+  passed_by_.erase(passed_by_.begin(), passed_by_.lower_bound(frame));
 }
 
 }  // namespace gradus

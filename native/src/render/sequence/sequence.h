@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "reconstruct/space_time/sequence_pictures.h"
@@ -40,7 +41,7 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   //
   // Samples settings.frame, unless the folder holds it, or nothing has changed since the frame before.
   std::unique_ptr<RenderTask> sample(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
-  // The snapshot shows settings.frame, which is not sampled here: the next frame follows it.
+  // The snapshot shows settings.frame, which is not sampled here: the next frame follows it. Windows end before it and begin after it.
   void pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
   // Reconstructs and delivers a frame. settings: what it is made of otherwise than it was sampled for (reconstruction, alpha, denoiser,
   // exposure); nullptr: nothing. Frames in order.
@@ -54,8 +55,11 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   FrameRange own_places() const;
-  // The frames that windows may take: those that are rendered, and those beside them that the folder holds.
-  FrameRange places_with_neighbours(const Frame& like) const;
+  // The frames that are rendered, and those beside them that the folder holds.
+  FrameRange places_with_neighbours() const;
+  // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
+  bool goes_on_at(int place, uint32_t reconstruction);
+  const FrameForm& form_at(int place);
   std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places) const;
   // All samples of a frame; offset: if given, those of its second part.
   std::shared_ptr<Frame> open_frame(int32_t frame, double* offset = nullptr) const;
@@ -71,6 +75,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int32_t last_;
   std::unique_ptr<const FrameBefore> before_;
   std::map<int32_t, FrameRecord> records_;
+  std::map<int32_t, FrameForm> forms_;  // of frames that were sampled or looked at
+  std::set<int32_t> passed_by_;
   std::unique_ptr<SequencePictures> pictures_;
 };
 

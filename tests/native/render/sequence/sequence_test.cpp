@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -307,6 +309,93 @@ TEST(C8_Sequence, ACutSeparatesWhatLiesBeforeAndAfter) {
     } else {
       EXPECT_GT(linked, frame.link.size() / 3 / 2);
     }
+  }
+}
+
+using SettingsOf = std::function<GradusSettings(int32_t frame)>;
+
+// Deliveries of all frames but one that is passed by, after the frame before the first one.
+std::map<int32_t, Delivered> render_by(const SettingsOf& settings, Sequence* sequence, int32_t first, int32_t last, int32_t alone = -1) {
+  Pan pan(1.3f);
+  std::map<int32_t, Delivered> frames;
+  const auto pass_by = [&](int32_t frame) { sequence->pass_by(pan.at(frame), with_passes(settings(frame))); };
+  pass_by(first - 1);
+  int32_t sampled = first;
+  for (int32_t frame = first; frame <= last; ++frame) {
+    for (; sampled <= sequence->needs(frame).last; ++sampled) {
+      if (sampled == alone) {
+        pass_by(sampled);
+      } else {
+        sample(sequence, pan.at(sampled), settings(sampled));
+      }
+    }
+    if (frame != alone) frames[frame] = deliver(sequence, frame);
+  }
+  return frames;
+}
+
+// Frames first to last of a sequence are those of one of these frames.
+void expect_alone(const SettingsOf& settings, const std::map<int32_t, Delivered>& whole, int32_t first, int32_t last) {
+  for (const auto& [frame, alone] : render_by(settings, make_sequence(first, last).get(), first, last)) {
+    EXPECT_EQ(whole.at(frame).noisy, alone.noisy) << frame;
+    EXPECT_EQ(whole.at(frame).combined, alone.combined) << frame;
+    EXPECT_EQ(whole.at(frame).link, alone.link) << frame;
+  }
+}
+
+GradusSettings with_film(int32_t frame, int32_t first_transparent) {
+  GradusSettings settings = settings_of(frame);
+  settings.film_transparent = frame >= first_transparent ? 1 : 0;
+  return settings;
+}
+
+// They ended the animation: "has another size or other planes than those beside it".
+TEST(C8_Sequence, FramesWithAnotherNumberOfChannelsAreACut) {
+  const auto settings = [](int32_t frame) { return with_film(frame, 4); };
+  const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9);
+  expect_alone(settings, whole, 0, 3);
+  expect_alone(settings, whole, 4, 9);
+}
+
+TEST(C8_Sequence, FramesWithAndWithoutDifferencesAreACut) {
+  const auto settings = [](int32_t frame) {
+    GradusSettings s = settings_of(frame);
+    s.integrator = GRADUS_INTEGRATOR_AUTO;
+    s.reconstruction = frame < 4 ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_REGULARIZED;
+    return s;
+  };
+  const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9);
+  expect_alone(settings, whole, 0, 3);
+  expect_alone(settings, whole, 4, 9);
+}
+
+// Features were asked of frames that had none.
+TEST(C8_Sequence, FramesWithAndWithoutFeaturesAreACutWhereTheyAreRead) {
+  const auto settings = [](int32_t frame) {
+    GradusSettings s = settings_of(frame);
+    s.integrator = GRADUS_INTEGRATOR_GRADIENT;
+    s.reconstruction = frame < 4 ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_REGULARIZED;
+    return s;
+  };
+  expect_alone(settings, render_by(settings, make_sequence(0, 9).get(), 0, 9), 4, 9);
+}
+
+TEST(C8_Sequence, WindowsEndBeforeAFrameThatIsPassedByAndBeginAnewAfterIt) {
+  const auto settings = [](int32_t frame) { return settings_of(frame); };
+  const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9, 4);
+  expect_alone(settings, whole, 0, 3);
+  expect_alone(settings, whole, 5, 9);
+}
+
+TEST(C7_Sequence, PartsOfAJobWithACutMakeTheFramesOfTheWhole) {
+  const Folder folder;
+  const auto settings = [](int32_t frame) { return with_film(frame, 8); };
+  const auto part = [&](int32_t first, int32_t last) {
+    return render_by(settings, make_sequence(first, last, folder.path()).get(), first, last);
+  };
+  const auto whole = part(0, 14);
+  for (const auto& [first, last] : {std::pair(0, 6), std::pair(7, 7), std::pair(8, 14)}) {
+    for (const auto& [frame, delivered] : part(first, last)) EXPECT_EQ(delivered.combined, whole.at(frame).combined) << frame;
   }
 }
 
