@@ -35,6 +35,16 @@ TEST(Batches, GrowThenStayAndMeetAgainAfterResume) {
   EXPECT_EQ(batch_end(3, 64), 4u);
 }
 
+// So that shares by noise are corrected at least three times: the paper of T-GPT has four to eight batches.
+TEST(Batches, AreAQuarterOfARenderAtMost) {
+  for (const uint32_t samples : {64u, 100u, 1024u}) {
+    for (uint32_t begin = 0, end = 0; begin < samples; begin = end) {
+      end = batch_end(begin, samples);
+      EXPECT_LE(end - begin, samples / 4);
+    }
+  }
+}
+
 TEST(L1_Threads, SamplesHaveTheSameBitsForAnyNumberOfThreads) {
   const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 8);
   GradusSettings settings = small_settings(150, 90, 20);
