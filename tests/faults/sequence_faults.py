@@ -5,6 +5,7 @@ from __future__ import annotations
 from fault import Fault, Test, native
 
 SAMPLING = "native/src/render/sequence/frame_sampling.cpp"
+RECORD = "native/src/render/sequence/frame_record.cpp"
 SEQUENCE = "native/src/render/sequence/sequence.cpp"
 FILE_WRITER = "native/src/frame/file_writer.cpp"
 PIXELS = "native/src/integrator/pixel_loop.cpp"
@@ -168,6 +169,24 @@ SEQUENCES = (
         (native("LinkedFrames.C8_ACutIsNoMotion"),),
     ),
     Fault(
+        25,
+        CUT,
+        "frames with and without alpha share windows",
+        RECORD,
+        "return have_same_pixels(a, b) && a.channels == b.channels",
+        "return have_same_pixels(a, b)",
+        (native("C8_Sequence.FramesWithAnotherNumberOfChannelsAreACut"),),
+    ),
+    Fault(
+        25,
+        CUT,
+        "windows reach over a frame that is passed by",
+        SEQUENCE,
+        "passed_by_.insert(settings.frame);",
+        "passed_by_.erase(settings.frame);",
+        (native("C8_Sequence.WindowsEndBeforeAFrameThatIsPassedByAndBeginAnewAfterIt"),),
+    ),
+    Fault(
         26,
         DIFFERENCE,
         "with the wrong sign",
@@ -298,8 +317,8 @@ SEQUENCES = (
         STORE,
         "of another job, beside this one's",
         SEQUENCE,
-        "return are_alike(other->settings, like.settings) && other->channels == like.channels;",
-        "return other->channels == like.channels;",
+        "(one_job || are_alike(before.settings, here.settings))",
+        "(one_job || are_alike(before.settings, before.settings))",
         (native("C7_Sequence.NeighboursOfAnotherJobAreLeftOut"),),
     ),
     Fault(

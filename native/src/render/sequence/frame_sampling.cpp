@@ -137,7 +137,7 @@ bool FrameSampling::repeats_before() const {
 
 bool FrameSampling::differs_from_before() const {
   const FrameBefore* before = sequence_->before_.get();
-  return before && before->is_sampled && !repeats_before();
+  return before && before->form && !repeats_before();
 }
 
 void FrameSampling::run(RenderLoop* loop) {
