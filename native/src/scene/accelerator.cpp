@@ -1,12 +1,6 @@
 #include "scene/accelerator.h"
 
-#include <span>
-
-#include <embree3/rtcore.h>
-#include <tbb/parallel_for.h>
-
-#include "base/device.h"
-#include "base/error.h"
+#include <unordered_map>
 
 namespace gradus {
 
@@ -14,83 +8,8 @@ namespace {
 
 // Meshes whose copies hold no more triangles than this in sum are copied into the top level: cheaper to trace than instances.
 constexpr uint64_t kMaxCopiedTriangles = 1u << 14;
-
-struct Monitor {
-  const BuildProgress* progress;
-  float first, last;
-};
-
-bool on_progress(void* data, double fraction) {
-  const auto* m = static_cast<const Monitor*>(data);
-  return (*m->progress)(m->first + (m->last - m->first) * float(fraction));
-}
-
-// Without memory for what grows with the scene, nodes and leaves, Embree gives back what it has and says so. Where the few bytes of a
-// build's entry in its thread pool are refused, it keeps the pool's lock (3.13.5, ThreadPool::add), and the next build waits for ever: that
-// only tests refuse (tests/memory/embree_guard.cpp).
-void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progress, float first, float last) {
-  Monitor monitor{&progress, first, last};
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-  rtcSetSceneProgressMonitorFunction(scene, on_progress, &monitor);
-  rtcCommitScene(scene);
-  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_CANCELLED || !progress(last)) throw cancelled();
-  if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while building the acceleration structure");
-  if (error != RTC_ERROR_NONE) throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed with code " + std::to_string(int(error)));
-}
-
-// positions: key after key.
-void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, const MeshData& mesh, const Vec3* positions,
-                      unsigned keys) {
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetGeometryTimeStepCount(geometry, keys);
-  for (unsigned k = 0; k < keys; ++k)
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, positions, k * mesh.vertex_count * sizeof(Vec3),
-                               sizeof(Vec3), mesh.vertex_count);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangle_vertices.data(), 0, 3 * sizeof(uint32_t),
-                             mesh.triangle_count);
-  rtcSetGeometryMask(geometry, mask);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
-}
-
-void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced, const InstanceData& instance) {
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, instanced);
-  const std::span<const Mat4> keys = instance.keys ? std::span(instance.keys->keys()) : std::span(&instance.to_world, 1);
-  rtcSetGeometryTimeStepCount(geometry, unsigned(keys.size()));
-  for (unsigned i = 0; i < keys.size(); ++i) rtcSetGeometryTransform(geometry, i, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &keys[i][0][0]);
-  rtcSetGeometryMask(geometry, mask);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
-}
-
-std::shared_ptr<const MeshScene> build_mesh_scene(const std::shared_ptr<Device>& device, const std::shared_ptr<const MeshData>& mesh,
-                                                  const BuildProgress& progress, float at) {
-  auto built = std::make_shared<MeshScene>();
-  built->device = device;
-  built->mesh = mesh;
-  built->scene = rtcNewScene(device->embree());
-  const bool deforms = mesh->shutter_keys > 0;
-  attach_triangles(device->embree(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->rest_positions(),
-                   deforms ? mesh->shutter_keys : 1);
-  commit_scene(device->embree(), built->scene, progress, at, at);
-  return built;
-}
-
-// In double: a mesh that lies far from its own origin may be brought back by its matrix.
-std::unique_ptr<std::vector<Vec3>> transform_positions(const MeshData& mesh, const glm::dmat4& m) {
-  auto out = std::make_unique<std::vector<Vec3>>(size_t(mesh.vertex_count) + 1);
-  const Vec3* in = mesh.rest_positions();
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count, 1 << 14), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i < range.end(); ++i) (*out)[i] = Vec3(m * glm::dvec4(glm::dvec3(in[i]), 1.0));
-  });
-  return out;
-}
+// Fewer triangles at rest are built again beside those that move, in less time than rays would need to ask for both.
+constexpr uint64_t kMinKeptTriangles = 1u << 18;
 
 using UserCounts = std::unordered_map<const MeshData*, uint64_t>;
 
@@ -100,52 +19,90 @@ bool lies_in_top_level(const InstanceData& instance, const UserCounts& users) {
   return count == 1 || count * instance.mesh->triangle_count <= kMaxCopiedTriangles;
 }
 
-}  // namespace
-
-MeshScene::~MeshScene() {
-  if (scene) rtcReleaseScene(scene);
+// By what the frame itself tells of those around it: a picture must not depend on what was rendered before.
+bool rests(const InstanceData& instance) {
+  return !instance.moves() && instance.to_world_previous == instance.to_world && instance.to_world_next == instance.to_world &&
+         instance.mesh->key_times.size() < 2;
 }
 
-Accelerator::~Accelerator() {
-  if (scene) rtcReleaseScene(scene);
+// Embree asks for triangles and for blurred instances one after the other: there a box around all that moves costs rays nothing.
+bool pays_to_split(const std::vector<InstanceData>& instances, const std::vector<bool>& flat) {
+  uint64_t kept = 0;
+  bool all_rest = true, blurred = false;
+  for (size_t i = 0; i < instances.size(); ++i) {
+    blurred |= instances[i].moves();
+    all_rest &= rests(instances[i]);
+    if (flat[i] && rests(instances[i])) kept += instances[i].mesh->triangle_count;
+  }
+  return !all_rest && (blurred || kept >= kMinKeptTriangles);
 }
 
-std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Device>& device, const AcceleratorInput& input,
-                                                     const BuildProgress& progress, MeshSceneCache* cache) {
-  constexpr float kMeshShare = 0.4f;  // of the progress
-  auto built = std::make_shared<Accelerator>();
+struct Split {
+  GroupInput resting, moving;
+};
+
+Split split_instances(const AcceleratorInput& input) {
   const std::vector<InstanceData>& instances = *input.instances;
-  const std::vector<uint32_t>& masks = *input.masks;
-  built->device = device;
-  built->scene = rtcNewScene(device->embree());
   UserCounts users;
   for (const InstanceData& instance : instances) ++users[instance.mesh.get()];
-  MeshSceneCache kept;
-  for (size_t i = 0; i < instances.size(); ++i) {
-    const InstanceData& instance = instances[i];
-    const float done = kMeshShare * float(i) / float(instances.size());
-    if ((i & 255) == 0 && !progress(done)) throw cancelled();
-    if (lies_in_top_level(instance, users)) {
-      built->flat_positions.push_back(transform_positions(*instance.mesh, input.to_internal(i)));
-      built->meshes.push_back(instance.mesh);
-      attach_triangles(device->embree(), built->scene, unsigned(i), masks[i], *instance.mesh, built->flat_positions.back()->data(), 1);
-      continue;
+  std::vector<bool> flat(instances.size());
+  for (size_t i = 0; i < instances.size(); ++i) flat[i] = lies_in_top_level(instances[i], users);
+  const bool splits = pays_to_split(instances, flat);
+  const GroupInput none{&instances, &input.to_internal, {}};
+  Split split{none, none};
+  for (size_t i = 0; i < instances.size(); ++i)
+    (splits && !rests(instances[i]) ? split.moving : split.resting).members.push_back({uint32_t(i), (*input.masks)[i], flat[i]});
+  if (split.resting.members.empty()) std::swap(split.resting, split.moving);
+  return split;
+}
+
+// Builds groups that the accelerator before does not have.
+class Builder {
+ public:
+  Builder(const std::shared_ptr<Device>& device, const Accelerator* before) : device_(device) {
+    if (!before) return;
+    for (const Accelerator::Part* part : {&before->resting, &before->moving}) {
+      if (!part->group) continue;
+      groups_.push_back(part->group);
+      for (const auto& scene : part->group->mesh_scenes) mesh_scenes_.emplace(scene->mesh.get(), scene);
     }
-    auto& mesh_scene = kept[instance.mesh.get()];
-    if (!mesh_scene) {
-      const auto old = cache->find(instance.mesh.get());
-      mesh_scene = old != cache->end() ? old->second : build_mesh_scene(device, instance.mesh, progress, done);
-      built->mesh_scenes.push_back(mesh_scene);
-    }
-    attach_instance(device->embree(), built->scene, unsigned(i), masks[i], mesh_scene->scene, instance);
   }
-  commit_scene(device->embree(), built->scene, progress, kMeshShare, 1.0f);
-  size_t flat = 0;
-  for (const InstanceData& instance : instances) {
-    FlatTriangles& triangles = built->flat_triangles.emplace_back();
-    if (lies_in_top_level(instance, users)) triangles = make_flat_triangles(*instance.mesh, built->flat_positions[flat++]->data());
+
+  Accelerator::Part part(const GroupInput& input, const BuildProgress& progress) {
+    Accelerator::Part part;
+    for (const GroupInput::Member& member : input.members) part.instances.push_back(member.instance);
+    part.group = group(input, progress);
+    return part;
   }
-  *cache = std::move(kept);
+
+ private:
+  std::shared_ptr<const GeometryGroup> group(const GroupInput& input, const BuildProgress& progress) {
+    const uint64_t key = input.key();
+    for (const auto& group : groups_)
+      if (group->key == key) return group;
+    return build_group(device_, input, progress, &mesh_scenes_);
+  }
+
+  const std::shared_ptr<Device>& device_;
+  std::vector<std::shared_ptr<const GeometryGroup>> groups_;
+  MeshScenes mesh_scenes_;
+};
+
+bool same(const Accelerator::Part& a, const Accelerator::Part& b) { return a.group == b.group && a.instances == b.instances; }
+
+}  // namespace
+
+std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Device>& device, const AcceleratorInput& input,
+                                                     const BuildProgress& progress, const std::shared_ptr<const Accelerator>& before) {
+  constexpr float kRestingShare = 0.5f;  // of the progress
+  const Split split = split_instances(input);
+  Builder builder(device, before.get());
+  auto built = std::make_shared<Accelerator>();
+  const bool splits = !split.moving.members.empty();
+  const float share = splits ? kRestingShare : 1.0f;
+  built->resting = builder.part(split.resting, [&](float done) { return progress(share * done); });
+  if (splits) built->moving = builder.part(split.moving, [&](float done) { return progress(share + (1.0f - share) * done); });
+  if (before && same(before->resting, built->resting) && same(before->moving, built->moving)) return before;
   return built;
 }
 

@@ -47,17 +47,11 @@ uint32_t embree_mask(const InstanceData& instance, bool transparent) {
   return mask;
 }
 
-// Key of all that the accelerator depends on.
-uint64_t geometry_key(const Snapshot& snapshot, const std::vector<uint32_t>& masks) {
-  ContentHash hash;
-  hash.array(masks);
-  hash.bytes(&snapshot.origin, sizeof(snapshot.origin));
-  for (const InstanceData& instance : snapshot.instances) {
-    hash.value(instance.mesh->content_hash);
-    hash.bytes(&instance.to_world, sizeof(instance.to_world));
-    if (instance.keys) hash.array(instance.keys->keys());
+void refer_to_triangles(const Accelerator::Part& part, Snapshot* snapshot) {
+  for (size_t k = 0; k < part.instances.size(); ++k) {
+    const FlatTriangles& flat = part.group->flat_triangles[k];
+    snapshot->instances[part.instances[k]].flat_triangles = flat.empty() ? nullptr : flat.data();
   }
-  return hash.result();
 }
 
 void build_geometry(const std::shared_ptr<Device>& device, const std::vector<size_t>& chosen, const BuildProgress& progress,
@@ -68,17 +62,11 @@ void build_geometry(const std::shared_ptr<Device>& device, const std::vector<siz
     masks[k] = embree_mask(snapshot->instances[k], transparent);
     snapshot->features.has_transparent_shadows |= transparent && (masks[k] & kMaskTransparentShadow);
   }
-  const uint64_t key = geometry_key(*snapshot, masks);
-  if (!state->accelerator || state->geometry_key != key) {
-    const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
-    state->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, &state->mesh_scenes);
-    state->geometry_key = key;
-  }
+  const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
+  state->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, state->accelerator);
   snapshot->accelerator = state->accelerator;
-  for (size_t k = 0; k < chosen.size(); ++k) {
-    const FlatTriangles& flat = state->accelerator->flat_triangles[k];
-    snapshot->instances[k].flat_triangles = flat.empty() ? nullptr : flat.data();
-  }
+  refer_to_triangles(snapshot->accelerator->resting, snapshot);
+  refer_to_triangles(snapshot->accelerator->moving, snapshot);
 }
 
 void move_matrix(float* matrix, const Vec3& origin) {

@@ -63,8 +63,6 @@ struct Scene::State {
   StoredImages stored_images;  // in image_store
   std::map<uint64_t, CompiledMaterial> compiled;
   std::shared_ptr<const Accelerator> accelerator;
-  uint64_t geometry_key = 0;  // of `accelerator`
-  MeshSceneCache mesh_scenes;
   WorldMap world_map;
 };
 

@@ -1,5 +1,6 @@
 // Ray queries of a snapshot. Embree's internal assertions abort on rays that are not finite, and NaN makes traversal slow: such rays
 // are misses and never reach it.
+#include <algorithm>
 #include <cstring>
 
 #include <embree3/rtcore.h>
@@ -56,9 +57,14 @@ void set_lane(const Ray& ray, uint32_t mask, int i, Packet* r) {
   r->flags[i] = 0;
 }
 
-// A triangle in the top level carries the instance as its geometry id; within an instanced mesh scene that id is 0.
-uint32_t instance_of(unsigned instance_id, unsigned geometry_id) {
-  return instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id;
+// A triangle in the top level carries the member's place as its geometry id; within an instanced mesh scene that id is 0.
+uint32_t instance_of(const Accelerator::Part& part, unsigned instance_id, unsigned geometry_id) {
+  return part.instances[instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id];
+}
+
+bool may_meet_moving(const Accelerator& accelerator, const RTCRay& r) {
+  return accelerator.moving.group &&
+         accelerator.moving.group->box.may_meet({r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tnear, r.tfar);
 }
 
 bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
@@ -67,8 +73,32 @@ bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
   rtcInitIntersectContext(&context);
   RTCRay r;
   set_ray(ray, mask, &r);
-  rtcOccluded1(accelerator.scene, &context, &r);
+  rtcOccluded1(accelerator.resting.group->scene, &context, &r);
+  if (r.tfar >= 0.0f && may_meet_moving(accelerator, r)) rtcOccluded1(accelerator.moving.group->scene, &context, &r);
   return r.tfar < 0.0f;
+}
+
+// Of the valid lanes; false: there are none. Occluded rays end before they start.
+bool keep_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& r, int valid[4]) {
+  if (!accelerator.moving.group) return false;
+  const RayBox& box = accelerator.moving.group->box;
+  bool any = false;
+  for (int i = 0; i < 4; ++i) {
+    if (valid[i] && !box.may_meet({r.org_x[i], r.org_y[i], r.org_z[i]}, {r.dir_x[i], r.dir_y[i], r.dir_z[i]}, r.tnear[i], r.tfar[i]))
+      valid[i] = 0;
+    any |= valid[i] != 0;
+  }
+  return any;
+}
+
+// In the part: nearer than what the query has. The query keeps that if there is nothing.
+bool intersect(const Accelerator::Part& part, RTCRayHit* query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(part.group->scene, &context, query);
+  return query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 }  // namespace
@@ -76,20 +106,19 @@ bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
 bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit) {
   *hit = Hit();
   if (!traceable(ray)) return false;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRayHit query;
   set_ray(ray, mask, &query.ray);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(accelerator.scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit->t = query.ray.tfar;
-  hit->instance = instance_of(query.hit.instID[0], query.hit.geomID);
-  hit->triangle = query.hit.primID;
-  hit->barycentric = Vec2(query.hit.u, query.hit.v);
-  hit->time = ray.time;
-  return true;
+  const auto take = [&](const Accelerator::Part& part) {
+    if (!intersect(part, &query)) return;
+    hit->t = query.ray.tfar;
+    hit->instance = instance_of(part, query.hit.instID[0], query.hit.geomID);
+    hit->triangle = query.hit.primID;
+    hit->barycentric = Vec2(query.hit.u, query.hit.v);
+    hit->time = ray.time;
+  };
+  take(accelerator.resting);
+  if (may_meet_moving(accelerator, query.ray)) take(accelerator.moving);
+  return hit->valid();
 }
 
 bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask) { return blocked_by(accelerator, ray, mask); }
@@ -110,21 +139,25 @@ void Snapshot::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) c
     const bool trace = traceable(rays[i]);
     valid[i] = trace ? -1 : 0;
     set_lane(trace ? rays[i] : Ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), -1.0f}, visibility & kMaskVisibility, i, &query.ray);
-    query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect4(valid, accelerator->scene, &context, &query);
-  for (int i = 0; i < 4; ++i) {
-    if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-    hits[i].t = query.ray.tfar[i];
-    hits[i].instance = instance_of(query.hit.instID[0][i], query.hit.geomID[i]);
-    hits[i].triangle = query.hit.primID[i];
-    hits[i].barycentric = Vec2(query.hit.u[i], query.hit.v[i]);
-    hits[i].time = rays[i].time;
-  }
+  const auto take = [&](const Accelerator::Part& part) {
+    std::fill_n(query.hit.geomID, 4, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(query.hit.instID[0], 4, RTC_INVALID_GEOMETRY_ID);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect4(valid, part.group->scene, &context, &query);
+    for (int i = 0; i < 4; ++i) {
+      if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      hits[i].t = query.ray.tfar[i];
+      hits[i].instance = instance_of(part, query.hit.instID[0][i], query.hit.geomID[i]);
+      hits[i].triangle = query.hit.primID[i];
+      hits[i].barycentric = Vec2(query.hit.u[i], query.hit.v[i]);
+      hits[i].time = rays[i].time;
+    }
+  };
+  take(accelerator->resting);
+  if (keep_lanes_that_meet_moving(*accelerator, query.ray, valid)) take(accelerator->moving);
 }
 
 void Snapshot::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const {
@@ -149,7 +182,10 @@ void Snapshot::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4
   set(query.flags, zero);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded4(reinterpret_cast<const int*>(&valid), accelerator->scene, &context, &query);
+  alignas(16) int lanes[4];
+  std::memcpy(lanes, &valid, sizeof(lanes));
+  rtcOccluded4(lanes, accelerator->resting.group->scene, &context, &query);
+  if (keep_lanes_that_meet_moving(*accelerator, query, lanes)) rtcOccluded4(lanes, accelerator->moving.group->scene, &context, &query);
   for (int i = 0; i < 4; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0.0f;
 }
 

@@ -243,7 +243,7 @@ TEST(Commit, UnchangedGeometryIsShared) {
   const auto third = scene.commit();
   EXPECT_NE(third->accelerator, first->accelerator);
   EXPECT_NE(third->content_key, first->content_key);
-  EXPECT_EQ(third->accelerator->mesh_scenes, first->accelerator->mesh_scenes);
+  EXPECT_EQ(third->accelerator->resting.group->mesh_scenes, first->accelerator->resting.group->mesh_scenes);
   Hit hit;
   EXPECT_TRUE(second->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
 }

@@ -164,6 +164,7 @@ class TestScene {
   // Of the instance added as number i: where it is in the next commit.
   void move(size_t i, const Mat4& matrix) { matrices_[i] = matrix; }
   void replace_mesh(size_t i, uint64_t mesh_key) { meshes_[i] = mesh_key; }
+  size_t instance_count() const { return meshes_.size(); }
   void remove_last() {
     for (auto* values : {&meshes_, &materials_}) values->pop_back();
     for (auto* values : {&visibility_, &first_, &count_, &shutter_first_, &shutter_count_}) values->pop_back();
@@ -176,6 +177,7 @@ class TestScene {
     instances.count = meshes_.size();
     instances.meshes = meshes_.data();
     instances.matrices = matrices_.empty() ? nullptr : &matrices_[0][0][0];
+    if (matrices_before.size() == matrices_.size()) instances.matrices_previous = &matrices_before[0][0][0];
     instances.visibility = visibility_.data();
     instances.material_first = first_.data();
     instances.material_count = count_.data();
@@ -192,6 +194,7 @@ class TestScene {
   }
 
   Scene scene;
+  std::vector<Mat4> matrices_before;      // one frame earlier, of all instances; of another number: at rest
   float shadow_terminator_offset = 0.0f;  // of the instances that follow
   std::vector<Mat4> way;                  // theirs while the shutter is open, times their matrix; empty: at rest
 
