@@ -18,33 +18,40 @@ namespace {
 
 constexpr auto kNever = [] { return false; };
 
-// Rows that are made when they are read: a flat picture with the noise of few samples. Few bright pixels, and differences with heavy tails.
+// A flat picture with the noise of few samples: few bright pixels, and differences with heavy tails. Held in memory, as a system holds the
+// file of a window, so that what is timed is the solver.
 class NoisySource final : public HalvedWindowSource {
  public:
-  NoisySource(const WindowSize& size, test::Motion motion) : size_(size) {
+  NoisySource(const WindowSize& size, test::Motion motion) : size_(size), row_(size_t(size.width) * size_t(size.channels)) {
     test::Window window(size.width, size.height, 0, size.frames);
     test::link(&window, motion);
     links_ = std::move(window.links);
-  }
-  WindowSize size() const override { return size_; }
-  void read_row(RowKind kind, int t, int y, float* out) const override {
-    uint32_t state = seed(kind, t, y);
-    for (int i = 0; i < size_.width * size_.channels; ++i) {
-      const float u = uniform(&state), v = uniform(&state);
-      out[i] = kind == RowKind::kPrimal ? 0.2f + 8.0f * std::pow(u, 8.0f) : 0.1f * (u - 0.5f) * (v < 0.02f ? 40.0f : 1.0f);
+    for (const RowKind kind : kRowKinds) {
+      values_.emplace_back(row_ * size_t(size.height) * size_t(size.frames));
+      deviations_.emplace_back(values_.back().size() / size_t(size.channels));
+      fill(kind, uint32_t(kind) + 1);
     }
   }
+  WindowSize size() const override { return size_; }
+  void read_row(RowKind kind, int t, int y, float* out) const override { std::copy_n(&values_[size_t(kind)][at(t, y)], row_, out); }
   void read_deviations(RowKind kind, int t, int y, float* out) const override {
-    uint32_t state = seed(kind, t, y) + 1;
-    for (int x = 0; x < size_.width; ++x) out[x] = (kind == RowKind::kPrimal ? 1.5f : 0.03f) * uniform(&state);
+    std::copy_n(&deviations_[size_t(kind)][at(t, y) / size_t(size_.channels)], size_.width, out);
   }
-  void read_half_differences(RowKind kind, int t, int y, float* out) const override { read_row(kind, t + 1, y, out); }
+  void read_half_differences(RowKind kind, int t, int y, float* out) const override { read_row(kind, (t + 1) % size_.frames, y, out); }
   void read_links(int t, int y, int32_t* out) const override {
     std::copy_n(links_[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
   }
 
  private:
-  static uint32_t seed(RowKind kind, int t, int y) { return (uint32_t(kind) * 131u + uint32_t(t)) * 16411u + uint32_t(y); }
+  size_t at(int t, int y) const { return row_ * size_t(t * size_.height + y); }
+
+  void fill(RowKind kind, uint32_t state) {
+    for (float& value : values_[size_t(kind)]) {
+      const float u = uniform(&state), v = uniform(&state);
+      value = kind == RowKind::kPrimal ? 0.2f + 8.0f * std::pow(u, 8.0f) : 0.1f * (u - 0.5f) * (v < 0.02f ? 40.0f : 1.0f);
+    }
+    for (float& value : deviations_[size_t(kind)]) value = (kind == RowKind::kPrimal ? 1.5f : 0.03f) * uniform(&state);
+  }
   static float uniform(uint32_t* state) {
     *state = *state * 747796405u + 2891336453u;
     const uint32_t word = ((*state >> ((*state >> 28) + 4)) ^ *state) * 277803737u;
@@ -52,6 +59,8 @@ class NoisySource final : public HalvedWindowSource {
   }
 
   WindowSize size_;
+  size_t row_;
+  std::vector<std::vector<float>> values_, deviations_;
   std::vector<std::vector<int32_t>> links_;
 };
 
