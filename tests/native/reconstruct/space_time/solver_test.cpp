@@ -40,7 +40,7 @@ TEST(B1_SpaceTime, ASequenceWithItsOwnDifferencesStays) {
     for (const uint32_t reconstruction : kAll) {
       const Window window = measured(33, 17, 3, 6, motion);
       const Images images = changing_images(window.size_);
-      EXPECT_LT(max_difference(solve(window, reconstruction), joined(images)), 1e-3) << int(motion) << " by " << reconstruction;
+      EXPECT_LT(max_difference(solve(window, reconstruction), joined(images)), 2e-3) << int(motion) << " by " << reconstruction;
     }
   }
 }
@@ -50,7 +50,7 @@ TEST(B2_SpaceTime, AnySizeIsSolved) {
     for (const int frames : {1, 2, 10}) {
       for (const uint32_t reconstruction : kAll) {
         const Window window = measured(w, h, 3, frames, Motion::kStatic);
-        EXPECT_LT(max_difference(solve(window, reconstruction), joined(changing_images(window.size_))), 1e-3)
+        EXPECT_LT(max_difference(solve(window, reconstruction), joined(changing_images(window.size_))), 2e-3)
             << w << "x" << h << "x" << frames << " by " << reconstruction;
       }
     }
