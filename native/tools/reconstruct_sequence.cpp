@@ -4,11 +4,14 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 
 #include "frame/image_exr.h"
 #include "frame/store.h"
 #include "reconstruct/space_time/window_grid.h"
+#include "render/sequence/sequence_folder.h"
 #include "settings/pass_table.h"
 #include "stored_sequence.h"
 
@@ -117,16 +120,21 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   const client::Sequence sequence = open(device, args, stored, {frames.front(), frames.back()});
   fs::create_directories(args.output);
+  const SequenceFolder folder(args.input);
+  std::set<std::string> warnings;
   for (const int32_t frame : frames) {
-    // Exposure and the like may change from frame to frame.
-    const GradusSettings settings = settings_of(args, load_frame(stored.path(frame))->settings);
+    // Exposure and the like may change from frame to frame, of frames that share their files, too.
+    const auto asked = folder.settings(frame);
+    const GradusSettings settings = settings_of(args, asked ? *asked : load_frame(stored.path(frame))->settings);
     const client::Render render = sequence.deliver(frame, settings);
     render.wait();
+    for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings")) warnings.insert(text.get<std::string>());
     const std::string path = picture_path(args.output, frame);
     write_picture(render, passes, path);
     std::printf("%s\n", path.c_str());
     std::fflush(stdout);
   }
+  for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
   print_warnings(device);
   return 0;
 }

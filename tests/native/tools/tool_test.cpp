@@ -309,7 +309,7 @@ class ToolSequence : public Tool {
     Tool::SetUp();
     render(GRADUS_RECONSTRUCTION_L2);
   }
-  void render(uint32_t reconstruction) {
+  void render(uint32_t reconstruction, uint32_t samples = 4, bool stands_still = false) {
     fs::remove_all(folder / kFolder);
     delivered.clear();
     const GradusDevice device = make_device();
@@ -323,10 +323,11 @@ class ToolSequence : public Tool {
     GradusSequence sequence = 0;
     ASSERT_OK(gradus_sequence_create(device, &settings, &sequence));
     for (int32_t frame = 1; frame <= 6; ++frame) {
-      ASSERT_OK(set_camera_at(scene, 0.02f * float(frame)));
+      ASSERT_OK(set_camera_at(scene, stands_still ? 0.0f : 0.02f * float(frame)));
       ASSERT_OK(gradus_scene_commit(scene, nullptr, nullptr));
-      GradusSettings render_settings = small_render(24, 16, 4);
+      GradusSettings render_settings = small_render(24, 16, samples);
       render_settings.reconstruction = reconstruction;
+      if (stands_still) render_settings.film_exposure = float(frame);
       render_settings.frame = frame;
       GradusRender render = 0;
       ASSERT_OK(gradus_sequence_sample(sequence, scene, &render_settings, &render));
@@ -418,6 +419,29 @@ TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllOfThem) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("lacks frames 2 to 3, 5"), std::string::npos) << outcome.err;
   EXPECT_EQ(run("reconstruct store/anim/layer -o pictures --frames 4").code, 0);
+}
+
+// It did nothing for frames that were sampled without one.
+TEST_F(ToolSequence, AnAutomaticDenoiserRunsWhereItPays) {
+  render(GRADUS_RECONSTRUCTION_REGULARIZED, 32);
+  const std::string denoiser = " --denoiser auto --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+  const auto picture_with = [&](const std::string& options) {
+    const Outcome made = run("reconstruct store/anim/layer -o other --frames 2" + options);
+    EXPECT_EQ(made.code, 0) << made.err;
+    return load_rgb((folder / "other/0002.exr").string(), "").rgb;
+  };
+  EXPECT_NE(picture_with(denoiser), picture_with(""));
+}
+
+// Frames that are alike share their files: they had the exposure of the first.
+TEST_F(ToolSequence, StillFramesKeepTheirExposure) {
+  render(GRADUS_RECONSTRUCTION_L2, 4, true);
+  ASSERT_EQ(run("reconstruct store/anim/layer -o pictures").code, 0);
+  const auto value_of = [&](int frame) {
+    return load_rgb((folder / ("pictures/000" + std::to_string(frame) + ".exr")).string(), "").rgb[600];
+  };
+  ASSERT_GT(value_of(1), 0.0f);
+  EXPECT_NEAR(value_of(4), 4.0f * value_of(1), 1e-3f * value_of(1));
 }
 
 // A still had the name of an animation's own half: it took its place.

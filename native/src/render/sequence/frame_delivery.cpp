@@ -66,23 +66,31 @@ void FrameDelivery::render() {
 std::shared_ptr<Frame> FrameDelivery::load() {
   double offset_samples = 0.0;
   const std::shared_ptr<Frame> frame = sequence_->open_frame(number_, &offset_samples);
-  if (changed_) {
-    // AUTO was resolved when the frame was sampled.
-    if (changed_->reconstruction != GRADUS_RECONSTRUCTION_AUTO) frame->settings.reconstruction = changed_->reconstruction;
-    frame->settings.reconstruction_alpha = changed_->reconstruction_alpha;
-    if (changed_->denoiser != GRADUS_DENOISER_AUTO) frame->settings.denoiser = changed_->denoiser;
-    frame->settings.film_exposure = changed_->film_exposure;
-  }
   const auto record = sequence_->records_.find(number_);
-  if (record != sequence_->records_.end()) record_ = record->second;
-  if (record == sequence_->records_.end()) {
+  const bool is_planned = record != sequence_->records_.end();
+  if (is_planned) record_ = record->second;
+  if (!is_planned) {
     record_.plan = plan_of(*frame);
     record_.stats.stopped = "stored";
   }
+  const std::optional<GradusSettings> asked = changed_ ? changed_ : sequence_->folder_.settings(number_);
+  if (asked) deliver_as(*asked, is_planned, frame.get());
   record_.plan.delivered = delivered_region(*frame);
   record_.stats.offset_samples = offset_samples;
   read_differences_over_time(*frame);
   return frame;
+}
+
+// AUTO is what the plan has come to. Of a frame that was sampled elsewhere it is what that was sampled for, and a denoiser where it pays.
+void FrameDelivery::deliver_as(const GradusSettings& asked, bool is_planned, Frame* frame) const {
+  const Plan& plan = record_.plan;
+  const bool denoises = is_planned ? plan.denoises : denoiser_pays(mean_samples(*frame));
+  const uint32_t automatic = !denoises ? GRADUS_DENOISER_NONE : is_planned ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_AUTO;
+  GradusSettings& settings = frame->settings;
+  settings.reconstruction = asked.reconstruction == GRADUS_RECONSTRUCTION_AUTO ? plan.reconstruction : asked.reconstruction;
+  settings.reconstruction_alpha = asked.reconstruction_alpha;
+  settings.denoiser = asked.denoiser == GRADUS_DENOISER_AUTO ? automatic : asked.denoiser;
+  settings.film_exposure = asked.film_exposure;
 }
 
 void FrameDelivery::reconstruct() {
@@ -115,6 +123,7 @@ void FrameDelivery::denoise() {
   std::string failure;
   const auto library = choose_denoiser(frame_->settings.denoiser, sequence_->device_.get(), &failure);
   if (!library) return;
+  if (!has_features(*frame_)) stats.warnings.emplace_back("the frame holds no features to guide the denoiser");
   const uint32_t threads = threads_of(frame_->settings, sequence_->device_.get());
   std::vector<float> rgba =
       denoise_combined(*library, *frame_, frame_->settings.reconstruction, record_.plan.delivered, threads, cancel, combined_, &failure);

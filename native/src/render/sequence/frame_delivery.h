@@ -23,6 +23,7 @@ class FrameDelivery final : public RenderTask {
   uint64_t memory_bytes() const override;
 
   std::shared_ptr<Frame> load();
+  void deliver_as(const GradusSettings& asked, bool is_planned, Frame* frame) const;
   void reconstruct();
   void denoise();
   // Passes Gradient T and Gradient T Link.

@@ -242,6 +242,10 @@ void FrameSampling::finish(const std::shared_ptr<const Frame>& base) {
   sequence_->before_ = make_before(input_.snapshot, input_.settings, base.get());
   sequence_->records_[input_.settings.frame] = record_;
   sequence_->forms_[input_.settings.frame] = form_of(*base);
+  GradusSettings delivered = input_.settings;
+  delivered.reconstruction = record_.plan.reconstruction;
+  delivered.denoiser = record_.plan.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
+  sequence_->folder_.save_settings(delivered, delivered.frame);
   const std::lock_guard lock(mutex_);
   frame_ = base;
 }

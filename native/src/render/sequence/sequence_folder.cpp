@@ -3,15 +3,25 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "base/error.h"
+#include "frame/file_writer.h"
 #include "frame/part_file.h"
 #include "frame/store.h"
+#include "settings/options.h"
 
 namespace gradus {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kSettings = "json";
+
+}  // namespace
 
 SequenceFolder::SequenceFolder(const std::string& path)
     : temporary_(path.empty() ? std::make_unique<TemporaryFolder>() : nullptr), path_(temporary_ ? temporary_->path() : path) {
@@ -21,10 +31,14 @@ SequenceFolder::SequenceFolder(const std::string& path)
   if (error) throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make the frame store's folder " + path_ + ": " + error.message());
 }
 
-std::string SequenceFolder::path(int32_t frame, FramePart part) const {
+std::string SequenceFolder::path(int32_t frame, const char* ending) const {
   std::array<char, 40> name{};
-  std::snprintf(name.data(), name.size(), "/f%+08d.%s.exr", frame, part == FramePart::kBase ? "base" : "offset");
+  std::snprintf(name.data(), name.size(), "/f%+08d.%s", frame, ending);
   return path_ + name.data();
+}
+
+std::string SequenceFolder::path(int32_t frame, FramePart part) const {
+  return path(frame, part == FramePart::kBase ? "base.exr" : "offset.exr");
 }
 
 bool SequenceFolder::holds(int32_t frame) const {
@@ -35,6 +49,24 @@ bool SequenceFolder::holds(int32_t frame) const {
 std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part) const { return load_frame(path(frame, part)); }
 
 void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part) const { save_frame(content, path(frame, part)); }
+
+std::optional<GradusSettings> SequenceFolder::settings(int32_t frame) const {
+  const std::string name = path(frame, kSettings);
+  std::ifstream file(name);
+  if (!file) return std::nullopt;
+  try {
+    return settings_from_json(nlohmann::json::parse(file));
+  } catch (const std::exception& e) {
+    throw invalid_argument("cannot read " + name + ": " + e.what());
+  }
+}
+
+void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame) const {
+  const std::string text = settings_to_json(settings).dump(1);
+  FileWriter file(path(frame, kSettings));
+  file.write(text.data(), text.size());
+  file.commit();
+}
 
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
   for (const FramePart part : {FramePart::kOffset, FramePart::kBase}) {
@@ -47,6 +79,7 @@ void SequenceFolder::forget(int32_t frame) const {
   std::error_code ignored;
   if (!temporary_) return;
   for (const FramePart part : {FramePart::kBase, FramePart::kOffset}) fs::remove(path(frame, part), ignored);
+  fs::remove(path(frame, kSettings), ignored);
 }
 
 }  // namespace gradus

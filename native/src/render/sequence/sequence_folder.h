@@ -1,7 +1,9 @@
-// Where the raw frames of a sequence lie: f<number>.base.exr and f<number>.offset.exr in one folder (contract 7.2).
+// Where the raw frames of a sequence lie: f<number>.base.exr and f<number>.offset.exr in one folder (contract 7.2), beside them
+// f<number>.json with the settings that the frame was asked for.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/temporary_folder.h"
@@ -24,12 +26,18 @@ class SequenceFolder {
   // Throws invalid_argument with path and cause. By the threads of the caller's arena; so does save().
   std::shared_ptr<Frame> load(int32_t frame, FramePart part) const;
   void save(const Frame& content, int32_t frame, FramePart part) const;
+  // Of delivery (exposure and the like): frames that are alike share their files, and may differ in these. Throws invalid_argument with the
+  // path; nothing: those of its files.
+  std::optional<GradusSettings> settings(int32_t frame) const;
+  void save_settings(const GradusSettings& settings, int32_t frame) const;
   // Frame `to` gets the files of frame `from`.
   void repeat(int32_t from, int32_t to) const;
   // Of a temporary folder: the frame is not needed any more.
   void forget(int32_t frame) const;
 
  private:
+  std::string path(int32_t frame, const char* ending) const;
+
   std::unique_ptr<const TemporaryFolder> temporary_;
   std::string path_;
 };

@@ -96,7 +96,7 @@ TEST(C7_Sequence, TwoJobsOnTheSameFramesMakeTheSameBits) {
       EXPECT_EQ(delivered[i].combined, alone[i].combined);
     }
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(shared.path()), fs::directory_iterator()), 8);
+  EXPECT_EQ(std::distance(fs::directory_iterator(shared.path()), fs::directory_iterator()), 12);
 }
 
 // Half of a frame that a killed job had sampled with other settings was taken for one of those that are alike.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "sequence_fixture.h"
+#include "settings/pass_table.h"
 
 namespace gradus::test {
 namespace {
@@ -121,6 +122,46 @@ TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
   const Delivered frame = deliver(sequence.get(), 2);
   EXPECT_EQ(frame.stats["spp_base"], 50.0);
   EXPECT_EQ(frame.stats["spp_offset"], 50.0);
+}
+
+// The files of frames that do not change are those of the first, and so was their exposure.
+TEST(C7_StoredFrames, StillFramesHaveTheirOwnExposure) {
+  Pan pan(0.0f);
+  for (const bool keeps : {false, true}) {
+    const Folder folder;
+    const std::string path = keeps ? folder.path() : "";
+    const auto sequence = make_sequence(1, 3, path);
+    for (int32_t t = 1; t <= 3; ++t) {
+      GradusSettings settings = settings_of(t);
+      settings.film_exposure = float(t);
+      sample(sequence.get(), pan.at(t), settings);
+    }
+    const auto delivered = keeps ? make_sequence(1, 3, path) : sequence;
+    const size_t middle = 4 * (kSide * kSide / 2 + kSide / 2);
+    const float first = deliver(delivered.get(), 1).combined[middle];
+    EXPECT_GT(first, 0.0f);
+    EXPECT_NEAR(deliver(delivered.get(), 3).combined[middle], 3.0f * first, 1e-3f * first);
+  }
+}
+
+// It was delivered as it had been sampled, by L2, while the stats' plan named the other.
+TEST(C7_StoredFrames, AutoIsWhatThePlanSaysNotWhatTheStoreWasSampledFor) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto with_features = [](uint32_t reconstruction) {
+    GradusSettings settings = settings_of(1);
+    settings.reconstruction = reconstruction;
+    settings.passes |= feature_passes();
+    return settings;
+  };
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_features(GRADUS_RECONSTRUCTION_L2));
+  const auto sequence = make_sequence(1, 1, folder.path());
+  GradusSettings automatic = with_features(GRADUS_RECONSTRUCTION_AUTO);
+  automatic.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  sample(sequence.get(), pan.at(1), automatic);
+  const auto task = sequence->deliver(1, &automatic);
+  run(task.get());
+  EXPECT_EQ(nlohmann::json::parse(task->stats())["reconstruction"], "regularized");
 }
 
 // Whatever the store had for the frame before the range was repeated: other seeds, fewer samples, an older scene.
