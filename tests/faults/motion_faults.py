@@ -24,6 +24,7 @@ def blur(choice: str) -> Test:
 
 
 OF_MOTION = (native("Motion.*"),)
+OF_SHADOWS = (native("MovingShadow.LightIsLookedForAtTheMomentOfThePath"),)
 OF_VECTORS = (blur("vectors_and_blur"),)
 
 MOMENT = "moment lost"
@@ -72,11 +73,20 @@ MOTION = (
     Fault(
         18,
         MOMENT,
-        "light is looked for at the opening of the shutter",
+        "lamps are looked for at the opening of the shutter",
         EMITTERS,
         "return ray_between(start, target, view.direction, from.hit.time);",
         "return ray_between(start, target, view.direction, 0.0f);",
-        (native("MovingShadow.LightIsLookedForAtTheMomentOfThePath"),),
+        OF_SHADOWS,
+    ),
+    Fault(
+        18,
+        MOMENT,
+        "the sun is looked for at the opening of the shutter",
+        EMITTERS,
+        "return Ray{start, 0.0f, view.direction, kInfinity, from.hit.time};",
+        "return Ray{start, 0.0f, view.direction, kInfinity, 0.0f};",
+        OF_SHADOWS,
     ),
     Fault(
         19,
