@@ -26,28 +26,24 @@ void SpoolFile::fail(const char* action, int reason) const {
               std::string("cannot ") + action + " a temporary file in " + folder_ + ": " + std::strerror(reason));
 }
 
+template <class Step>
+void SpoolFile::repeat(const char* action, int nothing, size_t size, const Step& step) const {
+  for (size_t done = 0; done < size;) {
+    const ssize_t more = step(done);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) fail(action, more < 0 ? errno : nothing);
+    done += size_t(more);
+  }
+}
+
 void SpoolFile::write(uint64_t place, const void* data, size_t size) {
   const auto* from = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t n = pwrite(descriptor_, from, size, off_t(place));
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) fail("write", n < 0 ? errno : ENOSPC);
-    from += n;
-    place += uint64_t(n);
-    size -= size_t(n);
-  }
+  repeat("write", ENOSPC, size, [&](size_t done) { return pwrite(descriptor_, from + done, size - done, off_t(place + done)); });
 }
 
 void SpoolFile::read(uint64_t place, void* data, size_t size) const {
   auto* to = static_cast<char*>(data);
-  while (size > 0) {
-    const ssize_t n = pread(descriptor_, to, size, off_t(place));
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) fail("read", n < 0 ? errno : EIO);
-    to += n;
-    place += uint64_t(n);
-    size -= size_t(n);
-  }
+  repeat("read", EIO, size, [&](size_t done) { return pread(descriptor_, to + done, size - done, off_t(place + done)); });
 }
 
 }  // namespace gradus

@@ -22,6 +22,9 @@ class SpoolFile {
 
  private:
   [[noreturn]] void fail(const char* action, int reason) const;
+  // Until all is done: step(done) does more and returns how much, 0 for the reason `nothing`, below 0 for errno's.
+  template <class Step>
+  void repeat(const char* action, int nothing, size_t size, const Step& step) const;
 
   std::string folder_;
   int descriptor_ = -1;

@@ -64,15 +64,15 @@ void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b,
       kGrain / 2);
 }
 
-// z = x + S(b - A x) with x = S b + P coarse; returns b·z of each row.
-RowSums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* z) {
+// Makes the rows of x + S(b - A x) with x = S b + P coarse: take(y, channel, row).
+template <class Take>
+void interpolate_and_smooth(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, const Take& take) {
   const int w = a.width();
-  RowSums sums(a.height(), b.channels());
   for_pieces(
       a.height(),
       [&](int begin, int end) {
         RollingRows x(w, b.channels());
-        std::vector<float> correction(size_t(w) + 1), s(static_cast<size_t>(w));
+        std::vector<float> correction(size_t(w) + 1), s(static_cast<size_t>(w)), row(s);
         const auto add_row = [&](int y) {
           smooth_zero(a, b, y, s.data(), &x);
           if (y < 0 || y >= a.height()) return;
@@ -88,16 +88,14 @@ RowSums interpolate_and_smooth(const Stencil& a, const Interpolation& p, const F
           add_row(y + 1);
           read_smoothing(a, y, s.data());
           for (int c = 0; c < b.channels(); ++c) {
-            float* to = z->row(y, c);
-            subtract_product(a, b, y, c, &x, to);
+            subtract_product(a, b, y, c, &x, row.data());
             const float* here = x.row(y, c);
-            for (int i = 0; i < w; ++i) to[i] = here[i] + s[i] * to[i];
-            sums.at(y, c) = dot_row(to, b.row(y, c), w);
+            for (int i = 0; i < w; ++i) row[size_t(i)] = here[i] + s[size_t(i)] * row[size_t(i)];
+            take(y, c, row.data());
           }
         }
       },
       kGrain);
-  return sums;
 }
 
 // Sweeps of Jacobi from 0.
@@ -144,13 +142,36 @@ void Multigrid::update() {
   }
 }
 
-RowSums Multigrid::cycle(size_t level, const Field& b, Field* z) {
-  Level& here = levels_[level];
-  if (level + 1 == levels_.size()) return solve_coarsest(here.matrix, b, z);
+const Field& Multigrid::coarse_solution(size_t level, const Field& b) {
   MultigridWork::Level& next = work_->levels_[level + 1];
-  restrict_residual(here.matrix, here.interpolation, b, &next.b);
+  restrict_residual(levels_[level].matrix, levels_[level].interpolation, b, &next.b);
   cycle(level + 1, next.b, &next.z);
-  return interpolate_and_smooth(here.matrix, here.interpolation, b, next.z, z);
+  return next.z;
+}
+
+RowSums Multigrid::cycle(size_t level, const Field& b, Field* z) {
+  const Level& here = levels_[level];
+  if (level + 1 == levels_.size()) return solve_coarsest(here.matrix, b, z);
+  RowSums sums(b.height(), b.channels());
+  interpolate_and_smooth(here.matrix, here.interpolation, b, coarse_solution(level, b), [&](int y, int c, const float* row) {
+    std::copy_n(row, b.width(), z->row(y, c));
+    sums.at(y, c) = dot_row(row, b.row(y, c), b.width());
+  });
+  return sums;
+}
+
+void Multigrid::add_cycle(const Field& b, Field* z) {
+  const Level& here = levels_.front();
+  const auto add = [&](int y, int c, const float* row) {
+    float* to = z->row(y, c);
+    for (int i = 0; i < b.width(); ++i) to[i] += row[i];
+  };
+  if (levels_.size() > 1) return interpolate_and_smooth(here.matrix, here.interpolation, b, coarse_solution(0, b), add);
+  Field more(b.width(), b.height(), b.channels());
+  solve_coarsest(here.matrix, b, &more);
+  for (int c = 0; c < b.channels(); ++c) {
+    for (int y = 0; y < b.height(); ++y) add(y, c, more.row(y, c));
+  }
 }
 
 }  // namespace gradus

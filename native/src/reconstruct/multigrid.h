@@ -34,6 +34,8 @@ class Multigrid {
   // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two threads at once, nor
   // for two multigrids that share their work space.
   RowSums cycle(const Field& b, Field* z) { return cycle(0, b, z); }
+  // z += what cycle() makes of b.
+  void add_cycle(const Field& b, Field* z);
 
  private:
   struct Level {
@@ -41,6 +43,8 @@ class Multigrid {
     Interpolation interpolation;  // from the next one
   };
   RowSums cycle(size_t level, const Field& b, Field* z);
+  // What the grids below a level make of b.
+  const Field& coarse_solution(size_t level, const Field& b);
   std::vector<Level> levels_;
   std::shared_ptr<MultigridWork> work_;
 };

@@ -42,34 +42,50 @@ inline void scatter_row(const Links& links, int y, const float* from, Field* nex
   });
 }
 
+// Passes over all rows, in pieces with scratch of their own: Pass has make(y), called for each row with the ones before and behind it, and
+// rows beyond the border among them, and then use(y).
+template <class MakePass>
+void roll_over_rows(int height, const MakePass& make_pass) {
+  constexpr int kGrain = 64;  // a row on each side of a piece is made twice
+  for_pieces(
+      height,
+      [&](int begin, int end) {
+        auto pass = make_pass();
+        pass.make(begin - 1);
+        pass.make(begin);
+        for (int y = begin; y < end; ++y) {
+          pass.make(y + 1);
+          pass.use(y);
+        }
+      },
+      kGrain);
+}
+
 // Passes over the rows of K v, where fill(y, &rows) makes row y of v out of zeros and use(y, &rows, products) takes row y of v
 // and of the product, all channels one after another.
 template <class Fill, class Use>
 void for_product_rows(const ScreenedLaplacian& k, int channels, const Fill& fill, const Use& use) {
-  const int w = k.width(), h = k.height();
-  constexpr int kGrain = 64;  // a row on each side of a piece is made twice
-  for_pieces(
-      h,
-      [&](int begin, int end) {
-        RollingRows rows(w, channels);
-        LaplacianRow weights(w);
-        std::vector<float> products(size_t(w) * size_t(channels));
-        const auto make = [&](int y) {
-          for (int c = 0; c < channels; ++c) std::fill_n(rows.row(y, c), w, 0.0f);
-          if (y >= 0 && y < h) fill(y, &rows);
-        };
-        make(begin - 1);
-        make(begin);
-        for (int y = begin; y < end; ++y) {
-          make(y + 1);
-          weights.load(k, y);
-          for (int c = 0; c < channels; ++c) {
-            weights.apply(rows.row(y - 1, c), rows.row(y, c), rows.row(y + 1, c), products.data() + ptrdiff_t(c) * w);
-          }
-          use(y, &rows, products.data());
-        }
-      },
-      kGrain);
+  struct Pass {
+    void make(int y) {
+      for (int c = 0; c < channels; ++c) std::fill_n(rows.row(y, c), k.width(), 0.0f);
+      if (y >= 0 && y < k.height()) fill(y, &rows);
+    }
+    void use(int y) {
+      weights.load(k, y);
+      for (int c = 0; c < channels; ++c) {
+        weights.apply(rows.row(y - 1, c), rows.row(y, c), rows.row(y + 1, c), products.data() + ptrdiff_t(c) * k.width());
+      }
+      take(y, &rows, products.data());
+    }
+    const ScreenedLaplacian& k;
+    int channels;
+    const Fill& fill;
+    const Use& take;
+    RollingRows rows{k.width(), channels};
+    LaplacianRow weights{k.width()};
+    std::vector<float> products = std::vector<float>(size_t(k.width()) * size_t(channels));
+  };
+  roll_over_rows(k.height(), [&] { return Pass{k, channels, fill, use}; });
 }
 
 }  // namespace gradus

@@ -79,8 +79,7 @@ void read_guess(const Stencil& s, const LaplacianRow& k, int y, float* out) {
 }  // namespace
 
 TimeLadder::TimeLadder(const SpaceTimeSystem& system, int channels, int cycles)
-    : system_(system), solved_(system.width(), system.height(), channels) {
-  if (cycles > 1) residual_ = correction_ = solved_;
+    : system_(system), solved_(system.width(), system.height(), channels), cycles_(cycles) {
   const auto work = std::make_shared<MultigridWork>(system.width(), system.height(), channels);
   for (int t = 0; t < system.frames(); ++t) schur_.emplace_back(system.width(), system.height(), work);
 }
@@ -99,20 +98,23 @@ void TimeLadder::update() {
   }
 }
 
-void TimeLadder::solve_frame(size_t t, const Field& b) {
+void TimeLadder::solve_frame(size_t t, const Field& b, Field* residual) {
   schur_[t].cycle(b, &solved_);
-  if (residual_.height() == 0) return;
+  if (cycles_ == 1) return;
   const Stencil& s = schur_[t].matrix();
-  for_rows(b.height(), [&](int y) {
-    for (int c = 0; c < b.channels(); ++c) {
-      float* to = residual_.row(y, c);
-      apply_row(s, solved_, y, c, to);
-      const float* from = b.row(y, c);
-      for (int x = 0; x < b.width(); ++x) to[x] = from[x] - to[x];
+  const int w = b.width(), channels = b.channels();
+  for_pieces(b.height(), [&](int begin, int end) {
+    std::vector<float> product(static_cast<size_t>(w));
+    for (int y = begin; y < end; ++y) {
+      for (int c = 0; c < channels; ++c) {
+        apply_row(s, solved_, y, c, product.data());
+        const float* from = b.row(y, c);
+        float* to = residual->row(y, c);
+        for (int x = 0; x < w; ++x) to[x] = from[x] - product[size_t(x)];
+      }
     }
   });
-  schur_[t].cycle(residual_, &correction_);
-  for_values(&solved_, [&](float& value, int x, int y, int c) { value += correction_.row(y, c)[x]; });
+  schur_[t].add_cycle(*residual, &solved_);
 }
 
 // next += Fᵀ (K z + Θ (b − S z)), z the frame's solution for the right side b.
@@ -138,44 +140,48 @@ void TimeLadder::carry_forth(int t, const Field& b, const Field& z, Field* next)
   });
 }
 
-// b += (K − SΘ) F next: the transpose, but for what is added after the cycle.
+namespace {
+
+// b += (K − SΘ) F next
+struct CarriedBack {
+  void make(int y) {
+    for (int c = 0; c < next.channels(); ++c) std::fill_n(values.row(y, c), s.width(), 0.0f);
+    if (y >= 0 && y < s.height()) {
+      gather_row(links, y, next, &values);
+      weights.load(k, y);
+      read_guess(s, weights, y, guess.data());
+    }
+    for (int c = 0; c < next.channels(); ++c) {
+      const float* from = values.row(y, c);
+      float* to = guesses.row(y, c);
+      for (int x = 0; x < s.width(); ++x) to[x] = guess[size_t(x)] * from[x];
+    }
+  }
+  void use(int y) {
+    weights.load(k, y);
+    for (int c = 0; c < next.channels(); ++c) {
+      weights.apply(values.row(y - 1, c), values.row(y, c), values.row(y + 1, c), product.data());
+      apply_row(s, y, guesses.row(y - 1, c), guesses.row(y, c), guesses.row(y + 1, c), of_guess.data());
+      float* to = b->row(y, c);
+      for (int x = 0; x < s.width(); ++x) to[x] += product[size_t(x)] - of_guess[size_t(x)];
+    }
+  }
+  const ScreenedLaplacian& k;
+  const Stencil& s;
+  const Links& links;
+  const Field& next;
+  Field* b;
+  RollingRows values{s.width(), next.channels()}, guesses{s.width(), next.channels()};
+  LaplacianRow weights{s.width()};
+  std::vector<float> guess = std::vector<float>(size_t(s.width())), product = guess, of_guess = guess;
+};
+
+}  // namespace
+
+// The transpose, but for what is added after the cycle.
 void TimeLadder::carry_back(int t, const Field& next, Field* b) const {
-  const ScreenedLaplacian& k = system_.coupling(t);
   const Stencil& s = schur_[size_t(t)].matrix();
-  const int w = s.width(), h = s.height(), channels = next.channels();
-  for_pieces(
-      h,
-      [&](int begin, int end) {
-        RollingRows values(w, channels), guesses(w, channels);
-        LaplacianRow weights(w);
-        std::vector<float> guess(static_cast<size_t>(w)), product(guess), of_guess(guess);
-        const auto make = [&](int y) {
-          for (int c = 0; c < channels; ++c) std::fill_n(values.row(y, c), w, 0.0f);
-          if (y >= 0 && y < h) {
-            gather_row(system_.links(t), y, next, &values);
-            weights.load(k, y);
-            read_guess(s, weights, y, guess.data());
-          }
-          for (int c = 0; c < channels; ++c) {
-            const float* from = values.row(y, c);
-            float* to = guesses.row(y, c);
-            for (int x = 0; x < w; ++x) to[x] = guess[size_t(x)] * from[x];
-          }
-        };
-        make(begin - 1);
-        make(begin);
-        for (int y = begin; y < end; ++y) {
-          make(y + 1);
-          weights.load(k, y);
-          for (int c = 0; c < channels; ++c) {
-            weights.apply(values.row(y - 1, c), values.row(y, c), values.row(y + 1, c), product.data());
-            apply_row(s, y, guesses.row(y - 1, c), guesses.row(y, c), guesses.row(y + 1, c), of_guess.data());
-            float* to = b->row(y, c);
-            for (int x = 0; x < w; ++x) to[x] += product[size_t(x)] - of_guess[size_t(x)];
-          }
-        }
-      },
-      64);
+  roll_over_rows(s.height(), [&] { return CarriedBack{system_.coupling(t), s, system_.links(t), next, b}; });
 }
 
 // z += Θ F next
@@ -202,11 +208,12 @@ std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
   const int channels = solved_.channels();
   const size_t last = schur_.size() - 1;
   // z holds the right sides of the frames, to which the frame before adds its share on the way forth, and the frame behind on the way back.
+  // On the way forth the next frame's place is still free; at the end of it, and on the way back, the right side is not needed again.
   for (size_t t = 0; t <= last; ++t) {
     Field& right_side = (*z)[t];
     copy(r[t], &right_side);
     if (t > 0) carry_forth(int(t) - 1, (*z)[t - 1], solved_, &right_side);
-    solve_frame(t, right_side);
+    solve_frame(t, right_side, t < last ? &(*z)[t + 1] : &right_side);
   }
   std::vector<RowSums> sums;
   for (size_t t = last;; --t) {
@@ -216,7 +223,7 @@ std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
                                 [&](int y, int c) { return dot_row(r[t].row(y, c), solution.row(y, c), system_.width()); }));
     if (t == 0) return sums;
     carry_back(int(t) - 1, solution, &(*z)[t - 1]);
-    solve_frame(t - 1, (*z)[t - 1]);
+    solve_frame(t - 1, (*z)[t - 1], &(*z)[t - 1]);
     add_guess(int(t) - 1, solution, &solved_);
   }
 }

@@ -29,7 +29,8 @@ class TimeLadder {
   std::vector<RowSums> apply(const Frames& r, Frames* z);
 
  private:
-  void solve_frame(size_t t, const Field& b);  // → solved_
+  // → solved_. residual: scratch, which may be b.
+  void solve_frame(size_t t, const Field& b, Field* residual);
   void carry_forth(int t, const Field& b, const Field& z, Field* next) const;
   void carry_back(int t, const Field& next, Field* b) const;
   void add_guess(int t, const Field& next, Field* z) const;
@@ -37,7 +38,7 @@ class TimeLadder {
   const SpaceTimeSystem& system_;
   std::vector<Multigrid> schur_;  // of B_t + K_t, B_t with what earlier frames leave
   Field solved_;                  // of one frame
-  Field residual_, correction_;   // of a second cycle
+  int cycles_;
 };
 
 }  // namespace gradus
