@@ -284,8 +284,9 @@ def test_stored_frames_open_in_other_programs(cube: Any, render: Render, tmp_pat
     file, parts = oiio.ImageInput.open(path), {}
     while file.seek_subimage(len(parts), 0):
         parts[file.spec().getattribute("oiio:subimagename")] = file.spec().channelnames
-    assert list(parts) == ["samples", "gradients", "features", "passes"]
-    assert parts["samples"] == tuple(f"{half}.{channel}" for half in "AB" for channel in ("R", "G", "B", "count.V"))
+    features = [f"Denoising_{name}" for name in ("Normal", "Albedo", "Depth")]
+    assert list(parts) == ["samples", "counts", "gradients", "pairs", *features, "passes"]
+    assert parts["samples"] == tuple(f"{half}.{channel}" for half in "AB" for channel in "RGB")
     assert not any(np.isnan(file.read_image(part, 0, 0, -1, oiio.FLOAT)).any() for part in range(len(parts)))
 
 

@@ -1,7 +1,7 @@
 // Blocks of OpenEXR's ZIP compression: sixteen rows, of each row one channel after the other, packed in zlib's format.
 //
-// OpenEXR does the same by zlib alone. That takes two to three times as long where most planes are smooth, and four times where they are
-// noisy sums: of these, most bytes are not worth packing.
+// OpenEXR does the same by zlib alone, and packs all. That takes two to three times as long where planes are smooth, and many times as long
+// where they are noisy sums, which are hardly worth packing.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ using Bytes = std::vector<unsigned char>;
 class BlockCodec {
  public:
   BlockCodec();
-  // What stands in a file for the block: the block itself where that is not longer.
+  // What stands in a file for the block: the block itself where packing gains little.
   Bytes pack(const Bytes& block);
   // *block has its size. False: the bytes stand for no such block.
   bool unpack(const unsigned char* packed, size_t size, Bytes* block);

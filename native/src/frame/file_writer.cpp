@@ -5,6 +5,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <vector>
 
 #include "base/error.h"
 #include "frame/part_file.h"
@@ -71,6 +73,21 @@ void FileWriter::commit() {
     fail("write");
   }
   sync_folder_of(path_);
+}
+
+void copy_file(const std::string& path, const std::string& name) {
+  constexpr size_t kPiece = 1 << 20;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> from(std::fopen(path.c_str(), "rb"), std::fclose);
+  const auto refuse = [&] { throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot read " + path + ": " + std::strerror(errno)); };
+  if (!from) refuse();
+  FileWriter to(name);
+  std::vector<char> piece(kPiece);
+  for (size_t size = kPiece; size == kPiece;) {
+    size = std::fread(piece.data(), 1, kPiece, from.get());
+    to.write(piece.data(), size);
+  }
+  if (std::ferror(from.get()) != 0) refuse();
+  to.commit();
 }
 
 }  // namespace gradus

@@ -28,4 +28,7 @@ class FileWriter {
   std::FILE* file_ = nullptr;
 };
 
+// As it is, under another name, in the place of what has that. Throws as FileWriter.
+void copy_file(const std::string& path, const std::string& name);
+
 }  // namespace gradus

@@ -6,6 +6,7 @@
 
 #include "base/fpu.h"
 #include "frame/frame.h"
+#include "frame/read_pixels.h"
 
 namespace gradus {
 
@@ -83,13 +84,13 @@ namespace {
 
 // Images by rows: read_primal(y, row) and read_difference(offset, y, row).
 template <class ReadPrimal, class ReadDifference>
-GradientImages read_all(const Frame& frame, const ReadPrimal& read_primal, const ReadDifference& read_difference) {
+GradientImages read_all(const Frame& frame, bool differences, const ReadPrimal& read_primal, const ReadDifference& read_difference) {
   GradientImages images;
   images.width = frame.region.width();
   images.height = frame.region.height();
   images.channels = frame.channels;
   images.primal = read_rows(frame, read_primal);
-  if (!frame.gradients) return images;
+  if (!frame.gradients || !differences) return images;
   images.dx = read_rows(frame, [&](int y, float* row) { read_difference(kRight, y, row); });
   images.dy = read_rows(frame, [&](int y, float* row) { read_difference(kUp, y, row); });
   return images;
@@ -113,18 +114,16 @@ void fill_unknown(const Frame& frame, int y, float* row) {
   }
 }
 
-}  // namespace
-
-GradientImages read_images(const Frame& frame, int component) {
+GradientImages read_images(const Frame& frame, int component, bool differences) {
   return read_all(
-      frame, [&](int y, float* row) { read_primal_row(frame, component, {}, y, row); },
+      frame, differences, [&](int y, float* row) { read_primal_row(frame, component, {}, y, row); },
       [&](Offset offset, int y, float* row) { read_difference_row(frame, component, offset, {}, y, row); });
 }
 
-GradientImages read_half_differences(const Frame& frame, int component) {
+GradientImages read_half_differences(const Frame& frame, int component, bool differences) {
   const size_t size = size_t(frame.region.width()) * size_t(frame.channels);
   return read_all(
-      frame,
+      frame, differences,
       [&](int y, float* row) {
         read_half_difference(
             size, [&](HalfRange half, float* to) { read_primal_row(frame, component, half, y, to); }, row);
@@ -135,6 +134,13 @@ GradientImages read_half_differences(const Frame& frame, int component) {
             size, [&](HalfRange half, float* to) { read_difference_row(frame, component, offset, half, y, to); }, row);
       });
 }
+
+}  // namespace
+
+GradientImages read_images(const Frame& frame, int component) { return read_images(frame, component, true); }
+GradientImages read_pixels(const Frame& frame, int component) { return read_images(frame, component, false); }
+GradientImages read_half_differences(const Frame& frame, int component) { return read_half_differences(frame, component, true); }
+GradientImages read_half_differences_of_pixels(const Frame& frame, int component) { return read_half_differences(frame, component, false); }
 
 namespace {
 

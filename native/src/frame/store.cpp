@@ -91,17 +91,37 @@ void check_sources(const Frame& frame) {
   }
 }
 
-Frame read_frame(const std::string& path) {
+Imf::MultiPartInputFile open_file(const std::string& path) {
   constexpr int kNoThreads = 0;  // ours unpack
   constexpr bool kRepair = false;
-  Imf::MultiPartInputFile file(path.c_str(), kNoThreads, kRepair);
-  Frame frame = make_frame(file.header(0));
+  return Imf::MultiPartInputFile(path.c_str(), kNoThreads, kRepair);
+}
+
+Frame read_frame(const std::string& path, StoredContent content) {
+  Imf::MultiPartInputFile file = open_file(path);
+  Frame frame = make_frame(file.header(0), content);
   const std::vector<StoredPart> parts = stored_parts(&frame);
-  if (size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
+  const bool is_whole = content == StoredContent::kAll;
+  if (is_whole ? size_t(file.parts()) != parts.size() : size_t(file.parts()) < parts.size())
+    throw invalid_argument("it has parts of something else");
   for (size_t i = 0; i < parts.size(); ++i) check_part(file.header(int(i)), file.header(0), parts[i]);
   read_blocks(&file, PartRows(parts, frame), parts.size());
   check_sources(frame);
   return frame;
+}
+
+// read(): of the file at `path`. What it throws is told with that.
+template <class Read>
+auto load(const std::string& path, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& e) {
+    throw Error(e.code(), "cannot load frame " + path + ": " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw invalid_argument("cannot load frame " + path + ": " + exr_problem(e));
+  }
 }
 
 }  // namespace
@@ -116,16 +136,12 @@ void save_frame(const Frame& frame, const std::string& path) {
   });
 }
 
-std::shared_ptr<Frame> load_frame(const std::string& path) {
-  try {
-    return std::make_shared<Frame>(read_frame(path));
-  } catch (const Error& e) {
-    throw Error(e.code(), "cannot load frame " + path + ": " + e.what());
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw invalid_argument("cannot load frame " + path + ": " + exr_problem(e));
-  }
+std::shared_ptr<Frame> load_frame(const std::string& path, StoredContent content) {
+  return load(path, [&] { return std::make_shared<Frame>(read_frame(path, content)); });
+}
+
+FrameHeader load_header(const std::string& path) {
+  return load(path, [&] { return read_header(open_file(path).header(0)); });
 }
 
 }  // namespace gradus

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "frame/frame.h"
+#include "frame/frame_header.h"
 
 namespace gradus {
 
@@ -13,7 +13,11 @@ namespace gradus {
 //
 // Writes PATH as a whole or not at all: under a temporary name beside it, synced, then renamed. Throws Error with path and cause.
 void save_frame(const Frame& frame, const std::string& path);
-// Throws invalid_argument with path and cause for a file that is missing, damaged or no frame.
-std::shared_ptr<Frame> load_frame(const std::string& path);
+
+// What is read of a file: the samples alone are a frame without gradients and passes.
+enum class StoredContent { kAll, kSamples };
+// Both throw invalid_argument with path and cause for a file that is missing, damaged or no frame.
+std::shared_ptr<Frame> load_frame(const std::string& path, StoredContent content = StoredContent::kAll);
+FrameHeader load_header(const std::string& path);
 
 }  // namespace gradus

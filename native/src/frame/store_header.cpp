@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 5;
+constexpr int kFormat = 6;
 constexpr int kMaxSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
 
@@ -106,37 +106,21 @@ Imf::Header make_header(const Frame& frame, const StoredPart& part) {
   return header;
 }
 
-Frame make_frame(const Imf::Header& header, const json& description) {
-  const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
+json description_of(const Imf::Header& header) {
+  const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
+  if (!attribute) throw damaged("it is no frame of Gradus");
+  json description = json::parse(attribute->value());
+  if (description.at("format") != kFormat) throw damaged("it was written by another version of Gradus");
+  return description;
+}
+
+void check_size(const Imath::Box2i& display, const Imath::Box2i& data) {
   const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
   if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxSide || display.max.y < 0 ||
       display.max.y >= kMaxSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
       !inside(data.min.y, data.max.y, display.max.y + 1)) {
     throw damaged("its size is wrong");
   }
-  const int height = display.max.y + 1, channels = description.at("channels"), components = description.at("components");
-  if ((channels != 3 && channels != 4) || components < 1 || components > 64) throw damaged("its planes are wrong");
-  const bool gradients = description.at("gradients");
-  GradusSettings settings = settings_from_json(description.at("settings"));
-  const uint64_t passes = description.at("planes");
-  const Region region{data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
-  const bool has_fallback = wants(settings.passes, GRADUS_PASS_FALLBACK);
-  const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
-  const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes) * uint64_t(region.area()), available = machine_memory_bytes();
-  if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
-
-  Frame frame(uint32_t(display.max.x + 1), uint32_t(height), region, channels, components, gradients);
-  frame.settings = settings;
-  frame.frame_number = description.at("frame");
-  frame.scene_key = std::stoull(description.at("scene_key").get<std::string>(), nullptr, 16);
-  frame.counters = counters_from_json(description.at("counters"));
-  frame.samples = ranges_from_json(description.at("samples"));
-  if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), region);
-  frame.passes = make_pass_planes(passes, size_t(region.area()));
-  if (has_fallback) frame.fallback.assign(size_t(region.area()), 0.0f);
-  if (description.contains("replayed_frame"))
-    frame.replayed = {description.at("replayed_frame"), std::vector<int32_t>(size_t(region.area()))};
-  return frame;
 }
 
 void check_regions(const Frame& frame) {
@@ -151,6 +135,26 @@ void check_regions(const Frame& frame) {
     throw damaged("its settings name another size");
 }
 
+Region region_of(const Imf::Header& header) {
+  const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
+  check_size(display, data);
+  const int height = display.max.y + 1;
+  return {data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
+}
+
+FrameHeader read_header(const Imf::Header& header, const json& description) {
+  FrameHeader frame;
+  frame.region = region_of(header);
+  frame.channels = description.at("channels");
+  if (frame.channels != 3 && frame.channels != 4) throw damaged("its planes are wrong");
+  frame.settings = settings_from_json(description.at("settings"));
+  frame.samples = ranges_from_json(description.at("samples"));
+  frame.replayed_frame = description.value("replayed_frame", 0);
+  frame.scene_key = std::stoull(description.at("scene_key").get<std::string>(), nullptr, 16);
+  frame.frame_number = description.at("frame");
+  return frame;
+}
+
 }  // namespace
 
 std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<StoredPart>& parts) {
@@ -161,12 +165,31 @@ std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<Stor
   return headers;
 }
 
-Frame make_frame(const Imf::Header& header) {
-  const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
-  if (!attribute) throw damaged("it is no frame of Gradus");
-  const json description = json::parse(attribute->value());
-  if (description.at("format") != kFormat) throw damaged("it was written by another version of Gradus");
-  Frame frame = make_frame(header, description);
+FrameHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
+
+Frame make_frame(const Imf::Header& header, StoredContent content) {
+  const json description = description_of(header);
+  const FrameHeader known = read_header(header, description);
+  const int components = description.at("components");
+  if (components < 1 || components > 64) throw damaged("its planes are wrong");
+  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && description.at("gradients").get<bool>();
+  const uint64_t passes = is_whole ? description.at("planes").get<uint64_t>() : 0, pixels = uint64_t(known.region.area());
+  const bool has_fallback = is_whole && wants(known.settings.passes, GRADUS_PASS_FALLBACK);
+  const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
+  const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes) * pixels, available = machine_memory_bytes();
+  if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
+
+  const Imath::V2i last = header.displayWindow().max;
+  Frame frame(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, components, gradients);
+  frame.settings = known.settings;
+  frame.frame_number = known.frame_number;
+  frame.scene_key = known.scene_key;
+  frame.counters = counters_from_json(description.at("counters"));
+  frame.samples = known.samples;
+  if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), known.region);
+  frame.passes = make_pass_planes(passes, pixels);
+  if (has_fallback) frame.fallback.assign(pixels, 0.0f);
+  if (description.contains("replayed_frame")) frame.replayed = {description.at("replayed_frame"), std::vector<int32_t>(pixels)};
   check_regions(frame);
   return frame;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "frame/store.h"
 #include "frame/store_planes.h"
 
 namespace gradus {
@@ -13,8 +14,10 @@ namespace gradus {
 // One for each part; the description is in the first.
 std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<StoredPart>& parts);
 
-// From the first part's: a frame with zeroed planes. Throws Error with what is wrong: no frame, another version, larger than the memory.
-Frame make_frame(const Imf::Header& header);
+// From the first part's. All throw Error with what is wrong: no frame, another version, larger than the memory.
+FrameHeader read_header(const Imf::Header& header);
+// A frame with zeroed planes.
+Frame make_frame(const Imf::Header& header, StoredContent content);
 // The header of a part as make_headers() makes it.
 void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part);
 

@@ -54,32 +54,43 @@ std::vector<StoredPlane> samples(Frame* frame) {
     for (size_t c = 0; c < frame->components.size(); ++c) {
       list.radiance(layer_of(c, half), frame->channels, &frame->components[c].primal[half]);
     }
-    list.counts(std::string(kHalfNames[half]) + ".count", &frame->count[half]);
   }
+  return list.take();
+}
+
+std::vector<StoredPlane> counts(Frame* frame) {
+  PlaneList list;
+  for (int half = 0; half < kHalves; ++half) list.counts(std::string(kHalfNames[half]) + ".count", &frame->count[half]);
   list.links("source", &frame->replayed.pixel);
   return list.take();
 }
+
+std::string layer_of(int half, int offset) { return std::string(kHalfNames[half]) + "." + kOffsetNames[offset]; }
 
 std::vector<StoredPlane> gradients(Frame* frame) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) {
     for (int o = 0; o < kOffsets; ++o) {
-      const std::string offset = std::string(".") + kOffsetNames[o];
       for (size_t c = 0; c < frame->components.size(); ++c) {
-        list.radiance(layer_of(c, half) + offset, frame->channels, &frame->components[c].gradient[half][o]);
+        list.radiance(layer_of(c, half) + "." + kOffsetNames[o], frame->channels, &frame->components[c].gradient[half][o]);
       }
-      list.vectors(kHalfNames[half] + offset + ".pairs", 1, &frame->pair_count[half][o]);
     }
   }
   return list.take();
 }
 
-std::vector<StoredPlane> features(Frame* frame) {
+std::vector<StoredPlane> pairs(Frame* frame) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) {
-    for (PassPlane& plane : frame->passes) {
-      if (plane.in_halves) list.vectors(std::string(kHalfNames[half]) + "." + layer_of(plane), plane.channels, &plane.values[half]);
-    }
+    for (int o = 0; o < kOffsets; ++o) list.vectors(layer_of(half, o) + ".pairs", 1, &frame->pair_count[half][o]);
+  }
+  return list.take();
+}
+
+std::vector<StoredPlane> feature(PassPlane* plane) {
+  PlaneList list;
+  for (int half = 0; half < kHalves; ++half) {
+    list.vectors(std::string(kHalfNames[half]) + "." + layer_of(*plane), plane->channels, &plane->values[half]);
   }
   return list.take();
 }
@@ -99,7 +110,11 @@ std::vector<StoredPlane> passes(Frame* frame) {
 
 std::vector<StoredPart> stored_parts(Frame* frame) {
   std::vector<StoredPart> parts = {
-      {"samples", samples(frame)}, {"gradients", gradients(frame)}, {"features", features(frame)}, {"passes", passes(frame)}};
+      {"samples", samples(frame)}, {"counts", counts(frame)}, {"gradients", gradients(frame)}, {"pairs", pairs(frame)}};
+  for (PassPlane& plane : frame->passes) {
+    if (plane.in_halves) parts.push_back({layer_of(plane), feature(&plane)});
+  }
+  parts.push_back({"passes", passes(frame)});
   std::erase_if(parts, [](const StoredPart& part) { return part.planes.empty(); });
   return parts;
 }

@@ -45,11 +45,14 @@ TEST(BlockCodec, SameValuesTakeNextToNothing) { EXPECT_LT(BlockCodec().pack(Byte
 
 TEST(BlockCodec, BetweenNoiseTheRestIsPacked) {
   Bytes block = noise(400000);
-  std::fill(block.begin(), block.begin() + 100000, static_cast<unsigned char>(0));
+  std::fill(block.begin(), block.begin() + 200000, static_cast<unsigned char>(0));
   const size_t size = BlockCodec().pack(block).size();
-  EXPECT_GE(size, size_t{300000});
-  EXPECT_LT(size, size_t{303000});
+  EXPECT_GE(size, size_t{200000});
+  EXPECT_LT(size, size_t{203000});
 }
+
+// Sums of samples took nine tenths of the time that a frame took to be written, and lost a sixth of their size.
+TEST(BlockCodec, SumsOfNoisySamplesStayAsTheyAre) { EXPECT_EQ(BlockCodec().pack(floats(50000)).size(), size_t{200000}); }
 
 // It would not get smaller, and readers know it by its size.
 TEST(BlockCodec, NoiseStaysAsItIs) { EXPECT_EQ(BlockCodec().pack(noise(1 << 16)), noise(1 << 16)); }

@@ -163,12 +163,14 @@ std::vector<std::string> names_of(const Imf::MultiPartInputFile& file) {
 
 TEST_F(F6_Store, PartsAreThereByPurpose) {
   save_frame(*rendered(all_passes(20, 10, 2)), path());
-  EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples", "gradients", "features", "passes"}));
+  EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())),
+            (std::vector<std::string>{"samples", "counts", "gradients", "pairs", "Denoising_Normal", "Denoising_Albedo", "Denoising_Depth",
+                                      "passes"}));
   GradusSettings settings = small_settings(20, 10, 2);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;  // reads no features
   save_frame(*rendered(settings), path());
-  EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples"}));
+  EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples", "counts"}));
   EXPECT_NO_THROW(load_frame(path()));
 }
 
@@ -224,7 +226,7 @@ TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
       {"it is no frame of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().erase("gradus"); }},
       {"it was packed by another program", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { (*h)[1].compression() = Imf::PIZ_COMPRESSION; }},
       {"it has parts of something else", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->pop_back(); }},
-      {"part gradients is missing", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { (*h)[1].setName("other"); }},
+      {"part gradients is missing", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { (*h)[2].setName("other"); }},
       {"channel A.R is missing", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().channels()["A.R"].type = Imf::HALF; }},
   };
   for (const Refusal& refusal : refusals) {

@@ -1,0 +1,22 @@
+// What is known of a stored frame without unpacking its planes.
+#pragma once
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+struct FrameHeader {
+  Region region;
+  int channels = 3;
+  GradusSettings settings{};
+  SampleRanges samples;
+  uint64_t scene_key = 0;
+  int32_t frame_number = 0;
+  int32_t replayed_frame = 0;  // of a replay
+};
+
+inline FrameHeader header_of(const Frame& frame) {
+  return {frame.region, frame.channels, frame.settings, frame.samples, frame.scene_key, frame.frame_number, frame.replayed.stream_frame};
+}
+
+}  // namespace gradus
