@@ -196,3 +196,13 @@ def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: P
     animate(square, expected, 5, 8)
     require_equal(pictures(found), pictures(expected), range(5, 9))
     assert not np.array_equal(pictures(found)[5], pictures(tmp_path / "old")[4])
+
+
+def test_c7_a_store_without_the_features_of_the_reconstruction_is_refused_by_name(square: Scene, tmp_path: Path) -> None:
+    """It was taken, and failed when its frames were to be delivered, with neither a name nor a way out."""
+    square.gradus.frame_store = str(tmp_path / "store")
+    animate(square, tmp_path / "sampled", 1, 2)
+    square.gradus.reconstruction = "REGULARIZED"
+    square.gradus.integrator = "GRADIENT"
+    with pytest.raises(RuntimeError, match=r"f\+0000001\.base\.exr lacks the features .* choose another frame store"):
+        animate(square, tmp_path / "again", 1, 2)

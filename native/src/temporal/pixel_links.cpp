@@ -78,11 +78,12 @@ void for_each_pixel(size_t count, const Body& body) {
 
 }  // namespace
 
-CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region) {
+CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region, const std::function<bool()>& is_cancelled) {
   CentreView view{&snapshot, &camera, region, std::vector<Hit>(size_t(region.area())), std::vector<Vec3>(size_t(region.area()))};
   const float time = snapshot.shutter.time_of_frame();
   const Camera pinhole = camera.without_lens();
   for_each_pixel(view.hits.size(), [&](size_t i) {
+    if (is_cancelled()) return;
     const Ray ray = pinhole.ray({centre_of(region, i), Vec2(0.0f), time});
     view.directions[i] = ray.direction;
     snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &view.hits[i]);

@@ -2,6 +2,7 @@
 // Tracing, section 4.2). It decides who is compared with whom, nothing else: a wrong link costs variance, never the right result.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "frame/frame.h"
@@ -19,8 +20,9 @@ struct CentreView {
   std::vector<Hit> hits;         // by pixels of the region; not valid: the ray left the scene
   std::vector<Vec3> directions;  // of the rays
 };
-// Both live as long as the view.
-CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region);
+// Both live as long as the view. Cancelled: some of its pixels see nothing.
+CentreView view_centres(
+    const Snapshot& snapshot, const Camera& camera, const Region& region, const std::function<bool()>& is_cancelled = [] { return false; });
 
 // By pixels of `from`: the pixel of `to`, or kNoLink. One-to-one. A link leads back to within a pixel of where it came from; of several
 // pixels that lead to one the nearest to the camera has it. Both views have the same region.

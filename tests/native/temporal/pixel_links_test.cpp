@@ -50,6 +50,14 @@ class LinkedFrames : public testing::Test {
   std::vector<std::unique_ptr<CentreView>> views_;
 };
 
+TEST_F(LinkedFrames, ACancelledViewTracesNothing) {
+  const IntegratorContext c = scene_.context(test_settings(kSize, kSize));
+  int traced = 0;
+  const CentreView cancelled = view_centres(*c.snapshot, c.camera, Region{0, 0, kSize, kSize}, [] { return true; });
+  for (const Hit& hit : cancelled.hits) traced += hit.valid() ? 1 : 0;
+  EXPECT_EQ(traced, 0);
+}
+
 TEST_F(LinkedFrames, WhatRestsIsLinkedToItself) {
   const std::vector<int32_t> found = links(view(), view());
   for (size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], int32_t(i));

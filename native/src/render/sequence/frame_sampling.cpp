@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "frame/features.h"
 #include "render/sequence/halves.h"
 #include "settings/options.h"
 #include "temporal/pixel_links.h"
@@ -51,9 +52,17 @@ void limit_mean(double most, std::vector<uint32_t>* counts) {
 
 }  // namespace
 
+void FrameSampling::require_features() const {
+  const bool lacks = record_.plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED && stored_base_ && !has_features(*stored_base_);
+  if (!lacks) return;
+  throw invalid_argument("stored frame " + sequence_->folder_.path(input_.settings.frame, FramePart::kBase) +
+                         " lacks the features that reconstruction regularized reads" + kWayOut);
+}
+
 FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input)
     : sequence_(std::move(sequence)), input_(std::move(input)), stored_base_(stored(FramePart::kBase)), base_(base_input()) {
   record_.plan = base_.plan();
+  require_features();
   record_.plan.chosen.emplace_back("differences over time", "frames of an animation: half of the samples repeat those of the frame before");
 }
 
@@ -152,6 +161,7 @@ void FrameSampling::run(RenderLoop* loop) {
 }
 
 void FrameSampling::save(const Frame& frame, FramePart part) const {
+  stop_if_asked();
   tbb::task_arena(arena_size(input_.threads)).execute([&] { sequence_->folder_.save(frame, input_.settings.frame, part); });
 }
 
@@ -221,8 +231,10 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
     const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, input_.settings.width, input_.settings.height); };
     const Camera camera_before = camera(*before->snapshot), camera_now = camera(*input_.snapshot);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      const auto from = view_centres(*before->snapshot, camera_before, base.region);
-      const auto to = view_centres(*input_.snapshot, camera_now, base.region);
+      const auto is_cancelled = [this] { return is_stopped(); };
+      const auto from = view_centres(*before->snapshot, camera_before, base.region, is_cancelled);
+      const auto to = view_centres(*input_.snapshot, camera_now, base.region, is_cancelled);
+      stop_if_asked();
       replay->sources = {before->stream_frame, inverse_links(link_pixels(from, to))};
     });
   }

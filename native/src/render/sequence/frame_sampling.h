@@ -26,6 +26,8 @@ class FrameSampling final : public RenderTask {
 
   // What the folder has of the frame, if it fits.
   std::shared_ptr<const Frame> stored(FramePart part) const;
+  // Of a stored half. Throws invalid_argument with its path.
+  void require_features() const;
   bool repeats_before() const;
   bool differs_from_before() const;
   void repeat_before();

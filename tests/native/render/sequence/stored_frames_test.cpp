@@ -1,6 +1,7 @@
 // What a sequence finds in its folder, and what it takes of that: its frames are those of a job that was never ended (contract 7.2).
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "sequence_fixture.h"
 #include "settings/pass_table.h"
 
@@ -162,6 +163,24 @@ TEST(C7_StoredFrames, AutoIsWhatThePlanSaysNotWhatTheStoreWasSampledFor) {
   const auto task = sequence->deliver(1, &automatic);
   run(task.get());
   EXPECT_EQ(nlohmann::json::parse(task->stats())["reconstruction"], "regularized");
+}
+
+// It was taken, and failed when it was to be delivered, with neither its name nor a way out.
+TEST(C7_StoredFrames, FramesWithoutTheFeaturesOfTheReconstructionAreRefusedByName) {
+  Pan pan(1.3f);
+  const Folder folder;
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), settings_of(1));
+  GradusSettings regularized = with_passes(settings_of(1));
+  regularized.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  regularized.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  try {
+    const auto sequence = make_sequence(1, 1, folder.path());
+    sequence->sample(pan.at(1), regularized);
+    ADD_FAILURE() << "it was taken";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("f+0000001.base.exr lacks the features"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("choose another frame store"), std::string::npos) << e.what();
+  }
 }
 
 // Whatever the store had for the frame before the range was repeated: other seeds, fewer samples, an older scene.
