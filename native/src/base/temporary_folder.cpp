@@ -46,13 +46,19 @@ std::string temporary_place() {
 TemporaryFolder::TemporaryFolder() {
   const fs::path place = temporary_place();
   remove_dead_folders(place);
+  const auto fail = [&](int reason) {
+    throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make a temporary folder in " + place.string() + ": " + std::strerror(reason));
+  };
   while (lock_ < 0) {
     path_ = (place / (std::string(kPrefix) + "XXXXXX")).string();
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make a temporary folder in " + place.string() + ": " + std::strerror(errno));
-    }
+    if (mkdtemp(path_.data()) == nullptr) fail(errno);
     lock_ = open_folder(path_);
-    if (lock_ < 0) continue;  // another process took it for a dead one's before it was locked
+    if (lock_ < 0 && errno == ENOENT) continue;  // another process took it for a dead one's before it was locked
+    if (lock_ < 0) {
+      const int reason = errno;
+      rmdir(path_.c_str());
+      fail(reason);
+    }
     flock(lock_, LOCK_EX);
     if (fs::exists(path_)) return;
     close(lock_);

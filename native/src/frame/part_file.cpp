@@ -10,6 +10,8 @@
 #include <charconv>
 #include <csignal>
 #include <filesystem>
+#include <mutex>
+#include <set>
 
 namespace gradus {
 namespace {
@@ -53,6 +55,14 @@ void remove_dead_parts(const fs::path& folder) {
   }
 }
 
+// Once in a process: to look through a long animation's folder at each frame takes longer and longer.
+bool is_first_use(const std::string& folder) {
+  static std::mutex mutex;
+  static std::set<std::string> used;
+  const std::lock_guard lock(mutex);
+  return used.insert(folder).second;
+}
+
 // The first part file's name that `make` can give to something.
 template <class Make>
 std::string first_free(const std::string& path, const Make& make) {
@@ -66,8 +76,8 @@ std::string first_free(const std::string& path, const Make& make) {
 }  // namespace
 
 PartFile make_part_file(const std::string& path) {
-  const fs::path folder = fs::path(path).parent_path();
-  remove_dead_parts(folder.empty() ? "." : folder);
+  const fs::path parent = fs::path(path).parent_path(), folder = parent.empty() ? "." : parent;
+  if (is_first_use(folder)) remove_dead_parts(folder);
   PartFile part;
   part.name = first_free(path, [&](const std::string& name) {
     part.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -1,5 +1,6 @@
 // Temporary files: they go with who has made them, however that ends.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -74,6 +75,25 @@ TEST_F(J1_Temporary, ASpoolFileHasNoNameAndKeepsWhatIsWritten) {
   file.read(1, text, 3);
   EXPECT_EQ(std::string(text, 3), "ear");
   EXPECT_THROW(file.read(1000001, text, 3), Error) << "there is less";
+}
+
+// Where files can be opened no more: folders were made without end.
+TEST_F(J1_Temporary, AFolderThatCannotBeOpenedIsRemovedAndNamed) {
+  const int next = dup(0);
+  close(next);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none_left{rlim_t(next), before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none_left), 0);
+  std::string text;
+  try {
+    TemporaryFolder();
+  } catch (const Error& e) {
+    text = e.what();
+  }
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_EQ(text, "cannot make a temporary folder in " + place_ + ": Too many open files");
+  EXPECT_EQ(files(), 0u);
 }
 
 TEST_F(J1_Temporary, APlaceThatIsNotThereIsReplacedByTheSystemsOwn) {

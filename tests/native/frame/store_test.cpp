@@ -501,5 +501,18 @@ TEST_F(F6_Store, WhatDeadWritersHaveLeftIsRemoved) {
   EXPECT_EQ(files(), 4u) << "those that live keep theirs";
 }
 
+// Each frame of a long animation looked through the files of all those before it.
+TEST_F(F6_Store, AProcessLooksThroughAFolderOnce) {
+  FileWriter writer(path("a.exr"));
+  const pid_t child = fork();
+  if (child == 0) {
+    FileWriter first(path("b.exr"));
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  FileWriter other(path("c.exr"));
+  EXPECT_EQ(files(), 3u) << "what the child has left is the next process's to remove";
+}
+
 }  // namespace
 }  // namespace gradus
