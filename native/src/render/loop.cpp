@@ -236,8 +236,7 @@ void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
 
 void RenderLoop::reconstruct_frame() {
   const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
-  if (!show_combined(*frame_, frame_->settings.reconstruction, plan_, stop_, &arena_, &picture_, &stats_.solve)) return;
-  if (stats_.solve.hit_cap) stats_.warnings.push_back("the reconstruction stopped at its limit of steps");
+  show_combined(*frame_, frame_->settings.reconstruction, plan_, stop_, &arena_, &picture_, &stats_.solve);
 }
 
 void RenderLoop::denoise_frame() {

@@ -1,0 +1,27 @@
+// The stats object of a frame.
+#include "render/stats.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/path_scene.h"
+
+namespace gradus::test {
+namespace {
+
+nlohmann::json warnings_of(const RenderStats& stats) {
+  return nlohmann::json::parse(stats_json(stats, Plan{}, make_test_frame(test_settings(4, 4), true)))["warnings"];
+}
+
+// Of stills alone it was a warning: frames of animations that are reconstructed together were delivered without a word.
+TEST(Stats, ASolverThatStoppedAtItsLimitIsAWarning) {
+  RenderStats stats;
+  stats.warnings = {"another"};
+  EXPECT_EQ(warnings_of(stats), nlohmann::json({"another"}));
+  stats.solve.hit_cap = true;
+  EXPECT_EQ(warnings_of(stats), nlohmann::json({"another", "the reconstruction stopped at its limit of steps"}));
+}
+
+}  // namespace
+}  // namespace gradus::test
