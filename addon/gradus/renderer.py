@@ -149,6 +149,7 @@ class Job:
     def new_settings(self) -> native.Settings:
         """Those of the frame that the depsgraph shows."""
         settings = native_settings(native.load(), self.scene, self.layer, self.overrides)
+        settings.width, settings.height = self.engine.resolution_x, self.engine.resolution_y  # by which plans are made before the export
         settings.passes = passes.mask(self.infos)
         if self.is_preview:
             limit_preview(settings, self.host_value("preview_samples"))

@@ -149,7 +149,7 @@ TEST(J1_Window, SequencesOfAnyLengthNeedTheMemoryOfOneWindow) {
     int delivered = 0;
     {
       SequencePictures pictures({0, frames - 1}, {},
-                                {[](const FrameRange& range) {
+                                {[](const FrameRange& range, const CancelTest&) {
                                    return std::make_unique<NoisySource>(WindowSize{96, 64, 3, range.count()}, test::Motion::kStatic);
                                  },
                                  {}},

@@ -4,10 +4,10 @@
 // components can go through the same weights and add up exactly.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "base/cancel_test.h"
 #include "frame/frame.h"
 
 namespace gradus {
@@ -38,8 +38,6 @@ struct SolveReport {
   float residual = 0.0f;  // relative to the right side
   bool hit_cap = false;
 };
-
-using CancelTest = std::function<bool()>;
 
 // L2, exact by DCT: minimises α²‖x−I‖² + ‖Dx−g‖². Unbiased. (Thesis eq. 5.13 with k = 2; Bhat et al. 2008 for the DCT.)
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);

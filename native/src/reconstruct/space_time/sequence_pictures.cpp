@@ -35,7 +35,7 @@ Reconstructed SequencePictures::take(int frame, const CancelTest& cancel, SolveR
 void SequencePictures::solve_next(const CancelTest& cancel, SolveReport* report) {
   const int window = (*next_window_)++;
   const FrameRange frames = grid_.frames(window);
-  const std::unique_ptr<HalvedWindowSource> source = source_.window(frames);
+  const std::unique_ptr<HalvedWindowSource> source = source_.window(frames, cancel);
   const auto take = [&](int t, Reconstructed picture) { blend_.add(window, frames.first + t, std::move(picture)); };
   if (method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     regularized_.reconstruct(frames, *source, cancel, report, take);

@@ -23,8 +23,8 @@ struct SequenceMethod {
 
 // Where a sequence comes from. Its frames are of one size.
 struct SequenceSource {
-  // The frames of a window.
-  std::function<std::unique_ptr<HalvedWindowSource>(const FrameRange& frames)> window;
+  // The frames of a window. Throws the Error CANCELLED.
+  std::function<std::unique_ptr<HalvedWindowSource>(const FrameRange& frames, const CancelTest& cancel)> window;
   // All samples of a frame, with features: for REGULARIZED.
   RegularizedWindows::OpenFrame frame;
 };

@@ -145,7 +145,7 @@ void FrameDelivery::read_differences_over_time(const Frame& frame) {
   const int32_t next = sequence_->frame_at(place);
   const bool wanted = wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
   if (!wanted || !sequence_->folder_.holds(next) || !sequence_->goes_on_at(place, frame.settings.reconstruction)) return;
-  const std::unique_ptr<WindowSource> window = sequence_->open_window({place - 1, place});
+  const std::unique_ptr<WindowSource> window = sequence_->open_window({place - 1, place}, [this] { return is_stopped(); });
   const int width = frame.region.width(), channels = frame.channels;
   std::vector<float> differences(size_t(width) * size_t(channels));
   std::vector<int32_t> links(static_cast<size_t>(width));

@@ -32,9 +32,11 @@ bool is_frame_of(const Frame& stored, const Snapshot& snapshot, GradusSettings s
 
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   const uint32_t r = settings.reconstruction;
+  const uint64_t pixels = uint64_t(settings.width) * settings.height;
   *why_not = settings.integrator == GRADUS_INTEGRATOR_PATH ? "the integrator is path"
              : r == GRADUS_RECONSTRUCTION_NONE             ? "reconstruction is none"
              : settings.samples < 2                        ? "there is one sample per pixel"
+             : pixels > INT32_MAX                          ? "its pixels are too many to be linked"
                                                            : "";
   return why_not->empty();
 }
@@ -126,9 +128,12 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
   return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
 }
 
-std::unique_ptr<HalvedWindowSource> Sequence::open_window(const FrameRange& places) const {
+std::unique_ptr<HalvedWindowSource> Sequence::open_window(const FrameRange& places, const CancelTest& cancel) const {
   const auto part = [&](FramePart which) {
-    return [this, &places, which](int i) { return folder_.load(frame_at(places.first + i), which); };
+    return [this, &places, &cancel, which](int i) {
+      if (cancel()) throw cancelled();
+      return folder_.load(frame_at(places.first + i), which);
+    };
   };
   return std::make_unique<SpooledWindow>(places.count(), part(FramePart::kBase), part(FramePart::kOffset));
 }
@@ -157,7 +162,7 @@ SequencePictures* Sequence::pictures(const SequenceMethod& method, const Frame& 
     int first = place;
     while (first > begin && goes_on_at(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
-    SequenceSource source{[this](const FrameRange& window) { return open_window(window); },
+    SequenceSource source{[this](const FrameRange& window, const CancelTest& cancel) { return open_window(window, cancel); },
                           [this](int at) { return open_frame(frame_at(at)); }};
     pictures_ = std::make_unique<SequencePictures>(places, settings_.windows, std::move(source), method);
     if (last_ < settings_.last) pictures_->end_at(place_of(last_));

@@ -60,7 +60,7 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
   bool goes_on_at(int place, uint32_t reconstruction);
   const FrameForm& form_at(int place);
-  std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places) const;
+  std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places, const CancelTest& cancel) const;
   // All samples of a frame; offset: if given, those of its second part.
   std::shared_ptr<Frame> open_frame(int32_t frame, double* offset = nullptr) const;
   // That have the picture of `frame`: begun anew where it was taken before, or by another method.

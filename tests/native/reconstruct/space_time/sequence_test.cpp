@@ -69,7 +69,8 @@ std::unique_ptr<Window> open_static(const FrameRange& frames) {
 }
 
 SequencePictures static_sequence(const FrameRange& range, bool with_error = false) {
-  return SequencePictures(range, {}, {open_static, {}}, {GRADUS_RECONSTRUCTION_L2, 0.0f, with_error});
+  return SequencePictures(range, {}, {[](const FrameRange& frames, const CancelTest&) { return open_static(frames); }, {}},
+                          {GRADUS_RECONSTRUCTION_L2, 0.0f, with_error});
 }
 
 TEST(B2_Windows, EveryFrameIsDeliveredOnceAndInOrder) {
@@ -156,7 +157,7 @@ TEST(K2_Cancel, SequencesDeliverNothingHalfDone) {
 TEST(B2_Windows, TellTheErrorOfTheirPictures) {
   double told = 0.0, found = 0.0;
   for (unsigned seed = 0; seed < 24; ++seed) {
-    const auto noisy = [&](const FrameRange& frames) {
+    const auto noisy = [&](const FrameRange& frames, const CancelTest&) {
       auto window = std::make_unique<Window>(16, 12, 3, frames.count());
       link(window.get(), Motion::kStatic);
       for (int t = 0; t < frames.count(); ++t) {

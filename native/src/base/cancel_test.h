@@ -1,0 +1,10 @@
+// What long work asks now and then: whether to end without a result.
+#pragma once
+
+#include <functional>
+
+namespace gradus {
+
+using CancelTest = std::function<bool()>;
+
+}  // namespace gradus
