@@ -84,8 +84,10 @@ client::Sequence open(const client::Device& device, const ReconstructArguments& 
   return client::Sequence(device, settings);
 }
 
-uint64_t passes_of(const ReconstructArguments& args, const Frame& frame) {
+uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
   if (args.passes.empty()) return 1;
+  const std::shared_ptr<const Frame> first = load_frame(path);
+  const Frame& frame = *first;
   const uint64_t asked = parse_passes(args.passes), held = held_passes(frame, asked);
   const bool has_error = wants(frame.settings.passes, GRADUS_PASS_ERROR);  // windows estimate it where frames were sampled for it
   return asked == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
@@ -115,8 +117,7 @@ int reconstruct_sequence(const ReconstructArguments& args) {
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
                         args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
   }
-  const auto first = load_frame(stored.path(frames.front()));
-  const uint64_t passes = passes_of(args, *first);
+  const uint64_t passes = passes_of(args, stored.path(frames.front()));
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   const client::Sequence sequence = open(device, args, stored, {frames.front(), frames.back()});
   fs::create_directories(args.output);
@@ -125,7 +126,7 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   for (const int32_t frame : frames) {
     // Exposure and the like may change from frame to frame, of frames that share their files, too.
     const auto asked = folder.settings(frame);
-    const GradusSettings settings = settings_of(args, asked ? *asked : load_frame(stored.path(frame))->settings);
+    const GradusSettings settings = settings_of(args, asked ? *asked : load_header(stored.path(frame)).settings);
     const client::Render render = sequence.deliver(frame, settings);
     render.wait();
     for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings")) warnings.insert(text.get<std::string>());

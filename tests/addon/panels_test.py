@@ -138,9 +138,10 @@ def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:
 
 def test_phases_of_the_last_render_come_in_their_order() -> None:
     """They came by the alphabet, those of the add-on last."""
-    seconds = {"denoise": 1.0, "filter": 0.0, "preview": 2.0, "reconstruct": 3.0, "sample": 4.0, "total": 20.0}
+    seconds = {"denoise": 1.0, "filter": 0.0, "links": 8.0, "preview": 2.0, "reconstruct": 3.0, "sample": 4.0, "store": 9.0, "total": 40.0}
     lines = render_panels.plan_lines({"frame": 1, "seconds": {**seconds, "export": 5.0, "build": 6.0, "upload": 7.0}})
-    assert [line.split(":")[0] for line in lines[1:]] == ["Export", "Build", "Sample", "Preview", "Reconstruct", "Denoise", "Upload"]
+    order = ["Export", "Build", "Links", "Sample", "Preview", "Store", "Reconstruct", "Denoise", "Upload"]
+    assert [line.split(":")[0] for line in lines[1:]] == order
 
 
 def method(**values: Any) -> SimpleNamespace:

@@ -11,8 +11,10 @@ FILE_WRITER = "native/src/frame/file_writer.cpp"
 PIXELS = "native/src/integrator/pixel_loop.cpp"
 LINKS = "native/src/temporal/pixel_links.cpp"
 TEMPORAL_FRAME = "native/src/temporal/temporal_frame.cpp"
+REPEATED = "native/src/temporal/temporal_frame.h"
+DELIVERY = "native/src/render/sequence/frame_delivery.cpp"
 FRAME_WINDOW = "native/src/temporal/frame_window.cpp"
-SPOOLED = "native/src/temporal/spooled_window.cpp"
+SPOOLED = "native/src/temporal/spooled_frame.cpp"
 MOTION = "native/src/motion/snapshot_motion.cpp"
 GRID = "native/src/reconstruct/space_time/window_grid.cpp"
 BLEND = "native/src/reconstruct/space_time/window_blend.cpp"
@@ -146,8 +148,8 @@ SEQUENCES = (
         LINK,
         "from the next frame to this one",
         TEMPORAL_FRAME,
-        "follows && !next.repeats ? inverse_links(replayed.pixel) : links",
-        "follows && !next.repeats ? replayed.pixel : links",
+        "follows && !is_repeated(frame, next) ? inverse_links(replayed.pixel) : links",
+        "follows && !is_repeated(frame, next) ? replayed.pixel : links",
         (native("FiveFrames.LinksAreThoseThatTheNextFrameHasFollowed"),),
     ),
     Fault(
@@ -217,18 +219,18 @@ SEQUENCES = (
         26,
         DIFFERENCE,
         "there is none between frames that are alike",
-        TEMPORAL_FRAME,
-        "frame->repeats = own->frame_number == stream;",
-        "frame->repeats = own->frame_number == stream + 1;",
+        REPEATED,
+        "return next.stream == frame.stream;",
+        "return next.stream == frame.stream + 1;",
         (native("FiveFrames.LinksAreThoseThatTheNextFrameHasFollowed"),),
     ),
     Fault(
         27,
         HALVES,
-        "base and offset are exchanged",
-        SEQUENCE,
-        "part(FramePart::kBase), part(FramePart::kOffset)",
-        "part(FramePart::kOffset), part(FramePart::kBase)",
+        "differences over time are those of the next frame's own half",
+        DELIVERY,
+        "folder.load(next, FramePart::kOffset, StoredContent::kSamples)",
+        "folder.load(next, FramePart::kBase, StoredContent::kSamples)",
         (native("Sequence.GradientTLeadsToTheNextFrame"),),
     ),
     Fault(
@@ -245,7 +247,7 @@ SEQUENCES = (
         HALVES,
         "the base alone, in passes",
         SEQUENCE,
-        "  add_sums(frame.get(), *offset);\n",
+        "  add_sums(base, offset);\n",
         "",
         (native("C3_Sequence.DeliversEveryFrameFromFirstToLast"),),
     ),
@@ -299,8 +301,8 @@ SEQUENCES = (
         STORE,
         "of other settings",
         SAMPLING,
-        'if (sampling_key(stored.settings) != sampling_key(settings)) refuse("was sampled with other settings");',
-        'if (sampling_key(stored.settings) == 0) refuse("was sampled with other settings");',
+        "if (sampling_key(other) != sampling_key(settings)) return",
+        "if (sampling_key(other) == 0) return",
         OF_SETTINGS,
     ),
     Fault(
@@ -326,8 +328,8 @@ SEQUENCES = (
         STORE,
         "with too few samples",
         SAMPLING,
-        "if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase, input_.settings))",
-        "if (stored_base_ && input.settings.samples == 0)",
+        "stored_base_ && !has_as_many(*stored_base_, FramePart::kBase, input_.settings)",
+        "stored_base_ && input_.settings.samples == 0",
         (native("C7_Sequence.MoreSamplesAreAddedToStoredFrames"),),
     ),
     Fault(
@@ -353,8 +355,8 @@ SEQUENCES = (
         CHANGE,
         "that of the frame before",
         REGULARIZED,
-        "estimate.change = regress_change(source, t, features,",
-        "estimate.change = regress_change(source, std::max(t - 1, 0), features,",
+        "= differences_(frame);",
+        "= differences_(frame > 0 ? frame - 1 : 0);",
         OF_REGULARIZED,
     ),
     Fault(

@@ -180,7 +180,7 @@ def characters(context: Any) -> int:
     return max(20, int(context.region.width / per_character) - 6)
 
 
-PHASES = ("export", "build", "sample", "preview", "reconstruct", "denoise", "filter", "upload")
+PHASES = ("export", "build", "links", "sample", "preview", "store", "reconstruct", "denoise", "filter", "upload")
 """Of a stats object, in the order in which they come."""
 
 

@@ -47,6 +47,7 @@ void read_variance(const Frame& frame, const PassPlane& plane, size_t pixel, flo
 
 }  // namespace
 
+bool has_features(const FrameHeader& header) { return (header.planes & feature_passes()) == feature_passes(); }
 bool has_features(const Frame& frame) { return (kept_passes(frame) & feature_passes()) == feature_passes(); }
 
 FeatureImage read_feature(const Frame& frame, uint32_t pass, HalfRange halves) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "frame/frame.h"
+#include "frame/frame_header.h"
 
 namespace gradus {
 
@@ -21,6 +22,7 @@ struct Features {
 };
 
 bool has_features(const Frame& frame);
+bool has_features(const FrameHeader& header);
 // All three. halves: both, or one alone. Throws invalid_operation for a frame without them.
 Features read_features(const Frame& frame, HalfRange halves = {});
 // One of the passes that are kept in halves; else as above.

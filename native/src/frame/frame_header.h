@@ -2,12 +2,15 @@
 #pragma once
 
 #include "frame/frame.h"
+#include "frame/pass_planes.h"
 
 namespace gradus {
 
 struct FrameHeader {
   Region region;
   int channels = 3;
+  bool gradients = false;
+  uint64_t planes = 0;  // of passes, a bit each
   GradusSettings settings{};
   SampleRanges samples;
   uint64_t scene_key = 0;
@@ -16,7 +19,8 @@ struct FrameHeader {
 };
 
 inline FrameHeader header_of(const Frame& frame) {
-  return {frame.region, frame.channels, frame.settings, frame.samples, frame.scene_key, frame.frame_number, frame.replayed.stream_frame};
+  return {frame.region,  frame.channels,  frame.gradients,    kept_passes(frame),         frame.settings,
+          frame.samples, frame.scene_key, frame.frame_number, frame.replayed.stream_frame};
 }
 
 }  // namespace gradus

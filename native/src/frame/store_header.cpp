@@ -147,6 +147,8 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.region = region_of(header);
   frame.channels = description.at("channels");
   if (frame.channels != 3 && frame.channels != 4) throw damaged("its planes are wrong");
+  frame.gradients = description.at("gradients");
+  frame.planes = description.at("planes");
   frame.settings = settings_from_json(description.at("settings"));
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
@@ -172,8 +174,8 @@ Frame make_frame(const Imf::Header& header, StoredContent content) {
   const FrameHeader known = read_header(header, description);
   const int components = description.at("components");
   if (components < 1 || components > 64) throw damaged("its planes are wrong");
-  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && description.at("gradients").get<bool>();
-  const uint64_t passes = is_whole ? description.at("planes").get<uint64_t>() : 0, pixels = uint64_t(known.region.area());
+  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
+  const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
   const bool has_fallback = is_whole && wants(known.settings.passes, GRADUS_PASS_FALLBACK);
   const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
   const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes) * pixels, available = machine_memory_bytes();

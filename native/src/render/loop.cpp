@@ -8,7 +8,7 @@
 #include "frame/pass_planes.h"
 #include "render/batches.h"
 #include "render/combine.h"
-#include "render/denoise_combined.h"
+#include "render/denoise_and_bill.h"
 #include "render/pass_read.h"
 #include "render/resume.h"
 #include "render/show_combined.h"
@@ -56,7 +56,12 @@ RenderLoop::RenderLoop(LoopInput input)
     throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "the frame needs " + std::to_string(bytes >> 20) + " MiB, the machine has " +
                                                 std::to_string(available >> 20) + " MiB: render fewer pixels or passes");
   }
-  if (input_.resumed) check_resumable(*input_.resumed, input_.settings, plan_, input_.snapshot->content_key);
+  if (input_.resumed) resume(input_.resumed);
+}
+
+void RenderLoop::resume(std::shared_ptr<const Frame> frame) {
+  check_resumable(*frame, input_.settings, plan_, input_.snapshot->content_key);
+  input_.resumed = std::move(frame);
 }
 
 void RenderLoop::render() {
@@ -240,17 +245,9 @@ void RenderLoop::reconstruct_frame() {
 }
 
 void RenderLoop::denoise_frame() {
-  const Bill bill(&stats_.seconds.denoise, &stats_.cpu_seconds.denoise);
   const CancelTest cancel = [this] { return is_stopped(); };
-  std::string failure;
-  std::vector<float> rgba = denoise_combined(*denoiser_, *frame_, frame_->settings.reconstruction, plan_.delivered, input_.threads, cancel,
-                                             picture_.combined(), &failure);
-  if (rgba.empty()) {
-    stats_.warnings.push_back(failure);
-    return;
-  }
-  stats_.denoiser = denoiser_->name();
-  picture_.show_denoised(std::move(rgba), denoised_error(frame_->settings.reconstruction));
+  std::vector<float> rgba = denoise_and_bill(*denoiser_, *frame_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
+  if (!rgba.empty()) picture_.show_denoised(std::move(rgba), denoised_error(frame_->settings.reconstruction));
 }
 
 void RenderLoop::set_phase(GradusPhase phase) {

@@ -28,7 +28,8 @@ class RenderLoop final : public RenderTask {
   explicit RenderLoop(LoopInput input);
 
   const Plan& plan() const { return plan_; }
-  bool resumes() const { return input_.resumed != nullptr; }
+  // Goes on from the samples of a frame; before run(). Throws invalid_argument if its keys or planes differ.
+  void resume(std::shared_ptr<const Frame> frame);
   // When it has ended.
   const RenderStats& what_it_took() const { return stats_; }
 
@@ -61,7 +62,7 @@ class RenderLoop final : public RenderTask {
   bool is_sampling() const { return phase_ < GRADUS_PHASE_RECONSTRUCTING; }
   void set_phase(GradusPhase phase);
 
-  const LoopInput input_;
+  LoopInput input_;
   std::string why_no_denoiser_;
   const std::shared_ptr<const OidnLibrary> denoiser_;
   const Plan plan_;

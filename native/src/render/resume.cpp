@@ -8,6 +8,7 @@
 #include "frame/pass_planes.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
+#include "settings/sampling_differences.h"
 
 namespace gradus {
 namespace {
@@ -69,7 +70,10 @@ uint32_t resumed_samples(const Frame& frame, bool adaptively) {
 void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
   if (frame.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
   if (key_of(frame.settings, plan.integrator) != key_of(settings, plan.integrator) || !may_hold(plan, frame.settings.integrator)) {
-    throw invalid_argument("the frame was sampled with other settings");
+    GradusSettings wanted = settings;
+    wanted.integrator = frame.settings.integrator;
+    const std::string which = sampling_differences(frame.settings, wanted);
+    throw invalid_argument("the frame was sampled with other settings: " + (which.empty() ? "another integrator" : which));
   }
   if (!same(frame.region, plan.sampled) || frame.settings.first_sample != settings.first_sample) {
     throw invalid_argument("the frame has another region or first sample");

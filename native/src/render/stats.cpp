@@ -44,7 +44,8 @@ json shifts(const Counters& c) {
 }
 
 json phases(const PhaseTimes& t) {
-  return {{"sample", t.sample}, {"preview", t.preview}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0}};
+  return {{"sample", t.sample}, {"preview", t.preview}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0},
+          {"links", t.links},   {"store", t.store}};
 }
 
 }  // namespace
@@ -81,8 +82,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["seconds"] = phases(stats.seconds);
   j["seconds"]["total"] = stats.total_seconds;
   j["cpu_seconds"] = phases(stats.cpu_seconds);
-  const PhaseTimes& cpu = stats.cpu_seconds;
-  j["cpu_seconds"]["total"] = cpu.sample + cpu.preview + cpu.reconstruct + cpu.denoise;
+  j["cpu_seconds"]["total"] = stats.cpu_seconds.total();
   j["process_cpu"] = stats.process_cpu;
   j["rays"] = rays(frame.counters);
   j["shifts"] = shifts(frame.counters);
@@ -95,6 +95,8 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
                    {"residual", stats.solve.residual},
                    {"hit_cap", stats.solve.hit_cap}};
   }
+  const PlannedBytes& planned = stats.planned;
+  if (planned.memory > 0) j["planned_bytes"] = {{"memory", planned.memory}, {"frames", planned.frames}, {"temporary", planned.temporary}};
   j["frame_memory_bytes"] = frame.memory_bytes();
   j["peak_memory_bytes"] = peak_memory_bytes();
   j["warnings"] = stats.warnings;

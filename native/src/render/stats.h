@@ -15,17 +15,29 @@ struct PhaseTimes {
   double preview = 0.0;  // what a watcher saw meanwhile
   double reconstruct = 0.0;
   double denoise = 0.0;
+  double links = 0.0;  // of a frame of a sequence to the one before
+  double store = 0.0;  // reading and writing frames
   void add(const PhaseTimes& other) {
     sample += other.sample;
     preview += other.preview;
     reconstruct += other.reconstruct;
     denoise += other.denoise;
+    links += other.links;
+    store += other.store;
   }
+  double total() const { return sample + preview + reconstruct + denoise + links + store; }
+};
+
+// What an animation takes at most, as planned before it begins; 0: not planned.
+struct PlannedBytes {
+  uint64_t memory = 0;     // at a time, without the scenes
+  uint64_t frames = 0;     // files of frames: noisy sums hardly pack
+  uint64_t temporary = 0;  // rows in the folder for temporary files
 };
 
 struct RenderStats {
-  // CPU time of samples is that of our threads, by tiles; that of the pilot, of previews, of estimates of noise, of solves and of the
-  // denoiser is the whole process's meanwhile, what the host does in these moments included.
+  // CPU time of samples is that of our threads, by tiles; that of all else (the pilot, previews, estimates of noise, solves, the denoiser,
+  // links, files) is the whole process's meanwhile, what the host does in these moments included.
   PhaseTimes seconds, cpu_seconds;
   double total_seconds = 0.0;
   double process_cpu = 0.0;
@@ -35,6 +47,7 @@ struct RenderStats {
   std::vector<std::string> warnings;
   Reasons chosen, skipped;      // what was decided after the plan, by samples
   double offset_samples = 0.0;  // per pixel, those that replay the frame before
+  PlannedBytes planned;
 
   // The work of a second part of the frame.
   void add(const RenderStats& part);

@@ -22,6 +22,14 @@ float mixed(float base, float replay, float share) {
 
 }  // namespace
 
+FrameWindow::FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frames) : frames_(std::move(frames)) {
+  for (size_t t = 0; t + 1 < frames_.size(); ++t) {
+    const TemporalFrame &frame = *frames_[t], &next = *frames_[t + 1];
+    check_alike(frame.base.values, next.replay.values, next.stream);
+    links_.push_back(links_between(frame, next));
+  }
+}
+
 WindowSize FrameWindow::size() const {
   const GradientImages& first = frames_.front()->base.values;
   return {first.width, first.height, first.channels, int(frames_.size())};
@@ -39,13 +47,13 @@ void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const 
     }
     return;
   }
-  if (frames_[size_t(t) + 1]->repeats) {
+  if (is_repeated(frame, *frames_[size_t(t) + 1])) {
     std::fill_n(out, width * channels, 0.0f);
     return;
   }
   const float* next = plane_of(frames_[size_t(t) + 1]->replay.*part, kind).data();
   for (size_t i = first; i < first + width; ++i) {
-    const int32_t link = frame.links[i];
+    const int32_t link = links_[size_t(t)][i];
     for (size_t c = 0; c < channels; ++c) {
       *out++ = link == kNoLink ? kAbsentPair : next[size_t(link) * channels + c] - base[i * channels + c];
     }
@@ -59,7 +67,7 @@ void FrameWindow::read_half_differences(RowKind kind, int t, int y, float* out) 
 }
 
 void FrameWindow::read_links(int t, int y, int32_t* out) const {
-  const std::vector<int32_t>& links = frames_[size_t(t)]->links;
+  const std::vector<int32_t>& links = links_[size_t(t)];
   const auto first = links.begin() + ptrdiff_t(y) * size().width;
   std::copy(first, first + size().width, out);
 }

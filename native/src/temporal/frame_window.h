@@ -12,8 +12,8 @@ namespace gradus {
 
 class FrameWindow final : public HalvedWindowSource {
  public:
-  // In order, of one size.
-  explicit FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frames) : frames_(std::move(frames)) {}
+  // In order. Throws invalid_argument unless they are of one size.
+  explicit FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frames);
 
   WindowSize size() const override;
   void read_row(RowKind kind, int t, int y, float* out) const override;
@@ -26,6 +26,7 @@ class FrameWindow final : public HalvedWindowSource {
   void read(RowKind kind, int t, int y, Part part, float* out) const;
 
   std::vector<std::shared_ptr<const TemporalFrame>> frames_;
+  std::vector<std::vector<int32_t>> links_;  // from each frame but the last
 };
 
 }  // namespace gradus

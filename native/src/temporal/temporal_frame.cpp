@@ -4,61 +4,64 @@
 #include <string>
 
 #include "base/error.h"
+#include "frame/read_pixels.h"
 #include "temporal/pixel_links.h"
 
 namespace gradus {
 
 namespace {
 
-// Whatever a folder may hold under the names of frames.
-void check_alike(const Frame& frame, const GradientImages& other) {
-  const bool fits = frame.region.width() == other.width && frame.region.height() == other.height && frame.channels == other.channels &&
-                    frame.gradients == !other.dx.empty();
-  if (!fits)
-    throw invalid_argument("stored frame " + std::to_string(frame.frame_number) + " has another size or other planes than those beside it");
+HalvedImages read_halved(const Frame& frame, TemporalContent content) {
+  HalvedImages images{content.gradients ? read_images(frame, 0) : read_pixels(frame, 0), {}};
+  if (!content.halves) return images;
+  images.half_differences = content.gradients ? read_half_differences(frame, 0) : read_half_differences_of_pixels(frame, 0);
+  return images;
 }
 
-// Of a frame whose stream is `stream`, to the next one.
-std::vector<int32_t> links_to(const TemporalFrame& next, const SampleSources& replayed, int32_t stream) {
-  std::vector<int32_t> links(next.replay_share.size(), kNoLink);
-  if (next.repeats) std::iota(links.begin(), links.end(), 0);
-  const bool follows = replayed.stream_frame == stream && replayed.pixel.size() == links.size();
-  return follows && !next.repeats ? inverse_links(replayed.pixel) : links;
-}
+uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
 
 }  // namespace
 
-HalvedImages read_halved(const Frame& frame) { return {read_images(frame, 0), read_half_differences(frame, 0)}; }
+void check_alike(const GradientImages& images, const GradientImages& other, int32_t frame) {
+  const bool fits = images.width == other.width && images.height == other.height && images.channels == other.channels &&
+                    images.dx.empty() == other.dx.empty();
+  if (!fits) throw invalid_argument("stored frame " + std::to_string(frame) + " has another size or other planes than those beside it");
+}
 
-TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay) {
+TemporalFrame make_base(const Frame& base, TemporalContent content) {
   TemporalFrame frame;
-  frame.base = read_halved(base);
-  check_alike(replay, frame.base.values);
-  frame.replay = read_halved(replay);
+  frame.base = read_halved(base, content);
+  frame.stream = base.frame_number;
+  return frame;
+}
+
+TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent content) {
+  TemporalFrame frame;
+  frame.replay = read_halved(replay, content);
+  frame.stream = stream;
+  frame.replayed = replay.replayed;
+  return frame;
+}
+
+TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content) {
+  TemporalFrame frame = make_replay(replay, base.frame_number, content);
+  frame.base = read_halved(base, content);
+  check_alike(frame.replay.values, frame.base.values, base.frame_number);
   frame.replay_share.resize(base.count[0].size());
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {
-    const auto own = float(base.count[0][i] + base.count[1][i]), other = float(replay.count[0][i] + replay.count[1][i]);
+    const auto own = float(samples_at(base, i)), other = float(samples_at(replay, i));
     frame.replay_share[i] = own + other > 0.0f ? other / (own + other) : 0.0f;
   }
   return frame;
 }
 
-void for_temporal_frames(int count, const LoadPart& base, const LoadPart& replay, const TakeFrame& take) {
-  std::shared_ptr<TemporalFrame> before;
-  int32_t stream = 0;  // of the frame before
-  for (int place = 0; place < count; ++place) {
-    const std::shared_ptr<const Frame> own = base(place), other = replay(place);
-    if (before) check_alike(*own, before->base.values);
-    auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(*own, *other));
-    if (before) {
-      frame->repeats = own->frame_number == stream;
-      before->links = links_to(*frame, other->replayed, stream);
-      take(std::move(before), frame);
-    }
-    stream = own->frame_number;
-    before = std::move(frame);
-  }
-  if (before) take(std::move(before), nullptr);
+std::vector<int32_t> links_between(const TemporalFrame& frame, const TemporalFrame& next) {
+  const GradientImages& images = next.replay.values;
+  std::vector<int32_t> links(size_t(images.width) * size_t(images.height), kNoLink);
+  if (is_repeated(frame, next)) std::iota(links.begin(), links.end(), 0);
+  const SampleSources& replayed = next.replayed;
+  const bool follows = replayed.stream_frame == frame.stream && replayed.pixel.size() == links.size();
+  return follows && !is_repeated(frame, next) ? inverse_links(replayed.pixel) : links;
 }
 
 }  // namespace gradus

@@ -1,8 +1,6 @@
 // What a space-time reconstruction needs of a frame: its samples, and those that replay the frame before (contract 4.2).
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <vector>
 
 #include "frame/frame.h"
@@ -10,28 +8,37 @@
 
 namespace gradus {
 
+// What is made of a frame, besides its pixels.
+struct TemporalContent {
+  bool gradients = true;  // where the frame has them
+  bool halves = true;     // half the differences of the halves
+};
+
 // Images of a frame, and half the differences of its halves, which give deviations of all that is linear in the images.
 struct HalvedImages {
   GradientImages values, half_differences;
 };
-// Of its first component.
-HalvedImages read_halved(const Frame& frame);
 
 struct TemporalFrame {
   HalvedImages base;
   HalvedImages replay;              // of the random numbers of the frame before
   std::vector<float> replay_share;  // of the samples of each pixel
-  std::vector<int32_t> links;       // by pixels: that of the next frame, as y·width + x, or kNoLink; empty in the last
-  bool repeats = false;             // it has the samples of the frame before, for nothing has changed
+  int32_t stream = 0;               // whose random numbers the base has taken
+  SampleSources replayed;           // and whose the replay has
 };
-// Without links.
-TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay);
 
-// The parts of a frame, by its place; held no longer than the frame is made.
-using LoadPart = std::function<std::shared_ptr<const Frame>(int place)>;
-// Takes frames in order, each with the next one, nullptr after the last: links are those that the replay of the next has followed. No more
-// than two are held at a time.
-using TakeFrame = std::function<void(std::shared_ptr<const TemporalFrame> frame, const std::shared_ptr<const TemporalFrame>& next)>;
-void for_temporal_frames(int count, const LoadPart& base, const LoadPart& replay, const TakeFrame& take);
+// Of their first components. Throws invalid_argument where the two do not belong together.
+TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content = {});
+// Of one of the two: all that differences over time from the frame to the next, or to the frame from the one before, read of it.
+TemporalFrame make_base(const Frame& base, TemporalContent content);
+TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent content);
+
+// Throws invalid_argument where the images differ in size or kinds: whatever a folder may hold under the names of frames.
+void check_alike(const GradientImages& images, const GradientImages& other, int32_t frame);
+
+// The next frame has the samples of this one, for nothing has changed.
+inline bool is_repeated(const TemporalFrame& frame, const TemporalFrame& next) { return next.stream == frame.stream; }
+// By pixels of the frame: that of the next one, as y·width + x, or kNoLink: those that the replay of the next has followed.
+std::vector<int32_t> links_between(const TemporalFrame& frame, const TemporalFrame& next);
 
 }  // namespace gradus

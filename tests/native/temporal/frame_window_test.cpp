@@ -1,13 +1,16 @@
 // Rows of a window made of two sampled frames and their links.
 #include "temporal/frame_window.h"
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "temporal/spooled_window.h"
+#include "temporal/spooled_frames.h"
+#include "temporal/streamed_frames.h"
 
 namespace gradus {
 namespace {
@@ -30,10 +33,11 @@ class TwoFrames : public testing::Test {
     first->base = {row_of({1, 2, 3}, {10, 20, 0}), row_of({0.1f, 0.2f, 0.3f}, {1, 2, 0})};
     first->replay = first->base;  // of the first frame: a stream of its own
     first->replay_share = {0.5f, 0.5f, 0.5f};
-    first->links = {1, 2, kNoLink};  // the picture moves to the right by a pixel
     second->base = {row_of({4, 5, 6}, {40, kAbsentPair, 0}), row_of({0.4f, 0.5f, 0.6f}, {4, 5, 0})};
     second->replay = {row_of({7, 8, 9}, {70, 80, 0}), row_of({0.7f, 0.8f, 0.9f}, {7, 8, 0})};
     second->replay_share = {0.5f, 0.5f, 0.25f};
+    second->stream = 1;
+    second->replayed = {first->stream, {kNoLink, 0, 1}};  // the picture moves to the right by a pixel
     frames_ = {first, second};
   }
   std::vector<float> row(RowKind kind, int t) const {
@@ -113,9 +117,37 @@ class FiveFrames : public testing::Test {
       replay_.push_back(std::move(replay));
     }
   }
-  SpooledWindow spooled() const { return SpooledWindow(5, load(base_), load(replay_)); }
+  std::unique_ptr<HalvedWindowSource> spooled() const { return SpooledFrames(load(base_), load(replay_), {}).window(0, 4); }
+  // The bits of all rows: absent differences are no numbers.
+  static std::vector<unsigned char> bits(const HalvedWindowSource& source, int t, bool is_last) {
+    const auto [width, height, channels, frames] = source.size();
+    std::vector<unsigned char> all;
+    const auto add = [&](const void* row, size_t bytes) {
+      all.insert(all.end(), static_cast<const unsigned char*>(row), static_cast<const unsigned char*>(row) + bytes);
+    };
+    std::vector<float> row(size_t(width) * size_t(channels));
+    std::vector<int32_t> links(static_cast<size_t>(width));
+    for (int y = 0; y < height; ++y) {
+      for (const RowKind kind : kRowKinds) {
+        if (is_last && is_temporal(kind)) continue;
+        source.read_row(kind, t, y, row.data());
+        add(row.data(), row.size() * sizeof(float));
+        source.read_half_differences(kind, t, y, row.data());
+        add(row.data(), row.size() * sizeof(float));
+      }
+      if (is_last) continue;
+      source.read_links(t, y, links.data());
+      add(links.data(), links.size() * sizeof(int32_t));
+    }
+    return all;
+  }
   static LoadPart load(const std::vector<std::shared_ptr<Frame>>& frames) {
-    return [&](int place) { return frames[size_t(place)]; };
+    return [&](int place) { return std::make_shared<Frame>(*frames[size_t(place)]); };
+  }
+  FrameWindow in_memory() const {
+    std::vector<std::shared_ptr<const TemporalFrame>> frames;
+    for (size_t t = 0; t < 5; ++t) frames.push_back(std::make_shared<TemporalFrame>(make_temporal_frame(*base_[t], *replay_[t])));
+    return FrameWindow(std::move(frames));
   }
   std::vector<std::shared_ptr<Frame>> base_, replay_;
 };
@@ -130,40 +162,74 @@ TEST_F(FiveFrames, SharesAreThoseOfTheSamples) {
   }
 }
 
-// As the bits of rows: absent differences are no numbers.
 TEST_F(FiveFrames, SpooledRowsAreThoseOfTheFramesInMemory) {
-  std::vector<std::shared_ptr<const TemporalFrame>> frames;
-  for_temporal_frames(5, load(base_), load(replay_), [&](auto frame, const auto&) { frames.push_back(std::move(frame)); });
-  const FrameWindow whole(frames);
-  const SpooledWindow spooled = this->spooled();
-  EXPECT_EQ(spooled.size().frames, 5);
-  const auto same = [&](size_t bytes, const auto& read) {
-    std::vector<unsigned char> expected(bytes), row(bytes);
-    read(whole, expected.data());
-    read(spooled, row.data());
-    EXPECT_EQ(row, expected);
+  const FrameWindow whole = in_memory();
+  const auto spooled = this->spooled();
+  EXPECT_EQ(spooled->size().frames, 5);
+  for (int t = 0; t < 5; ++t) EXPECT_EQ(bits(*spooled, t, t == 4), bits(whole, t, t == 4)) << t;
+}
+
+// What windows share was read for each of them.
+TEST_F(FiveFrames, WindowsThatOverlapReadEachPartOnce) {
+  const FrameWindow whole = in_memory();
+  std::array<int, 5> bases{}, replays{};
+  const auto counted = [](const LoadPart& load, std::array<int, 5>* loads) {
+    return [load, loads](int place) {
+      ++loads->at(size_t(place));
+      return load(place);
+    };
   };
-  for (int t = 0; t < 5; ++t) {
-    for (int y = 0; y < 8; ++y) {
-      for (const RowKind kind : kRowKinds) {
-        if (t == 4 && is_temporal(kind)) continue;
-        same(20 * 4 * sizeof(float), [&](const auto& source, void* out) { source.read_row(kind, t, y, static_cast<float*>(out)); });
-        same(20 * sizeof(float), [&](const auto& source, void* out) { source.read_deviations(kind, t, y, static_cast<float*>(out)); });
-      }
-      if (t < 4) same(20 * sizeof(int32_t), [&](const auto& source, void* out) { source.read_links(t, y, static_cast<int32_t*>(out)); });
-    }
+  SpooledFrames frames(counted(load(base_), &bases), counted(load(replay_), &replays), {});
+  for (const auto& [first, last] : {std::pair(0, 2), {1, 3}, {2, 4}}) {
+    const auto window = frames.window(first, last);
+    for (int t = first; t <= last; ++t) EXPECT_EQ(bits(*window, t - first, t == last), bits(whole, t, t == last)) << first << ", " << t;
+  }
+  for (size_t t = 0; t < 5; ++t) {
+    EXPECT_EQ(bases[t], 1) << t;
+    EXPECT_EQ(replays[t], 1) << t;
   }
 }
 
+TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
+  const FrameWindow whole = in_memory();
+  int loads = 0;
+  const auto counted = [&](const LoadPart& load) {
+    return [&loads, load](int place) {
+      ++loads;
+      return load(place);
+    };
+  };
+  StreamedFrames frames(counted(load(base_)), counted(load(replay_)), [](int, std::shared_ptr<Frame> base, const Frame&) { return base; });
+  std::vector<float> row(20 * 4), expected(row);
+  for (int t = 0; t < 4; ++t) {
+    EXPECT_EQ(frames.frame(t)->components[0].primal[0][0].x, base_[size_t(t)]->components[0].primal[0][0].x);
+    const auto pair = frames.differences(t);
+    for (int y = 0; y < 8; ++y) {
+      pair->read_half_differences(RowKind::kDt, 0, y, row.data());
+      whole.read_half_differences(RowKind::kDt, t, y, expected.data());
+      EXPECT_EQ(std::memcmp(row.data(), expected.data(), row.size() * sizeof(float)), 0) << t;
+    }
+  }
+  frames.frame(4);
+  EXPECT_EQ(loads, 10);
+}
+
+TEST_F(FiveFrames, TheNoiseOfRowsIsThereWhereItIsAskedFor) {
+  const auto window = SpooledFrames(load(base_), load(replay_), {.halves = false}).window(0, 4);
+  std::vector<float> row(20 * 4);
+  EXPECT_NO_THROW(window->read_row(RowKind::kDxDt, 0, 0, row.data()));
+  EXPECT_THROW(window->read_half_differences(RowKind::kPrimal, 0, 0, row.data()), Error);
+}
+
 TEST_F(FiveFrames, LinksAreThoseThatTheNextFrameHasFollowed) {
-  const SpooledWindow window = spooled();
+  const auto window = spooled();
   std::vector<int32_t> links(20);
-  window.read_links(0, 0, links.data());
+  window->read_links(0, 0, links.data());
   EXPECT_EQ(links[3], 0);
   EXPECT_EQ(links[10], kNoLink) << "nobody has followed it";
-  window.read_links(2, 0, links.data());
+  window->read_links(2, 0, links.data());
   EXPECT_EQ(links[10], 10) << "the same frame again";
-  window.read_links(3, 0, links.data());
+  window->read_links(3, 0, links.data());
   EXPECT_EQ(links[3], 0);
 }
 
@@ -189,12 +255,12 @@ TEST_F(FiveFrames, WithoutGradientsThereArePixelsAndTheirDifferencesOverTime) {
   for (const auto& frames : {base_, replay_}) {
     for (const auto& frame : frames) frame->gradients = false;
   }
-  const SpooledWindow window = spooled();
+  const auto window = spooled();
   std::vector<float> row(20 * 4);
-  EXPECT_NO_THROW(window.read_row(RowKind::kPrimal, 4, 7, row.data()));
-  EXPECT_NO_THROW(window.read_half_differences(RowKind::kDt, 3, 7, row.data()));
+  EXPECT_NO_THROW(window->read_row(RowKind::kPrimal, 4, 7, row.data()));
+  EXPECT_NO_THROW(window->read_half_differences(RowKind::kDt, 3, 7, row.data()));
   for (const RowKind kind : {RowKind::kDx, RowKind::kDy, RowKind::kDxDt, RowKind::kDyDt}) {
-    EXPECT_THROW(window.read_row(kind, 0, 0, row.data()), Error);
+    EXPECT_THROW(window->read_row(kind, 0, 0, row.data()), Error);
   }
 }
 

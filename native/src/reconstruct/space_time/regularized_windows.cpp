@@ -58,8 +58,9 @@ Field weigh_change(const Change& change, const Field& here, const Field& next) {
   return weight;
 }
 
-void check_size(const Frame& frame, const WindowSize& size) {
-  const bool same = frame.region.width() == size.width && frame.region.height() == size.height && frame.channels == size.channels;
+// picture: with its error.
+void check_size(const Field& picture, const WindowSize& size) {
+  const bool same = picture.width() == size.width && picture.height() == size.height && picture.channels() == size.channels + 1;
   if (!same) throw invalid_argument("a frame has another size than its window");
 }
 
@@ -73,12 +74,11 @@ Reconstructed to_picture(const Field& field) {
 
 }  // namespace
 
-void RegularizedWindows::reconstruct(const FrameRange& frames, const HalvedWindowSource& source, const CancelTest& cancel,
-                                     SolveReport* report, const Take& take) {
+void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelTest& cancel, SolveReport* report, const Take& take) {
   estimates_.erase(estimates_.begin(), estimates_.lower_bound(frames.first));
   std::vector<Field> pictures, weights;
   for (int frame = frames.first; frame <= frames.last && !cancel(); ++frame) {
-    const Estimate& estimate = estimated(frame, frame < frames.last, source, frame - frames.first, cancel, report);
+    const Estimate& estimate = estimated(frame, frame < frames.last, cancel, report);
     pictures.push_back(estimate.picture);
     weights.push_back(estimate.weight);
   }
@@ -96,22 +96,21 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const HalvedWindo
   for (int t = 0; t < frames.count(); ++t) take(t, to_picture(std::exchange(pictures[size_t(t)], {})));
 }
 
-const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const HalvedWindowSource& source, int t,
-                                                                  const CancelTest& cancel, SolveReport* report) {
-  const auto known = estimates_.find(frame);
-  if (known != estimates_.end() && (known->second.change || !changes)) return known->second;
-  const std::shared_ptr<const Frame> samples = open_(frame);
-  check_size(*samples, source.size());
-  const Features features = filter_features(read_features(*samples));
-  Estimate estimate = known != estimates_.end() ? std::move(known->second) : still(*samples, features, cancel, report);
-  if (changes) estimate.change = regress_change(source, t, features, scale_of(estimate.picture), cancel);
-  return estimates_[frame] = std::move(estimate);
+const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const CancelTest& cancel, SolveReport* report) {
+  auto known = estimates_.find(frame);
+  if (known == estimates_.end()) known = estimates_.emplace(frame, still(*open_(frame), cancel, report)).first;
+  Estimate& estimate = known->second;
+  if (!changes || estimate.change) return estimate;
+  const std::unique_ptr<HalvedWindowSource> rows = differences_(frame);
+  check_size(estimate.picture, rows->size());
+  estimate.change = regress_change(*rows, 0, std::exchange(estimate.features, {}), scale_of(estimate.picture), cancel);
+  return estimate;
 }
 
-RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, const Features& features, const CancelTest& cancel,
-                                                       SolveReport* report) {
+RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, const CancelTest& cancel, SolveReport* report) {
   Estimate estimate;
-  estimate.picture = to_field(samples, regularize(samples, 0, features, cancel, report));
+  estimate.features = filter_features(read_features(samples));
+  estimate.picture = to_field(samples, regularize(samples, 0, estimate.features, cancel, report));
   const float scale = scale_of(estimate.picture), least = kLeastError * scale * scale;
   estimate.weight = make_field(samples.region.width(), samples.region.height(),
                                [&](int x, int y) { return track_weight(estimate.picture.row(y, samples.channels)[x] + least); });

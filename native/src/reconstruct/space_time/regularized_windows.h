@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "frame/features.h"
 #include "frame/frame.h"
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/space_time/regress_change.h"
@@ -16,28 +17,30 @@ namespace gradus {
 
 class RegularizedWindows {
  public:
-  // All samples of a frame, replays too, with features. Asked for once by most frames, twice where a window ended, and not kept.
+  // All samples of a frame, replays too, with features: asked for once, and not kept.
   using OpenFrame = std::function<std::shared_ptr<const Frame>(int frame)>;
-  explicit RegularizedWindows(OpenFrame open) : open_(std::move(open)) {}
+  // A window of a frame and the next one, of which rows of pixels over time are read; after the frame itself.
+  using OpenDifferences = std::function<std::unique_ptr<HalvedWindowSource>(int frame)>;
+  RegularizedWindows(OpenFrame open, OpenDifferences differences) : open_(std::move(open)), differences_(std::move(differences)) {}
 
-  // Takes the pictures of a window's frames, in order, t counted from its first. source: their rows in time. Windows come in order: what
-  // two of them share is computed once. Nothing is taken when cancelled.
+  // Takes the pictures of a window's frames, in order, t counted from its first. Windows come in order: what two of them share is computed
+  // once. Nothing is taken when cancelled.
   using Take = std::function<void(int t, Reconstructed picture)>;
-  void reconstruct(const FrameRange& frames, const HalvedWindowSource& source, const CancelTest& cancel, SolveReport* report,
-                   const Take& take);
+  void reconstruct(const FrameRange& frames, const CancelTest& cancel, SolveReport* report, const Take& take);
 
  private:
   struct Estimate {
     Field picture;                 // and its error in one more channel
     Field weight;                  // 1/error
+    Features features;             // until the change is known
     std::optional<Change> change;  // to the next frame, where that is in the same window
   };
   // changes: the next frame is in the window, too.
-  const Estimate& estimated(int frame, bool changes, const HalvedWindowSource& source, int t, const CancelTest& cancel,
-                            SolveReport* report);
-  static Estimate still(const Frame& samples, const Features& features, const CancelTest& cancel, SolveReport* report);
+  const Estimate& estimated(int frame, bool changes, const CancelTest& cancel, SolveReport* report);
+  static Estimate still(const Frame& samples, const CancelTest& cancel, SolveReport* report);
 
   OpenFrame open_;
+  OpenDifferences differences_;
   std::map<int, Estimate> estimates_;  // by frame
 };
 

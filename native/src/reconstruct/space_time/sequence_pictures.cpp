@@ -7,11 +7,13 @@
 
 namespace gradus {
 
+bool reads_halves(const SequenceMethod& method) { return method.with_error || method.reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED; }
+
 SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& shape, SequenceSource source, const SequenceMethod& method)
     : grid_(range, shape),
       source_(std::move(source)),
       method_(method),
-      regularized_(source_.frame),
+      regularized_(source_.frame, source_.differences),
       blend_(grid_, [this](int frame, Reconstructed picture) { ready_[frame] = std::move(picture); }) {}
 
 bool SequencePictures::has(int frame) const {
@@ -35,12 +37,11 @@ Reconstructed SequencePictures::take(int frame, const CancelTest& cancel, SolveR
 void SequencePictures::solve_next(const CancelTest& cancel, SolveReport* report) {
   const int window = (*next_window_)++;
   const FrameRange frames = grid_.frames(window);
-  const std::unique_ptr<HalvedWindowSource> source = source_.window(frames, cancel);
   const auto take = [&](int t, Reconstructed picture) { blend_.add(window, frames.first + t, std::move(picture)); };
   if (method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    regularized_.reconstruct(frames, *source, cancel, report, take);
+    regularized_.reconstruct(frames, cancel, report, take);
   } else {
-    reconstruct_window(*source, method_.reconstruction, method_.alpha, method_.with_error, cancel, report, take);
+    reconstruct_window(*source_.window(frames, cancel), method_.reconstruction, method_.alpha, method_.with_error, cancel, report, take);
   }
 }
 

@@ -21,12 +21,16 @@ struct SequenceMethod {
   bool operator==(const SequenceMethod&) const = default;
 };
 
+// Whether it reads half the differences of the halves, besides the values.
+bool reads_halves(const SequenceMethod& method);
+
 // Where a sequence comes from. Its frames are of one size.
 struct SequenceSource {
-  // The frames of a window. Throws the Error CANCELLED.
+  // The frames of a window, for all but REGULARIZED. Windows come in order. Throws the Error CANCELLED.
   std::function<std::unique_ptr<HalvedWindowSource>(const FrameRange& frames, const CancelTest& cancel)> window;
-  // All samples of a frame, with features: for REGULARIZED.
+  // For REGULARIZED.
   RegularizedWindows::OpenFrame frame;
+  RegularizedWindows::OpenDifferences differences;
 };
 
 class SequencePictures {

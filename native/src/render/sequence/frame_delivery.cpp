@@ -6,10 +6,11 @@
 #include "base/error.h"
 #include "frame/features.h"
 #include "render/combine.h"
-#include "render/denoise_combined.h"
+#include "render/denoise_and_bill.h"
 #include "render/pass_read.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
+#include "temporal/frame_window.h"
 
 namespace gradus {
 namespace {
@@ -44,7 +45,13 @@ void FrameDelivery::render() {
   std::shared_ptr<Frame> frame;
   const uint32_t threads = threads_of(changed_.value_or(GradusSettings{}), sequence_->device_.get());
   tbb::task_arena arena(arena_size(threads));
-  arena.execute([&] { frame = load(); });
+  PhaseTimes wall, cpu;
+  {
+    const Bill bill(&wall.store, &cpu.store);
+    arena.execute([&] { frame = load(); });
+  }
+  record_.stats.seconds.add(wall);
+  record_.stats.cpu_seconds.add(cpu);
   {
     const std::lock_guard lock(mutex_);
     frame_ = std::move(frame);
@@ -64,8 +71,12 @@ void FrameDelivery::render() {
 }
 
 std::shared_ptr<Frame> FrameDelivery::load() {
-  double offset_samples = 0.0;
-  const std::shared_ptr<Frame> frame = sequence_->open_frame(number_, &offset_samples);
+  const SequenceFolder& folder = sequence_->folder_;
+  const std::shared_ptr<Frame> frame = folder.load(number_, FramePart::kBase);
+  const std::optional<GradusSettings> asked = changed_ ? changed_ : folder.settings(number_);
+  read_differences_over_time(*frame, asked ? *asked : frame->settings);
+  const std::shared_ptr<const Frame> offset = folder.load(number_, FramePart::kOffset);
+  sequence_->merge(number_, frame.get(), *offset);
   const auto record = sequence_->records_.find(number_);
   const bool is_planned = record != sequence_->records_.end();
   if (is_planned) record_ = record->second;
@@ -73,11 +84,9 @@ std::shared_ptr<Frame> FrameDelivery::load() {
     record_.plan = plan_of(*frame);
     record_.stats.stopped = "stored";
   }
-  const std::optional<GradusSettings> asked = changed_ ? changed_ : sequence_->folder_.settings(number_);
   if (asked) deliver_as(*asked, is_planned, frame.get());
   record_.plan.delivered = delivered_region(*frame);
-  record_.stats.offset_samples = offset_samples;
-  read_differences_over_time(*frame);
+  record_.stats.offset_samples = mean_samples(*offset);
   return frame;
 }
 
@@ -101,7 +110,7 @@ void FrameDelivery::reconstruct() {
   const Region& region = record_.plan.delivered;
   Reconstructed picture;
   try {
-    SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha, with_error}, *frame_);
+    SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha, with_error}, number_);
     picture = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
     stop_if_asked();
   } catch (...) {
@@ -117,47 +126,48 @@ void FrameDelivery::reconstruct() {
 }
 
 void FrameDelivery::denoise() {
-  RenderStats& stats = record_.stats;
-  const Bill bill(&stats.seconds.denoise, &stats.cpu_seconds.denoise);
   const CancelTest cancel = [this] { return is_stopped(); };
-  std::string failure;
-  const auto library = choose_denoiser(frame_->settings.denoiser, sequence_->device_.get(), &failure);
+  std::string why_not;
+  const auto library = choose_denoiser(frame_->settings.denoiser, sequence_->device_.get(), &why_not);
   if (!library) return;
-  if (!has_features(*frame_)) stats.warnings.emplace_back("the frame holds no features to guide the denoiser");
+  if (!has_features(*frame_)) record_.stats.warnings.emplace_back("the frame holds no features to guide the denoiser");
   const uint32_t threads = threads_of(frame_->settings, sequence_->device_.get());
-  std::vector<float> rgba =
-      denoise_combined(*library, *frame_, frame_->settings.reconstruction, record_.plan.delivered, threads, cancel, combined_, &failure);
-  if (rgba.empty()) {
-    stats.warnings.push_back(failure);
-    return;
-  }
-  stats.denoiser = library->name();
+  std::vector<float> rgba = denoise_and_bill(*library, *frame_, record_.plan.delivered, threads, cancel, combined_, &record_.stats);
+  if (rgba.empty()) return;
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
   for (float& value : error_) value *= denoised_error(frame_->settings.reconstruction);
 }
 
-void FrameDelivery::read_differences_over_time(const Frame& frame) {
-  const Region region = record_.plan.delivered;
+void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusSettings& asked) {
+  const Region region = delivered_region(frame);
+  const float exposure = asked.film_exposure;
   difference_.assign(3 * size_t(region.area()), 0.0f);
   link_ = difference_;
+  const SequenceFolder& folder = sequence_->folder_;
   const int place = sequence_->place_of(number_) + 1;
   const int32_t next = sequence_->frame_at(place);
+  const bool is_other = asked.reconstruction != GRADUS_RECONSTRUCTION_AUTO;
+  const uint32_t reconstruction = is_other ? asked.reconstruction : frame.settings.reconstruction;
   const bool wanted = wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
-  if (!wanted || !sequence_->folder_.holds(next) || !sequence_->goes_on_at(place, frame.settings.reconstruction)) return;
-  const std::unique_ptr<WindowSource> window = sequence_->open_window({place - 1, place}, [this] { return is_stopped(); });
+  if (!wanted || !folder.holds(next) || !sequence_->goes_on_at(place, reconstruction)) return;
+  constexpr TemporalContent kPixels{.gradients = false, .halves = false};
+  const std::shared_ptr<const Frame> replay = folder.load(next, FramePart::kOffset, StoredContent::kSamples);
+  const FrameWindow window(
+      {std::make_shared<TemporalFrame>(make_base(frame, kPixels)),
+       std::make_shared<TemporalFrame>(make_replay(*replay, folder.header(next, FramePart::kBase).frame_number, kPixels))});
   const int width = frame.region.width(), channels = frame.channels;
   std::vector<float> differences(size_t(width) * size_t(channels));
   std::vector<int32_t> links(static_cast<size_t>(width));
   size_t out = 0;
   for (int32_t y = region.y0; y < region.y1; ++y) {
     const int row = y - frame.region.y0;
-    window->read_row(RowKind::kDt, 0, row, differences.data());
-    window->read_links(0, row, links.data());
+    window.read_row(RowKind::kDt, 0, row, differences.data());
+    window.read_links(0, row, links.data());
     for (int32_t x = region.x0; x < region.x1; ++x, out += 3) {
       const auto i = size_t(x - frame.region.x0);
       if (links[i] == kNoLink || !is_finite(differences[i * size_t(channels)])) continue;
-      for (size_t c = 0; c < 3; ++c) difference_[out + c] = frame.settings.film_exposure * differences[i * size_t(channels) + c];
+      for (size_t c = 0; c < 3; ++c) difference_[out + c] = exposure * differences[i * size_t(channels) + c];
       link_[out] = float(links[i] % width - int32_t(i));
       link_[out + 1] = float(links[i] / width - row);
       link_[out + 2] = 1.0f;

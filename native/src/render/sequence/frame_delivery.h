@@ -26,8 +26,8 @@ class FrameDelivery final : public RenderTask {
   void deliver_as(const GradusSettings& asked, bool is_planned, Frame* frame) const;
   void reconstruct();
   void denoise();
-  // Passes Gradient T and Gradient T Link.
-  void read_differences_over_time(const Frame& frame);
+  // Passes Gradient T and Gradient T Link, of the frame's own half.
+  void read_differences_over_time(const Frame& base, const GradusSettings& asked);
 
   const std::shared_ptr<Sequence> sequence_;
   const int32_t number_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "frame/pass_planes.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
 
@@ -16,8 +15,8 @@ uint64_t key_without_frame(GradusSettings settings) {
 
 }  // namespace
 
-FrameForm form_of(const Frame& frame) {
-  const bool features = (feature_passes() & ~kept_passes(frame)) == 0;
+FrameForm form_of(const FrameHeader& frame) {
+  const bool features = (feature_passes() & ~frame.planes) == 0;
   return {frame.region, frame.channels, frame.gradients, features, frame.settings};
 }
 
@@ -30,14 +29,13 @@ bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstructi
   return have_same_pixels(a, b) && a.channels == b.channels && a.gradients == b.gradients && features;
 }
 
-std::unique_ptr<const FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-                                               const Frame* base) {
+std::unique_ptr<FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
+                                         const FrameHeader* base) {
   auto before = std::make_unique<FrameBefore>();
   before->snapshot = std::move(snapshot);
   before->settings = settings;
   before->stream_frame = base != nullptr ? base->frame_number : settings.frame;
   if (base != nullptr) before->form = form_of(*base);
-  if (base != nullptr && has_counts(settings)) before->counts = samples_of_pixels(*base);
   return before;
 }
 

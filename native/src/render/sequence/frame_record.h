@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "frame/frame.h"
+#include "frame/frame_header.h"
 #include "plan/plan.h"
 #include "render/stats.h"
 #include "scene/snapshot.h"
@@ -20,7 +20,7 @@ struct FrameForm {
   bool gradients = false, features = false;
   GradusSettings settings{};
 };
-FrameForm form_of(const Frame& frame);
+FrameForm form_of(const FrameHeader& frame);
 bool have_same_pixels(const FrameForm& a, const FrameForm& b);
 // Whether one window can hold both: they have all that it reads of its frames.
 bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstruction);
@@ -34,7 +34,7 @@ struct FrameBefore {
   std::optional<FrameForm> form;  // of its own half; nothing: it was not sampled
 };
 // base: its own half; nullptr where it was not sampled.
-std::unique_ptr<const FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings, const Frame* base);
+std::unique_ptr<FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings, const FrameHeader* base);
 
 // How a frame was sampled, for the stats of its delivery.
 struct FrameRecord {

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
+#include "base/bill.h"
 #include "base/error.h"
 #include "frame/features.h"
 #include "render/sequence/halves.h"
 #include "settings/options.h"
+#include "settings/pass_table.h"
+#include "settings/sampling_differences.h"
 #include "temporal/pixel_links.h"
 
 namespace gradus {
@@ -15,21 +19,53 @@ namespace {
 
 constexpr const char* kWayOut = ": remove it, or choose another frame store";
 
-void require_same(const Frame& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
-  const auto refuse = [&](const std::string& why) { throw invalid_argument("stored frame " + path + " " + why + kWayOut); };
-  if (sampling_key(stored.settings) != sampling_key(settings)) refuse("was sampled with other settings");
-  if (stored.settings.passes != settings.passes) refuse("was sampled with other passes");
-  if (!show_same_region(stored.settings, settings)) refuse("shows another region");
-  if (stored.scene_key != scene_key) refuse("shows another scene");
-  if (stored.settings.noise_threshold > 0.0f && !(settings.noise_threshold > 0.0f)) refuse("was sampled with a noise threshold");
+// "depth, normal": those of `passes` that `others` lack.
+std::string names_of_missing(uint64_t passes, uint64_t others) {
+  std::string names;
+  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
+    if (!wants(passes & ~others, pass)) continue;
+    if (!names.empty()) names += ", ";
+    names += pass_info(pass).name;
+  }
+  return names;
 }
 
-std::shared_ptr<const Frame> load_or_name_the_way_out(const SequenceFolder& folder, int32_t number, FramePart part) {
+std::string region_text(const uint32_t* r) {
+  if (r[2] == 0 && r[3] == 0) return "the whole frame";
+  char text[64];
+  std::snprintf(text, sizeof(text), "region %u,%u,%u,%u", r[0], r[1], r[2], r[3]);
+  return text;
+}
+
+// What makes a stored frame another one than is asked for; "" if it fits.
+std::string difference(const FrameHeader& stored, const GradusSettings& settings, uint64_t scene_key) {
+  const GradusSettings& other = stored.settings;
+  if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
+  const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
+  if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
+  if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
+  if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
+  if (stored.scene_key != scene_key) return "shows another scene";
+  const bool adaptive = other.noise_threshold > 0.0f;
+  return adaptive && !(settings.noise_threshold > 0.0f) ? "was sampled with a noise threshold, which is 0 now" : "";
+}
+
+void require_same(const FrameHeader& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
+  const std::string why = difference(stored, settings, scene_key);
+  if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kWayOut);
+}
+
+template <class Read>
+auto read_or_name_the_way_out(const Read& read) {
   try {
-    return folder.load(number, part);
+    return read();
   } catch (const Error& e) {
     throw Error(e.code(), e.what() + std::string(kWayOut));
   }
+}
+
+double mean_of(const std::vector<uint32_t>& counts) {
+  return double(std::accumulate(counts.begin(), counts.end(), uint64_t{0})) / double(counts.size());
 }
 
 // The samples of each pixel that a replay takes: those of what it replays, the mean in holes, and where that is not known.
@@ -45,7 +81,7 @@ std::vector<uint32_t> replayed_counts(const SampleSources& sources, const FrameB
 
 // No more of them than `most` on average: where a frame is dearer than the one before, a time limit allows fewer.
 void limit_mean(double most, std::vector<uint32_t>* counts) {
-  const double mean = std::accumulate(counts->begin(), counts->end(), 0.0) / double(counts->size());
+  const double mean = mean_of(*counts);
   if (mean <= most) return;
   for (uint32_t& count : *counts) count = std::max(1u, uint32_t(std::lround(count * most / mean)));
 }
@@ -63,6 +99,7 @@ FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input
     : sequence_(std::move(sequence)), input_(std::move(input)), stored_base_(stored(FramePart::kBase)), base_(base_input()) {
   record_.plan = base_.plan();
   require_features();
+  record_.stats.planned = sequence_->plan_job(record_.plan, input_.settings, &record_.stats.warnings);
   record_.plan.chosen.emplace_back("differences over time", "frames of an animation: half of the samples repeat those of the frame before");
 }
 
@@ -71,7 +108,6 @@ LoopInput FrameSampling::base_input() const {
   input.settings.samples = samples_of(FramePart::kBase, input.settings.samples);
   input.settings.time_limit *= kBaseShareOfTime;
   input.settings.noise_threshold *= kBaseShareOfThreshold;
-  if (stored_base_ && !has_as_many(*stored_base_, FramePart::kBase, input_.settings)) input.resumed = stored_base_;
   input.whole_samples = input_.settings.samples;
   return input;
 }
@@ -102,13 +138,18 @@ GradusProgress FrameSampling::progress() const {
 
 std::string FrameSampling::stats() const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its stats come", "the render failed: ");
-  return stats_json(record_.stats, record_.plan, *frame_);
+  return stats_json(record_.stats, record_.plan, *own_half("its stats come"));
 }
 
 std::shared_ptr<const Frame> FrameSampling::frame() const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its frame comes", "the render failed: ");
+  return own_half("its frame comes");
+}
+
+std::shared_ptr<const Frame> FrameSampling::own_half(const char* what) const {
+  require_end(what);
+  if (!frame_ && text_.empty()) frame_ = read(FramePart::kBase, StoredContent::kAll);
+  require_frame(frame_, what, "the render failed: ");
   return frame_;
 }
 
@@ -123,18 +164,31 @@ void FrameSampling::render() {
   sample_parts();
 }
 
-std::shared_ptr<const Frame> FrameSampling::stored(FramePart part) const {
+std::optional<FrameHeader> FrameSampling::stored(FramePart part) const {
   const SequenceFolder& folder = sequence_->folder_;
   const int32_t number = input_.settings.frame;
-  if (!folder.holds(number)) return nullptr;
-  const std::shared_ptr<const Frame> frame = load_or_name_the_way_out(folder, number, part);
+  if (!folder.holds(number)) return std::nullopt;
+  std::optional<FrameHeader> frame = read_or_name_the_way_out([&] { return folder.header(number, part); });
   // The file of an earlier frame that was as this one, and is no longer, or has too few samples: taken anew, or from that frame again.
-  if (frame->frame_number != number && (!has_as_many(*frame, part, input_.settings) || differs_from_before())) return nullptr;
+  if (frame->frame_number != number && (!has_as_many(*frame, part, input_.settings) || differs_from_before())) return std::nullopt;
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // that of the first of several frames that are alike
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = frame->settings.integrator;  // what it came to
   require_same(*frame, folder.path(number, part), settings, input_.snapshot->content_key);
   return frame;
+}
+
+std::shared_ptr<Frame> FrameSampling::read(FramePart part, StoredContent content) const {
+  std::shared_ptr<Frame> frame;
+  tbb::task_arena(arena_size(input_.threads)).execute([&] {
+    frame = read_or_name_the_way_out([&] { return sequence_->folder_.load(input_.settings.frame, part, content); });
+  });
+  return frame;
+}
+
+std::shared_ptr<Frame> FrameSampling::load(FramePart part, StoredContent content) {
+  const Bill bill(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
+  return read(part, content);
 }
 
 bool FrameSampling::repeats_before() const {
@@ -160,7 +214,8 @@ void FrameSampling::run(RenderLoop* loop) {
   record_.stats.stopped = stopped.empty() ? loop->what_it_took().stopped : stopped;
 }
 
-void FrameSampling::save(const Frame& frame, FramePart part) const {
+void FrameSampling::save(const Frame& frame, FramePart part) {
+  const Bill bill(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
   stop_if_asked();
   tbb::task_arena(arena_size(input_.threads)).execute([&] { sequence_->folder_.save(frame, input_.settings.frame, part); });
 }
@@ -169,37 +224,48 @@ void FrameSampling::repeat_before() {
   const FrameBefore& before = *sequence_->before_;
   sequence_->folder_.repeat(before.settings.frame, input_.settings.frame);
   record_.stats.stopped = "unchanged";
-  finish(sequence_->folder_.load(input_.settings.frame, FramePart::kBase));
+  finish(sequence_->folder_.header(input_.settings.frame, FramePart::kBase), before.counts);
+}
+
+void FrameSampling::go_on() {
+  const std::shared_ptr<const Frame> stored_half = load(FramePart::kBase);
+  resumed_mean_ = mean_samples(*stored_half);
+  base_.resume(stored_half);
 }
 
 void FrameSampling::sample_parts() {
-  std::shared_ptr<const Frame> base = stored_base_;
-  const bool samples_base = !base || base_.resumes();
-  if (samples_base) {
-    run(&base_);
-    base = base_.frame();
-  }
-  sample_offset(*base, samples_base);
-  if (samples_base) save(*base, FramePart::kBase);
-  record_.stats.stopped = samples_base ? record_.stats.stopped : "stored";
-  finish(base);
+  const bool goes_on = stored_base_ && !has_as_many(*stored_base_, FramePart::kBase, input_.settings),
+             samples_base = !stored_base_ || goes_on;
+  if (goes_on) go_on();
+  if (samples_base) run(&base_);
+  const std::shared_ptr<const Frame> sampled = samples_base ? base_.frame() : nullptr;
+  const FrameHeader base = sampled ? header_of(*sampled) : *stored_base_;
+  std::vector<uint32_t> counts;
+  if (has_counts(input_.settings)) counts = samples_of_pixels(sampled ? *sampled : *load(FramePart::kBase, StoredContent::kSamples));
+  sample_offset(base, counts, samples_base);
+  if (sampled) save(*sampled, FramePart::kBase);
+  if (!sampled) record_.stats.stopped = "stored";
+  finish(base, std::move(counts));
+  const std::lock_guard lock(mutex_);
+  frame_ = sampled;
 }
 
-void FrameSampling::sample_offset(const Frame& base, bool samples_base) {
+void FrameSampling::sample_offset(const FrameHeader& base, const std::vector<uint32_t>& base_counts, bool samples_base) {
   LoopInput input = input_;
   input.whole_samples = input.settings.samples;
   input.settings.samples = samples_of(FramePart::kOffset, input.settings.samples);
-  std::shared_ptr<const Frame> found = stored(FramePart::kOffset);
+  std::optional<FrameHeader> found = stored(FramePart::kOffset);
   if (found && base.frame_number != input_.settings.frame) return;  // both are those of the earlier frame
   if (found && !replays_before(*found)) found.reset();
   const bool counted = has_counts(input_.settings);
   if (found && !counted && has_as_many(*found, FramePart::kOffset, input_.settings)) return;
   if (found && !samples_base && input.settings.time_limit > 0.0f) return;  // as many as the time of its base allowed
-  input.replay = follow(base);
+  input.replay = follow(base, base_counts);
   const std::vector<uint32_t>& counts = input.replay->counts;
-  if (found && counted && samples_of_pixels(*found) == counts) return;
-  const bool goes_on = found && !counted && !has_counts(found->settings) && found->replayed.pixel == input.replay->sources.pixel;
-  if (goes_on) input.resumed = found;
+  if (found && counted && samples_of_pixels(*load(FramePart::kOffset, StoredContent::kSamples)) == counts) return;
+  const bool may_go_on = found && !counted && !has_counts(found->settings);
+  const std::shared_ptr<const Frame> stored_offset = may_go_on ? load(FramePart::kOffset) : nullptr;
+  if (stored_offset && stored_offset->replayed.pixel == input.replay->sources.pixel) input.resumed = stored_offset;
   if (counted) input.settings.samples = *std::max_element(counts.begin(), counts.end());
   auto offset = std::make_unique<RenderLoop>(std::move(input));
   {
@@ -217,12 +283,12 @@ bool FrameSampling::follows_before() const {
          show_same_region(before->settings, now) && !is_cut(before->snapshot->camera, input_.snapshot->camera);
 }
 
-bool FrameSampling::replays_before(const Frame& offset) const {
+bool FrameSampling::replays_before(const FrameHeader& offset) const {
   if (!sequence_->before_) return true;
-  return offset.replayed.stream_frame == (follows_before() ? sequence_->before_->stream_frame : input_.settings.frame);
+  return offset.replayed_frame == (follows_before() ? sequence_->before_->stream_frame : input_.settings.frame);
 }
 
-std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
+std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, const std::vector<uint32_t>& counts) {
   auto replay = std::make_shared<Replay>();
   const size_t pixels = size_t(base.region.area());
   replay->sources = {input_.settings.frame, std::vector<int32_t>(pixels, kNoLink)};
@@ -230,6 +296,7 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
   if (follows_before()) {
     const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, input_.settings.width, input_.settings.height); };
     const Camera camera_before = camera(*before->snapshot), camera_now = camera(*input_.snapshot);
+    const Bill bill(&record_.stats.seconds.links, &record_.stats.cpu_seconds.links);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
       const auto is_cancelled = [this] { return is_stopped(); };
       const auto from = view_centres(*before->snapshot, camera_before, base.region, is_cancelled);
@@ -239,27 +306,28 @@ std::shared_ptr<const Replay> FrameSampling::follow(const Frame& base) const {
     });
   }
   if (!has_counts(input_.settings)) return replay;
-  const double mean = mean_samples(base);
+  const double mean = mean_of(counts);
   const bool is_counted = before && before->form && have_same_pixels(*before->form, form_of(base));
   replay->counts = replayed_counts(replay->sources, is_counted ? before : nullptr, mean);
   const double seconds = base_.what_it_took().seconds.sample;
   if (input_.settings.time_limit > 0.0f && seconds > 0.0) {
-    const double taken = mean - (base_.resumes() ? mean_samples(*stored_base_) : 0.0);
-    limit_mean((1.0 - kBaseShareOfTime) * input_.settings.time_limit / seconds * taken, &replay->counts);
+    limit_mean((1.0 - kBaseShareOfTime) * input_.settings.time_limit / seconds * (mean - resumed_mean_), &replay->counts);
   }
   return replay;
 }
 
-void FrameSampling::finish(const std::shared_ptr<const Frame>& base) {
-  sequence_->before_ = make_before(input_.snapshot, input_.settings, base.get());
+void FrameSampling::finish(const FrameHeader& base, std::vector<uint32_t> counts) {
+  auto before = make_before(input_.snapshot, input_.settings, &base);
+  before->counts = std::move(counts);
+  sequence_->before_ = std::move(before);
+  record_.stats.total_seconds = seconds();
+  record_.stats.process_cpu = process_cpu_seconds();
   sequence_->records_[input_.settings.frame] = record_;
-  sequence_->forms_[input_.settings.frame] = form_of(*base);
+  sequence_->forms_[input_.settings.frame] = form_of(base);
   GradusSettings delivered = input_.settings;
   delivered.reconstruction = record_.plan.reconstruction;
   delivered.denoiser = record_.plan.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
   sequence_->folder_.save_settings(delivered, delivered.frame);
-  const std::lock_guard lock(mutex_);
-  frame_ = base;
 }
 
 }  // namespace gradus

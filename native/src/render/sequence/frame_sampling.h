@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "render/loop.h"
 #include "render/sequence/sequence.h"
@@ -25,31 +27,38 @@ class FrameSampling final : public RenderTask {
   uint64_t memory_bytes() const override { return 0; }
 
   // What the folder has of the frame, if it fits.
-  std::shared_ptr<const Frame> stored(FramePart part) const;
+  std::optional<FrameHeader> stored(FramePart part) const;
   // Of a stored half. Throws invalid_argument with its path.
   void require_features() const;
+  // The frame that is sampled or was stored. With the lock.
+  std::shared_ptr<const Frame> own_half(const char* what) const;
+  std::shared_ptr<Frame> read(FramePart part, StoredContent content) const;
+  std::shared_ptr<Frame> load(FramePart part, StoredContent content = StoredContent::kAll);
   bool repeats_before() const;
   bool differs_from_before() const;
   void repeat_before();
   void sample_parts();
-  void sample_offset(const Frame& base, bool samples_base);
+  void go_on();
+  // counts: the base's samples of each pixel, where pixels may differ in them.
+  void sample_offset(const FrameHeader& base, const std::vector<uint32_t>& counts, bool samples_base);
   void run(RenderLoop* loop);
-  void save(const Frame& frame, FramePart part) const;
+  void save(const Frame& frame, FramePart part);
   bool follows_before() const;
   // Whether a stored offset is of what the frame follows now: other steps or parts of a job have other frames before it. Where nobody has
   // told what comes before, it is.
-  bool replays_before(const Frame& offset) const;
-  std::shared_ptr<const Replay> follow(const Frame& base) const;
+  bool replays_before(const FrameHeader& offset) const;
+  std::shared_ptr<const Replay> follow(const FrameHeader& base, const std::vector<uint32_t>& counts);
   LoopInput base_input() const;
   // From here on it is the frame before.
-  void finish(const std::shared_ptr<const Frame>& base);
+  void finish(const FrameHeader& base, std::vector<uint32_t> counts);
 
   const std::shared_ptr<Sequence> sequence_;
   const LoopInput input_;
-  const std::shared_ptr<const Frame> stored_base_;
+  const std::optional<FrameHeader> stored_base_;
   RenderLoop base_;
   std::unique_ptr<RenderLoop> offset_;
-  std::shared_ptr<const Frame> frame_;
+  double resumed_mean_ = 0.0;                   // samples per pixel that the base went on from
+  mutable std::shared_ptr<const Frame> frame_;  // of one that was stored: when it is asked for
   FrameRecord record_;
 };
 

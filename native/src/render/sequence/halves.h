@@ -1,7 +1,7 @@
 // How the two halves of a frame share its samples, its time and its noise (contract 4.2).
 #pragma once
 
-#include "frame/frame.h"
+#include "frame/frame_header.h"
 #include "render/sequence/sequence_folder.h"
 
 namespace gradus {
@@ -15,7 +15,7 @@ inline constexpr float kBaseShareOfThreshold = 1.41421356f;
 inline uint32_t samples_of(FramePart part, uint32_t samples) { return part == FramePart::kBase ? samples - samples / 2 : samples / 2; }
 
 // Whether a half has as many samples as are asked of the frame, or as many as it may have.
-inline bool has_as_many(const Frame& half, FramePart part, const GradusSettings& asked) {
+inline bool has_as_many(const FrameHeader& half, FramePart part, const GradusSettings& asked) {
   // Frames with a time limit have as many as it left them, whatever their settings say.
   const bool is_limited = half.settings.time_limit > 0.0f;
   if (is_limited && asked.time_limit > 0.0f && asked.time_limit <= half.settings.time_limit / kBaseShareOfTime) return true;

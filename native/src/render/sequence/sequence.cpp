@@ -2,13 +2,17 @@
 
 #include <algorithm>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "render/resume.h"
 #include "render/sequence/frame_delivery.h"
 #include "render/sequence/frame_sampling.h"
 #include "render/sequence/halves.h"
+#include "render/sequence/sequence_needs.h"
 #include "settings/options.h"
-#include "temporal/spooled_window.h"
+#include "settings/pass_table.h"
+#include "temporal/spooled_frames.h"
+#include "temporal/streamed_frames.h"
 
 namespace gradus {
 
@@ -22,7 +26,7 @@ uint32_t integrator_of(const GradusSettings& settings) {
 }
 
 // Whether a stored frame is what the sequence would sample of the snapshot.
-bool is_frame_of(const Frame& stored, const Snapshot& snapshot, GradusSettings settings) {
+bool is_frame_of(const FrameHeader& stored, const Snapshot& snapshot, GradusSettings settings) {
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = stored.settings.integrator;  // what it came to
   return stored.scene_key == snapshot.content_key && are_alike(stored.settings, settings) &&
          has_as_many(stored, FramePart::kBase, settings);
@@ -65,6 +69,20 @@ FrameRange Sequence::own_places() const {
   return range;
 }
 
+PlannedBytes Sequence::plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings) {
+  const SequenceMethod method{plan.reconstruction, settings.reconstruction_alpha, wants(settings.passes, GRADUS_PASS_ERROR)};
+  const PlannedBytes bytes = planned_bytes(plan, method, settings_.windows, own_places().count(), !folder_.is_temporary());
+  const uint64_t available = machine_memory_bytes();
+  if (available > 0 && bytes.memory > available) {
+    throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "the animation needs " + std::to_string(bytes.memory >> 20) + " MiB, the machine has " +
+                                                std::to_string(available >> 20) +
+                                                " MiB: render fewer pixels or passes, or smaller windows");
+  }
+  if (!room_is_checked_) *warnings = lacking_room(bytes, folder_.path());
+  room_is_checked_ = true;
+  return bytes;
+}
+
 FrameRange Sequence::places_with_neighbours() const {
   FrameRange range = own_places();
   if (folder_.is_temporary()) return range;
@@ -78,7 +96,7 @@ const FrameForm& Sequence::form_at(int place) {
   const int32_t frame = frame_at(place);
   const auto known = forms_.find(frame);
   if (known != forms_.end()) return known->second;
-  return forms_[frame] = form_of(*folder_.load(frame, FramePart::kBase));
+  return forms_[frame] = form_of(folder_.header(frame, FramePart::kBase));
 }
 
 bool Sequence::goes_on_at(int place, uint32_t reconstruction) {
@@ -118,53 +136,57 @@ void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSet
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
   if (settings.frame >= settings_.first && settings.frame <= settings_.last) passed_by_.insert(settings.frame);
-  std::shared_ptr<const Frame> base;  // that of another part of the job
-  if (folder_.holds(settings.frame)) base = folder_.load(settings.frame, FramePart::kBase);
+  std::optional<FrameHeader> base;  // that of another part of the job
+  if (folder_.holds(settings.frame)) base = folder_.header(settings.frame, FramePart::kBase);
   if (base && !is_frame_of(*base, *snapshot, resolved)) base.reset();
-  before_ = make_before(std::move(snapshot), resolved, base.get());
+  auto before = make_before(std::move(snapshot), resolved, base ? &*base : nullptr);
+  if (base && has_counts(settings)) {
+    before->counts = samples_of_pixels(*folder_.load(settings.frame, FramePart::kBase, StoredContent::kSamples));
+  }
+  before_ = std::move(before);
 }
 
 std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSettings* settings) {
   return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
 }
 
-std::unique_ptr<HalvedWindowSource> Sequence::open_window(const FrameRange& places, const CancelTest& cancel) const {
-  const auto part = [&](FramePart which) {
-    return [this, &places, &cancel, which](int i) {
-      if (cancel()) throw cancelled();
-      return folder_.load(frame_at(places.first + i), which);
-    };
-  };
-  return std::make_unique<SpooledWindow>(places.count(), part(FramePart::kBase), part(FramePart::kOffset));
+LoadPart Sequence::load_part(FramePart part) const {
+  return [this, part](int place) { return folder_.load(frame_at(place), part); };
 }
 
-std::shared_ptr<Frame> Sequence::open_frame(int32_t number, double* offset_samples) const {
-  const std::shared_ptr<Frame> frame = folder_.load(number, FramePart::kBase);
-  const std::shared_ptr<const Frame> offset = folder_.load(number, FramePart::kOffset);
-  if (frame->count[0].size() != offset->count[0].size() || frame->channels != offset->channels || frame->gradients != offset->gradients ||
-      frame->passes.size() != offset->passes.size() || sampling_key(frame->settings) != sampling_key(offset->settings)) {
+void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
+  if (base->count[0].size() != offset.count[0].size() || base->channels != offset.channels || base->gradients != offset.gradients ||
+      base->passes.size() != offset.passes.size() || sampling_key(base->settings) != sampling_key(offset.settings)) {
     throw invalid_argument("stored frame " + folder_.path(number, FramePart::kBase) + " and its offset do not belong together");
   }
-  add_sums(frame.get(), *offset);
-  frame->frame_number = number;
-  frame->settings.frame = number;
-  frame->settings.samples += offset->settings.samples;
-  frame->shared = {};
-  if (offset_samples != nullptr) *offset_samples = mean_samples(*offset);
-  return frame;
+  add_sums(base, offset);
+  base->frame_number = number;
+  base->settings.frame = number;
+  base->settings.samples += offset.settings.samples;
+  base->shared = {};
 }
 
-SequencePictures* Sequence::pictures(const SequenceMethod& method, const Frame& frame) {
-  const int place = place_of(frame.frame_number);
+SequenceSource Sequence::source(const SequenceMethod& method) const {
+  const LoadPart base = load_part(FramePart::kBase), offset = load_part(FramePart::kOffset);
+  const auto merged = [this](int place, std::shared_ptr<Frame> frame, const Frame& replay) {
+    merge(frame_at(place), frame.get(), replay);
+    return frame;
+  };
+  const auto spooled = std::make_shared<SpooledFrames>(base, offset, TemporalContent{.halves = reads_halves(method)});
+  const auto streamed = std::make_shared<StreamedFrames>(base, offset, merged);
+  return {[spooled](const FrameRange& window, const CancelTest& cancel) { return spooled->window(window.first, window.last, cancel); },
+          [streamed](int place) { return streamed->frame(place); }, [streamed](int place) { return streamed->differences(place); }};
+}
+
+SequencePictures* Sequence::pictures(const SequenceMethod& method, int32_t frame) {
+  const int place = place_of(frame);
   if (!pictures_ || !(pictures_->method() == method) || !pictures_->has(place)) {
     FrameRange places = places_with_neighbours();
     const int begin = WindowGrid(places, settings_.windows).around(place).first;
     int first = place;
     while (first > begin && goes_on_at(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
-    SequenceSource source{[this](const FrameRange& window, const CancelTest& cancel) { return open_window(window, cancel); },
-                          [this](int at) { return open_frame(frame_at(at)); }};
-    pictures_ = std::make_unique<SequencePictures>(places, settings_.windows, std::move(source), method);
+    pictures_ = std::make_unique<SequencePictures>(places, settings_.windows, source(method), method);
     if (last_ < settings_.last) pictures_->end_at(place_of(last_));
   }
   int last = place;

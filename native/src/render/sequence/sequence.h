@@ -14,6 +14,8 @@
 #include "render/render_task.h"
 #include "render/sequence/frame_record.h"
 #include "render/sequence/sequence_folder.h"
+#include "render/stats.h"
+#include "temporal/load_part.h"
 
 namespace gradus {
 
@@ -46,6 +48,7 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // Reconstructs and delivers a frame. settings: what it is made of otherwise than it was sampled for (reconstruction, alpha, denoiser,
   // exposure); nullptr: nothing. Frames in order.
   std::unique_ptr<RenderTask> deliver(int32_t frame, const GradusSettings* settings);
+  const SequenceFolder& folder() const { return folder_; }
 
  private:
   friend class FrameSampling;
@@ -55,16 +58,19 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   FrameRange own_places() const;
+  // What the job takes. Throws OUT_OF_MEMORY where the machine has less; warns once of disks that are too small.
+  PlannedBytes plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings);
   // The frames that are rendered, and those beside them that the folder holds.
   FrameRange places_with_neighbours() const;
   // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
   bool goes_on_at(int place, uint32_t reconstruction);
   const FrameForm& form_at(int place);
-  std::unique_ptr<HalvedWindowSource> open_window(const FrameRange& places, const CancelTest& cancel) const;
-  // All samples of a frame; offset: if given, those of its second part.
-  std::shared_ptr<Frame> open_frame(int32_t frame, double* offset = nullptr) const;
+  LoadPart load_part(FramePart part) const;
+  // All samples of a frame, in the place of its own half.
+  void merge(int32_t frame, Frame* base, const Frame& offset) const;
+  SequenceSource source(const SequenceMethod& method) const;
   // That have the picture of `frame`: begun anew where it was taken before, or by another method.
-  SequencePictures* pictures(const SequenceMethod& method, const Frame& frame);
+  SequencePictures* pictures(const SequenceMethod& method, int32_t frame);
   // Those that no picture to come needs.
   void forget_before(int32_t frame);
 
@@ -73,6 +79,7 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   const IntegratorFactory factory_;
   const SequenceFolder folder_;
   int32_t last_;
+  bool room_is_checked_ = false;
   std::unique_ptr<const FrameBefore> before_;
   std::map<int32_t, FrameRecord> records_;
   std::map<int32_t, FrameForm> forms_;  // of frames that were sampled or looked at

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "frame/file_writer.h"
 #include "frame/part_file.h"
-#include "frame/store.h"
 #include "settings/options.h"
 
 namespace gradus {
@@ -46,7 +45,12 @@ bool SequenceFolder::holds(int32_t frame) const {
   return fs::exists(path(frame, FramePart::kBase), error) && fs::exists(path(frame, FramePart::kOffset), error);
 }
 
-std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part) const { return load_frame(path(frame, part)); }
+FrameHeader SequenceFolder::header(int32_t frame, FramePart part) const { return load_header(path(frame, part)); }
+
+std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part, StoredContent content) const {
+  ++loads_;
+  return load_frame(path(frame, part), content);
+}
 
 void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part) const { save_frame(content, path(frame, part)); }
 
@@ -71,7 +75,7 @@ void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
   for (const FramePart part : {FramePart::kOffset, FramePart::kBase}) {
     const std::string source = path(from, part), target = path(to, part);
-    if (!link_file(source, target)) save_frame(*load_frame(source), target);
+    if (!link_file(source, target)) copy_file(source, target);
   }
 }
 

@@ -2,12 +2,13 @@
 // f<number>.json with the settings that the frame was asked for.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "base/temporary_folder.h"
-#include "frame/frame.h"
+#include "frame/store.h"
 
 namespace gradus {
 
@@ -20,11 +21,13 @@ class SequenceFolder {
   explicit SequenceFolder(const std::string& path);
 
   bool is_temporary() const { return temporary_ != nullptr; }
+  const std::string& path() const { return path_; }
   std::string path(int32_t frame, FramePart part) const;
   // Whether both parts of a frame are there.
   bool holds(int32_t frame) const;
-  // Throws invalid_argument with path and cause. By the threads of the caller's arena; so does save().
-  std::shared_ptr<Frame> load(int32_t frame, FramePart part) const;
+  // Both throw invalid_argument with path and cause. The second by the threads of the caller's arena; so does save().
+  FrameHeader header(int32_t frame, FramePart part) const;
+  std::shared_ptr<Frame> load(int32_t frame, FramePart part, StoredContent content = StoredContent::kAll) const;
   void save(const Frame& content, int32_t frame, FramePart part) const;
   // Of delivery (exposure and the like): frames that are alike share their files, and may differ in these. Throws invalid_argument with the
   // path; nothing: those of its files.
@@ -34,12 +37,15 @@ class SequenceFolder {
   void repeat(int32_t from, int32_t to) const;
   // Of a temporary folder: the frame is not needed any more.
   void forget(int32_t frame) const;
+  // How many files were unpacked: each takes as long as it took to write.
+  uint64_t loads() const { return loads_; }
 
  private:
   std::string path(int32_t frame, const char* ending) const;
 
   std::unique_ptr<const TemporaryFolder> temporary_;
   std::string path_;
+  mutable std::atomic<uint64_t> loads_{0};
 };
 
 }  // namespace gradus

@@ -62,34 +62,38 @@ struct Shot {
     merge_frames(frame.get(), sampled(t, t - 1));
     return frame;
   }
-  FrameWindow window(const FrameRange& range) const {
-    std::vector<std::shared_ptr<const TemporalFrame>> window;
-    for (int t = range.first; t <= range.last; ++t) {
-      auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
-      frame->links.resize(size_t(kWidth) * kHeight);
-      for (int i = 0; i < kWidth * kHeight; ++i) frame->links[size_t(i)] = linked(i) ? i : kNoLink;
-      window.push_back(std::move(frame));
-    }
-    return FrameWindow(std::move(window));
+  std::shared_ptr<const TemporalFrame> temporal(int t) const {
+    auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
+    frame->stream = t;
+    frame->replayed = {t - 1, std::vector<int32_t>(size_t(kWidth) * kHeight)};
+    for (int i = 0; i < kWidth * kHeight; ++i) frame->replayed.pixel[size_t(i)] = linked(i) ? i : kNoLink;
+    return frame;
+  }
+  std::unique_ptr<HalvedWindowSource> pair(int t) const {
+    return std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{temporal(t), temporal(t + 1)});
   }
   RegularizedWindows::OpenFrame open() const {
     return [this](int t) { return merged(t); };
   }
+  RegularizedWindows::OpenDifferences differences() const {
+    return [this](int t) { return pair(t); };
+  }
+  RegularizedWindows windows() const { return {open(), differences()}; }
   FrameRange all() const { return {0, frames - 1}; }
 };
 
-std::vector<Reconstructed> solve(RegularizedWindows* windows, const Shot& shot, const FrameRange& range) {
+std::vector<Reconstructed> solve(RegularizedWindows* windows, const FrameRange& range) {
   SolveReport report;
   std::vector<Reconstructed> pictures;
-  windows->reconstruct(range, shot.window(range), never, &report, [&](int t, Reconstructed picture) {
+  windows->reconstruct(range, never, &report, [&](int t, Reconstructed picture) {
     EXPECT_EQ(t, int(pictures.size()));
     pictures.push_back(std::move(picture));
   });
   return pictures;
 }
 std::vector<Reconstructed> solve(const Shot& shot) {
-  RegularizedWindows windows(shot.open());
-  return solve(&windows, shot, shot.all());
+  RegularizedWindows windows = shot.windows();
+  return solve(&windows, shot.all());
 }
 std::vector<Reconstructed> solve_each(const Shot& shot) {
   SolveReport report;
@@ -215,21 +219,15 @@ TEST(C5_RegularizedWindow, ALampThatIsSwitchedShowsAtOnce) {
 // A window that is told that nothing changes, and for sure.
 class Blind final : public HalvedWindowSource {
  public:
-  explicit Blind(FrameWindow window) : window_(std::move(window)) {}
-  WindowSize size() const override { return window_.size(); }
-  void read_row(RowKind kind, int t, int y, float* out) const override { read(kind, t, y, &FrameWindow::read_row, out); }
-  void read_half_differences(RowKind kind, int t, int y, float* out) const override {
-    read(kind, t, y, &FrameWindow::read_half_differences, out);
-  }
-  void read_deviations(RowKind kind, int t, int y, float* out) const override { window_.read_deviations(kind, t, y, out); }
-  void read_links(int t, int y, int32_t* out) const override { window_.read_links(t, y, out); }
+  explicit Blind(std::unique_ptr<HalvedWindowSource> window) : window_(std::move(window)) {}
+  WindowSize size() const override { return window_->size(); }
+  void read_row(RowKind, int, int, float* out) const override { read(out); }
+  void read_half_differences(RowKind, int, int, float* out) const override { read(out); }
+  void read_links(int t, int y, int32_t* out) const override { window_->read_links(t, y, out); }
 
  private:
-  void read(RowKind kind, int t, int y, void (FrameWindow::*row)(RowKind, int, int, float*) const, float* out) const {
-    (window_.*row)(kind, t, y, out);
-    if (is_temporal(kind)) std::fill_n(out, size_t(size().width) * size_t(size().channels), 0.0f);
-  }
-  FrameWindow window_;
+  void read(float* out) const { std::fill_n(out, size_t(size().width) * size_t(size().channels), 0.0f); }
+  std::unique_ptr<HalvedWindowSource> window_;
 };
 
 // Samples of both frames outweigh a change that seems to be known and is wrong.
@@ -237,8 +235,8 @@ TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
   Shot shot;
   shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
   SolveReport report;
-  RegularizedWindows windows(shot.open());
-  windows.reconstruct(shot.all(), Blind(shot.window(shot.all())), never, &report, [&](int t, const Reconstructed& picture) {
+  RegularizedWindows windows(shot.open(), [&](int t) { return std::make_unique<Blind>(shot.pair(t)); });
+  windows.reconstruct(shot.all(), never, &report, [&](int t, const Reconstructed& picture) {
     EXPECT_NEAR(mean(picture.image) / mean(shot.description(t).truth), 1.0, 0.05) << t;
   });
 }
@@ -284,21 +282,27 @@ TEST(B2_RegularizedWindow, TakesFramesWithoutASecondHalf) {
   EXPECT_LT(error_of(shot, pictures), error_of(shot, each));
 }
 
-// Frames that two windows share are reconstructed once; the second one only reads the features of the frame where the first ended. What
-// comes of it is what a window by itself has.
+// Frames that two windows share are read and reconstructed once. What comes of it is what a window by itself has.
 TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
   Shot shot;
   shot.frames = 8;
   std::map<int, int> opened;
-  RegularizedWindows both([&](int t) {
-    ++opened[t];
-    return shot.merged(t);
-  });
-  solve(&both, shot, {0, 4});
-  const std::vector<Reconstructed> second = solve(&both, shot, {3, 7});
-  EXPECT_EQ(opened, (std::map<int, int>{{0, 1}, {1, 1}, {2, 1}, {3, 1}, {4, 2}, {5, 1}, {6, 1}, {7, 1}}));
-  RegularizedWindows alone(shot.open());
-  const std::vector<Reconstructed> expected = solve(&alone, shot, {3, 7});
+  std::map<int, int> changes;
+  RegularizedWindows both(
+      [&](int t) {
+        ++opened[t];
+        return shot.merged(t);
+      },
+      [&](int t) {
+        ++changes[t];
+        return shot.pair(t);
+      });
+  solve(&both, {0, 4});
+  const std::vector<Reconstructed> second = solve(&both, {3, 7});
+  EXPECT_EQ(opened, (std::map<int, int>{{0, 1}, {1, 1}, {2, 1}, {3, 1}, {4, 1}, {5, 1}, {6, 1}, {7, 1}}));
+  EXPECT_EQ(changes, (std::map<int, int>{{0, 1}, {1, 1}, {2, 1}, {3, 1}, {4, 1}, {5, 1}, {6, 1}}));
+  RegularizedWindows alone = shot.windows();
+  const std::vector<Reconstructed> expected = solve(&alone, {3, 7});
   ASSERT_EQ(second.size(), expected.size());
   for (size_t t = 0; t < expected.size(); ++t) {
     EXPECT_EQ(second[t].image, expected[t].image) << t;
@@ -316,9 +320,9 @@ TEST(B2_RegularizedWindow, TakesNothingWhenCancelled) {
   Shot shot;
   shot.frames = 2;
   SolveReport report;
-  RegularizedWindows windows(shot.open());
+  RegularizedWindows windows = shot.windows();
   windows.reconstruct(
-      shot.all(), shot.window(shot.all()), [] { return true; }, &report, [](int, const Reconstructed&) { ADD_FAILURE(); });
+      shot.all(), [] { return true; }, &report, [](int, const Reconstructed&) { ADD_FAILURE(); });
 }
 
 TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
@@ -327,8 +331,8 @@ TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
   Shot other = shot;
   other.channels = 4;
   SolveReport report;
-  RegularizedWindows windows(other.open());
-  EXPECT_THROW(windows.reconstruct(shot.all(), shot.window(shot.all()), never, &report, [](int, const Reconstructed&) {}), Error);
+  RegularizedWindows windows(other.open(), shot.differences());
+  EXPECT_THROW(windows.reconstruct(shot.all(), never, &report, [](int, const Reconstructed&) {}), Error);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ std::unique_ptr<Window> open_static(const FrameRange& frames) {
 }
 
 SequencePictures static_sequence(const FrameRange& range, bool with_error = false) {
-  return SequencePictures(range, {}, {[](const FrameRange& frames, const CancelTest&) { return open_static(frames); }, {}},
+  return SequencePictures(range, {}, {[](const FrameRange& frames, const CancelTest&) { return open_static(frames); }, {}, {}},
                           {GRADUS_RECONSTRUCTION_L2, 0.0f, with_error});
 }
 
@@ -166,7 +166,7 @@ TEST(B2_Windows, TellTheErrorOfTheirPictures) {
       }
       return window;
     };
-    SequencePictures pictures({0, 5}, {}, {noisy, {}}, {GRADUS_RECONSTRUCTION_L2, 0.0f, true});
+    SequencePictures pictures({0, 5}, {}, {noisy, {}, {}}, {GRADUS_RECONSTRUCTION_L2, 0.0f, true});
     SolveReport report;
     for (int frame = 0; frame <= 5; ++frame) {
       const Reconstructed picture = pictures.take(frame, never, &report);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "sequence_fixture.h"
 
@@ -253,7 +254,7 @@ TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
   const auto sequence = make_sequence(5, 6, folder.path());
   sequence->pass_by(pan.at(4), with_passes(adaptive(4, 8)));
   for (int32_t t = 5; t <= 6; ++t) sample(sequence.get(), pan.at(t), adaptive(t, 8));
-  const std::vector<int32_t> sources = SequenceFolder(folder.path()).load(5, FramePart::kOffset)->replayed.pixel;
+  const std::vector<int32_t> sources = SequenceFolder(folder.path()).load(5, FramePart::kOffset, StoredContent::kSamples)->replayed.pixel;
   EXPECT_GT(size_t(std::count_if(sources.begin(), sources.end(), [](int32_t i) { return i != kNoLink; })), sources.size() / 2);
 }
 
@@ -292,7 +293,65 @@ TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   EXPECT_EQ(text_of(pan.at(1), settings), "");
   EXPECT_NE(text_of(pan.at(2), settings).find("shows another scene"), std::string::npos);
   settings.max_bounces = 1;
-  EXPECT_NE(text_of(pan.at(1), settings).find("f+0000001.base.exr was sampled with other settings"), std::string::npos);
+  EXPECT_NE(text_of(pan.at(1), settings).find("f+0000001.base.exr was sampled with other settings: max_bounces is 64, not 1:"),
+            std::string::npos)
+      << text_of(pan.at(1), settings);
+  settings = with_passes(settings_of(1));
+  settings.passes |= uint64_t{1} << GRADUS_PASS_MIST;
+  EXPECT_NE(text_of(pan.at(1), settings).find("was sampled with other passes: without Mist"), std::string::npos);
+  settings = with_passes(settings_of(1));
+  settings.region[2] = settings.region[3] = 16;
+  EXPECT_NE(text_of(pan.at(1), settings).find("shows the whole frame, not region 0,0,16,16"), std::string::npos);
+}
+
+// Links to the frame before, reading and writing were in no stats: a frame of few samples spent most of its time unseen.
+TEST(Sequence, LinksAndFilesAreBilled) {
+  Pan pan(1.3f);
+  const auto sequence = make_sequence(0, 1);
+  for (int32_t t = 0; t <= 1; ++t) sample(sequence.get(), pan.at(t), settings_of(t, 2));
+  const uint64_t start = process_cpu_nanoseconds();
+  deliver(sequence.get(), 0);
+  const nlohmann::json stats = deliver(sequence.get(), 1).stats;
+  const double since = 1e-9 * double(process_cpu_nanoseconds() - start);
+  for (const char* time : {"seconds", "cpu_seconds"}) {
+    EXPECT_GT(stats[time]["links"], 0.0);
+    EXPECT_GT(stats[time]["store"], 0.0);
+  }
+  const nlohmann::json& cpu = stats["cpu_seconds"];
+  EXPECT_GE(stats["process_cpu"].get<double>(), cpu["links"].get<double>() + cpu["store"].get<double>());
+  EXPECT_LE(cpu["reconstruct"].get<double>(), since);
+  double sum = 0.0;
+  for (const char* phase : {"sample", "preview", "links", "store", "reconstruct", "denoise"}) sum += cpu[phase].get<double>();
+  EXPECT_NEAR(cpu["total"].get<double>(), sum, 1e-9);
+}
+
+// Each took as long as a hundred of its samples, and was unpacked up to seven times: for checks, for its delivery, for each window.
+TEST(C7_Sequence, FramesAreUnpackedForTheirWindowsAndForTheirDelivery) {
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+    for (const int overlap : {0, 2, 3}) {
+      const Folder folder;
+      for (const bool is_stored : {false, true}) {
+        Pan pan(1.3f);
+        const auto sequence = std::make_shared<Sequence>(two_threads(), SequenceSettings{0, 11, 1, {6, overlap}, folder.path()});
+        render(&pan, sequence.get(), 0, 11, 4, reconstruction);
+        // Gradient T reads a part of the next frame, where that is there: of windows that share nothing the last frame comes first.
+        const uint64_t frames = 12, differences = overlap == 0 && !is_stored ? 10 : 11;
+        EXPECT_EQ(sequence->folder().loads(), 2 * 2 * frames + differences) << reconstruction << ", " << overlap << ", " << is_stored;
+      }
+    }
+  }
+}
+
+// The samples of a stored frame were read by whoever asked for the render, before it began.
+TEST(C7_Sequence, WhoeverAsksForAStoredFrameWaitsForNoPixels) {
+  Pan pan(1.3f);
+  const Folder folder;
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), settings_of(1, 4));
+  const auto again = make_sequence(1, 1, folder.path());
+  const auto task = again->sample(pan.at(1), with_passes(settings_of(1, 12)));
+  EXPECT_EQ(again->folder().loads(), 0u);
+  run(task.get());
+  EXPECT_EQ(again->folder().loads(), 2u);
 }
 
 // Links are numbers of pixels, which went beyond 31 bits.

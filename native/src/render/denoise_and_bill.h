@@ -1,0 +1,16 @@
+// The step of the denoiser, of a render and of a frame of a sequence.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "render/denoise_combined.h"
+#include "render/stats.h"
+
+namespace gradus {
+
+// denoise_combined() by the frame's own reconstruction; the stats tell what it took, by whom, or what went wrong. Empty then.
+std::vector<float> denoise_and_bill(const OidnLibrary& library, const Frame& frame, const Region& region, uint32_t threads,
+                                    const std::function<bool()>& cancel, const std::vector<float>& combined, RenderStats* stats);
+
+}  // namespace gradus

@@ -1,0 +1,86 @@
+#include "render/sequence/sequence_needs.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "base/temporary_folder.h"
+#include "frame/pass_planes.h"
+#include "settings/pass_table.h"
+
+namespace gradus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint64_t kFloat = sizeof(float);
+
+struct Sizes {
+  uint64_t frame, channels, halves, kinds;  // bytes of a frame's samples; images of each half; kinds of rows in space
+};
+
+// Images of both parts of a frame, and what links them to the frame before (temporal/temporal_frame.h).
+uint64_t temporal_frame_bytes(const Sizes& s) { return 2 * s.kinds * (1 + s.halves) * s.channels * kFloat + 2 * sizeof(int32_t); }
+
+// Of a window's pixels: four fields and the grids of their solver (reconstruct/space_time/window_solver.h), as measured; with the errors
+// what L2 makes of the noise, and of the values where the picture is not L2's.
+uint64_t solver_bytes(const Sizes& s, const SequenceMethod& method) {
+  const uint64_t fields = 64 * std::min<uint64_t>(s.channels, 3) / 3 + 32,
+                 errors = method.reconstruction == GRADUS_RECONSTRUCTION_L2 ? 24 : 36;
+  return fields + (method.with_error ? errors : 0);
+}
+
+// Of a window's pixels, by REGULARIZED (reconstruct/space_time/regularized_windows.h): pictures with error and weight, changes with weight
+// and links, and both once more while tracks are solved.
+uint64_t estimate_bytes(const Sizes& s) { return (2 * (s.channels + 2) + s.channels + 3) * kFloat; }
+
+// Of a frame's pixels: features of two and the regression of one of them, beside the samples of one frame.
+constexpr uint64_t kRegression = (2 * 14 + 63) * kFloat;
+
+uint64_t delivery_bytes(const Sizes& s, const SequenceMethod& method, uint64_t frames) {
+  const uint64_t loading = 2 * s.frame + 2 * temporal_frame_bytes(s);
+  if (method.reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED) return std::max(loading, frames * solver_bytes(s, method));
+  return frames * estimate_bytes(s) + std::max(loading, s.frame + temporal_frame_bytes(s) + kRegression);
+}
+
+std::string gibibytes(uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.1f GiB", double(bytes) / double(uint64_t{1} << 30));
+  return text;
+}
+
+// "": there is room, or nobody knows.
+std::string lacking(const std::string& what, uint64_t bytes, const std::string& folder) {
+  std::error_code unknown;
+  const fs::space_info space = fs::space(folder, unknown);
+  if (unknown || space.available >= bytes) return "";
+  return what + " take up to " + gibibytes(bytes) + ", and " + folder + " has room for " + gibibytes(space.available);
+}
+
+}  // namespace
+
+PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps) {
+  const bool regularized = method.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
+  const uint64_t area = uint64_t(plan.sampled.area()), channels = uint64_t(plan.channels);
+  const Sizes sizes{frame_bytes_per_pixel(1, plan.gradients, plan.passes), channels, uint64_t(regularized || reads_halves(method) ? 1 : 0),
+                    uint64_t(plan.gradients && !regularized ? 3 : 1)};
+  const uint64_t all = uint64_t(count), in_window = std::min(all, uint64_t(windows.frames));
+  const uint64_t ahead = std::min(all, uint64_t(2 * windows.frames - windows.overlap));
+
+  const uint64_t delivered = sizes.frame + 11 * kFloat, pictures = in_window * (channels + 1) * kFloat;
+  const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * sizeof(int32_t);
+  PlannedBytes needs;
+  needs.memory = area * std::max(sampling, delivered + pictures + delivery_bytes(sizes, method, in_window));
+  needs.frames = area * (keeps ? all : ahead) * 2 * (sizes.frame + sizeof(int32_t));
+  if (!regularized) needs.temporary = area * in_window * (2 * sizes.kinds * (1 + sizes.halves) * channels * kFloat + sizeof(int32_t));
+  return needs;
+}
+
+std::vector<std::string> lacking_room(const PlannedBytes& needs, const std::string& folder) {
+  std::vector<std::string> lines = {lacking("the frames of the animation", needs.frames, folder),
+                                    lacking("rows of a window", needs.temporary, temporary_place())};
+  std::erase(lines, "");
+  return lines;
+}
+
+}  // namespace gradus

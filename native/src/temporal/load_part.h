@@ -1,0 +1,14 @@
+// Where the samples of a sequence's frames come from.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// A part of a frame, by its place: its own half, or the one that replays the frame before.
+using LoadPart = std::function<std::shared_ptr<Frame>(int place)>;
+
+}  // namespace gradus

@@ -1,0 +1,60 @@
+#include "temporal/spooled_frame.h"
+
+#include <tbb/parallel_for.h>
+
+#include <iterator>
+#include <vector>
+
+#include "base/error.h"
+#include "temporal/frame_window.h"
+
+namespace gradus {
+
+SpooledFrame::SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content)
+    : size_(FrameWindow({frame}).size()), gradients_(!frame->base.values.dx.empty()), halves_(content.halves) {
+  write(FrameWindow({frame}), false);
+}
+
+void SpooledFrame::write_differences(const std::shared_ptr<const TemporalFrame>& frame, const std::shared_ptr<const TemporalFrame>& next) {
+  write(FrameWindow({frame, next}), true);
+}
+
+void SpooledFrame::write(const HalvedWindowSource& rows, bool temporal) {
+  tbb::parallel_for(0, size_.height, [&](int y) {
+    std::vector<float> row(size_t(size_.width) * size_t(size_.channels));
+    for (const RowKind kind : kRowKinds) {
+      if (is_temporal(kind) != temporal || !holds(kind)) continue;
+      rows.read_row(kind, 0, y, row.data());
+      file_.write(place_of(kind, kValues, y), row.data(), row_bytes());
+      if (!halves_) continue;
+      rows.read_half_differences(kind, 0, y, row.data());
+      file_.write(place_of(kind, kHalfDifferences, y), row.data(), row_bytes());
+    }
+    if (!temporal) return;
+    std::vector<int32_t> links(size_t(size_.width));
+    rows.read_links(0, y, links.data());
+    file_.write(place_of_links(y), links.data(), links.size() * sizeof(int32_t));
+  });
+}
+
+size_t SpooledFrame::row_bytes() const { return size_t(size_.width) * size_t(size_.channels) * sizeof(float); }
+
+uint64_t SpooledFrame::place_of(RowKind kind, Part part, int y) const {
+  const uint64_t plane = uint64_t(kind) * kParts + part;
+  return (plane * uint64_t(size_.height) + uint64_t(y)) * row_bytes();
+}
+
+uint64_t SpooledFrame::place_of_links(int y) const {
+  const uint64_t planes = std::size(kRowKinds) * kParts * uint64_t(size_.height) * row_bytes();
+  return planes + uint64_t(y) * uint64_t(size_.width) * sizeof(int32_t);
+}
+
+void SpooledFrame::read(RowKind kind, Part part, int y, float* out) const {
+  if (!holds(kind)) throw invalid_operation("the stored frames hold no gradients");
+  if (part == kHalfDifferences && !halves_) throw invalid_operation("the noise of these rows was not asked for");
+  file_.read(place_of(kind, part, y), out, row_bytes());
+}
+
+void SpooledFrame::read_links(int y, int32_t* out) const { file_.read(place_of_links(y), out, size_t(size_.width) * sizeof(int32_t)); }
+
+}  // namespace gradus

@@ -1,0 +1,119 @@
+#include "temporal/spooled_frames.h"
+
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "temporal/frame_window.h"
+
+namespace gradus {
+namespace {
+
+class SpooledWindow final : public HalvedWindowSource {
+ public:
+  explicit SpooledWindow(std::vector<std::shared_ptr<const SpooledFrame>> frames) : frames_(std::move(frames)) {}
+
+  WindowSize size() const override {
+    WindowSize size = frames_.front()->size();
+    size.frames = int(frames_.size());
+    return size;
+  }
+  void read_row(RowKind kind, int t, int y, float* out) const override { frames_[size_t(t)]->read_row(kind, y, out); }
+  void read_half_differences(RowKind kind, int t, int y, float* out) const override {
+    frames_[size_t(t)]->read_half_differences(kind, y, out);
+  }
+  void read_links(int t, int y, int32_t* out) const override { frames_[size_t(t)]->read_links(y, out); }
+
+ private:
+  const std::vector<std::shared_ptr<const SpooledFrame>> frames_;
+};
+
+// function(plane) for all planes of the images.
+template <class Images, class Function>
+void for_planes(Images* images, const Function& function) {
+  for (auto* part : {&images->values, &images->half_differences}) {
+    for (auto* plane : {&part->primal, &part->dx, &part->dy}) function(plane);
+  }
+}
+
+}  // namespace
+
+// The base of a frame, until the window comes that has the next one, too.
+class SpooledFrames::SpooledBase {
+ public:
+  SpooledBase(int place, const TemporalFrame& frame) : place_(place), shape_(shape_of(frame)) {
+    uint64_t at = 0;
+    for_planes(&frame.base, [&](const std::vector<float>* plane) {
+      file_.write(at, plane->data(), plane->size() * sizeof(float));
+      sizes_.push_back(plane->size());
+      at += plane->size() * sizeof(float);
+    });
+  }
+
+  int place() const { return place_; }
+  std::shared_ptr<const TemporalFrame> read() const {
+    auto frame = std::make_shared<TemporalFrame>(shape_);
+    uint64_t at = 0;
+    auto size = sizes_.begin();
+    for_planes(&frame->base, [&](std::vector<float>* plane) {
+      plane->resize(*size++);
+      file_.read(at, plane->data(), plane->size() * sizeof(float));
+      at += plane->size() * sizeof(float);
+    });
+    return frame;
+  }
+
+ private:
+  static TemporalFrame shape_of(const TemporalFrame& frame) {
+    TemporalFrame shape;
+    shape.stream = frame.stream;
+    const GradientImages& images = frame.base.values;
+    for (GradientImages* to : {&shape.base.values, &shape.base.half_differences}) {
+      to->width = images.width;
+      to->height = images.height;
+      to->channels = images.channels;
+    }
+    return shape;
+  }
+
+  int place_;
+  TemporalFrame shape_;
+  std::vector<size_t> sizes_;
+  SpoolFile file_;
+};
+
+SpooledFrames::SpooledFrames(LoadPart base, LoadPart replay, TemporalContent content)
+    : base_(std::move(base)), replay_(std::move(replay)), content_(content) {}
+SpooledFrames::~SpooledFrames() = default;
+
+std::shared_ptr<const TemporalFrame> SpooledFrames::load(int place) const {
+  const std::shared_ptr<const Frame> base = base_(place), replay = replay_(place);
+  return std::make_shared<TemporalFrame>(make_temporal_frame(*base, *replay, content_));
+}
+
+std::shared_ptr<const TemporalFrame> SpooledFrames::base_of(int place) const {
+  if (end_ && end_->place() == place) return end_->read();
+  return std::make_shared<TemporalFrame>(make_base(*base_(place), content_));
+}
+
+std::unique_ptr<HalvedWindowSource> SpooledFrames::window(int first, int last, const CancelTest& cancel) {
+  frames_.erase(frames_.begin(), frames_.lower_bound(first));
+  std::shared_ptr<const TemporalFrame> before;  // of the frame before
+  for (int place = first; place <= last; ++place) {
+    if (frames_.count(place) > 0) continue;
+    if (cancel()) throw cancelled();
+    const auto frame = load(place);
+    if (place > first) {
+      if (!before) before = base_of(place - 1);
+      frames_.at(place - 1)->write_differences(before, frame);
+    }
+    frames_[place] = std::make_shared<SpooledFrame>(frame, content_);
+    before = frame;
+  }
+  if (before) end_ = std::make_unique<SpooledBase>(last, *before);
+  std::vector<std::shared_ptr<const SpooledFrame>> frames;
+  for (int place = first; place <= last; ++place) frames.push_back(frames_.at(place));
+  return std::make_unique<SpooledWindow>(std::move(frames));
+}
+
+}  // namespace gradus

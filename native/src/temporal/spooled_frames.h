@@ -1,0 +1,39 @@
+// Windows of a sequence, whose rows lie in temporary files. What two windows share is read once.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "base/cancel_test.h"
+#include "reconstruct/space_time/window_source.h"
+#include "temporal/load_part.h"
+#include "temporal/spooled_frame.h"
+
+namespace gradus {
+
+class SpooledFrames {
+ public:
+  SpooledFrames(LoadPart base, LoadPart replay, TemporalContent content);
+  ~SpooledFrames();
+
+  // The frames from `first` to `last`. Windows come in order: frames before this one's are forgotten. Reads what is new, one frame after
+  // the other, by the threads of the caller's arena. Of frames without gradients there are rows of pixels and of their differences over
+  // time alone: to read others throws invalid_operation. `cancel` is asked before each frame that is read: throws the Error CANCELLED,
+  // after which no window can be had.
+  std::unique_ptr<HalvedWindowSource> window(
+      int first, int last, const CancelTest& cancel = [] { return false; });
+
+ private:
+  class SpooledBase;
+
+  std::shared_ptr<const TemporalFrame> load(int place) const;
+  // What the differences to the next frame need of one that is there.
+  std::shared_ptr<const TemporalFrame> base_of(int place) const;
+
+  const LoadPart base_, replay_;
+  const TemporalContent content_;
+  std::map<int, std::shared_ptr<SpooledFrame>> frames_;
+  std::unique_ptr<const SpooledBase> end_;  // of the window before: its last frame
+};
+
+}  // namespace gradus

@@ -1,0 +1,38 @@
+#include "temporal/streamed_frames.h"
+
+#include <utility>
+#include <vector>
+
+#include "temporal/frame_window.h"
+
+namespace gradus {
+
+StreamedFrames::StreamedFrames(LoadPart base, LoadPart replay, Merge merge)
+    : base_(std::move(base)), replay_(std::move(replay)), merge_(std::move(merge)) {}
+
+std::shared_ptr<const Frame> StreamedFrames::frame(int place) {
+  if (merged_.count(place) == 0) load(place);
+  return std::move(merged_.extract(place).mapped());
+}
+
+std::unique_ptr<HalvedWindowSource> StreamedFrames::differences(int place) {
+  const auto frame = images(place), next = images(place + 1);
+  images_ = {{place + 1, next}};
+  return std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{frame, next});
+}
+
+std::shared_ptr<const TemporalFrame> StreamedFrames::images(int place) {
+  if (images_.count(place) == 0) load(place);
+  return images_.at(place);
+}
+
+void StreamedFrames::load(int place) {
+  merged_.clear();
+  const std::shared_ptr<Frame> base = base_(place);
+  const std::shared_ptr<const Frame> replay = replay_(place);
+  while (images_.size() > 1) images_.erase(images_.begin());
+  images_[place] = std::make_shared<TemporalFrame>(make_temporal_frame(*base, *replay, {.gradients = false}));
+  merged_[place] = merge_(place, base, *replay);
+}
+
+}  // namespace gradus

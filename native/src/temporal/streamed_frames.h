@@ -1,0 +1,35 @@
+// Frames of a sequence one after the other, each with its differences to the next, read once.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+
+#include "reconstruct/space_time/window_source.h"
+#include "temporal/load_part.h"
+#include "temporal/temporal_frame.h"
+
+namespace gradus {
+
+class StreamedFrames {
+ public:
+  // All samples of a frame, made of its two parts.
+  using Merge = std::function<std::shared_ptr<const Frame>(int place, std::shared_ptr<Frame> base, const Frame& replay)>;
+  StreamedFrames(LoadPart base, LoadPart replay, Merge merge);
+
+  // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena.
+  std::shared_ptr<const Frame> frame(int place);
+  // A window of the frame and the next one, with pixels and their differences over time alone.
+  std::unique_ptr<HalvedWindowSource> differences(int place);
+
+ private:
+  std::shared_ptr<const TemporalFrame> images(int place);
+  void load(int place);
+
+  const LoadPart base_, replay_;
+  const Merge merge_;
+  std::map<int, std::shared_ptr<const TemporalFrame>> images_;  // of two at most
+  std::map<int, std::shared_ptr<const Frame>> merged_;          // of the last one that was read, until it is asked for
+};
+
+}  // namespace gradus

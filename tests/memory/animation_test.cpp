@@ -1,0 +1,105 @@
+// What an animation is planned to take of memory and disks, against what it takes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/device.h"
+#include "memory/allocations.h"
+#include "render/fake_integrator.h"
+#include "render/sequence/sequence.h"
+#include "render/sequence/sequence_needs.h"
+
+namespace gradus::memory {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint32_t kWidth = 320, kHeight = 180;
+constexpr int kFrames = 12;
+
+struct Job {
+  const char* name;
+  uint32_t integrator, reconstruction;
+  bool transparent = false, error = false;
+};
+
+class PlannedAnimation : public ::testing::TestWithParam<Job> {};
+
+GradusSettings settings_of(const Job& job, int32_t frame) {
+  GradusSettings settings = test::small_settings(kWidth, kHeight, 4);
+  settings.threads = 1;
+  settings.frame = frame;
+  settings.integrator = job.integrator;
+  settings.reconstruction = job.reconstruction;
+  settings.film_transparent = job.transparent ? 1 : 0;
+  settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | feature_passes();
+  if (job.error) settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+  return settings;
+}
+
+uint64_t bytes_in(const std::string& folder) {
+  uint64_t bytes = 0;
+  for (const auto& file : fs::directory_iterator(folder)) bytes += file.file_size();
+  return bytes;
+}
+
+void finish(std::unique_ptr<RenderTask> task, nlohmann::json* stats = nullptr) {
+  task->run();
+  std::string text;
+  ASSERT_EQ(task->outcome(&text), GRADUS_OK) << text;
+  if (stats != nullptr) *stats = nlohmann::json::parse(task->stats());
+}
+
+TEST_P(PlannedAnimation, TakesWhatIsPlanned) {
+  const std::string folder = fs::temp_directory_path() / "gradus-planned-animation";
+  fs::remove_all(folder);
+  const int64_t before = live_bytes();
+  forget_peak();
+  nlohmann::json stats;
+  {
+    const auto sequence = std::make_shared<Sequence>(nullptr, SequenceSettings{0, kFrames - 1, 1, {}, folder}, test::fake_factory());
+    int32_t sampled = 0;
+    for (int32_t frame = 0; frame < kFrames; ++frame) {
+      for (; sampled <= sequence->needs(frame).last; ++sampled) {
+        finish(sequence->sample(test::empty_snapshot(), settings_of(GetParam(), sampled)));
+      }
+      const GradusSettings settings = settings_of(GetParam(), frame);
+      finish(sequence->deliver(frame, &settings), &stats);
+    }
+  }
+  const double taken = double(peak_bytes() - before), pixels = kWidth * kHeight, files = double(bytes_in(folder));
+  fs::remove_all(folder);
+  const double memory = stats["planned_bytes"]["memory"], frames = stats["planned_bytes"]["frames"];
+  std::printf("  %.0f bytes of memory per pixel, planned %.0f; files %.0f, planned %.0f\n", taken / pixels, memory / pixels, files / pixels,
+              frames / pixels);
+  EXPECT_GE(memory, 0.97 * taken);
+  EXPECT_LE(memory, 1.4 * taken);
+  EXPECT_GE(frames, files);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, PlannedAnimation,
+    ::testing::Values(Job{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
+                      Job{"L2Error", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2, false, true},
+                      Job{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
+                      Job{"Weighted", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED},
+                      Job{"WeightedErrorTransparent", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED, true, true},
+                      Job{"Regularized", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED},
+                      Job{"RegularizedPathTransparent", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED, true}),
+    [](const ::testing::TestParamInfo<Job>& info) { return std::string(info.param.name); });
+
+// A job of nine hours ended at night, when the disk was full.
+TEST(PlannedDisks, ThoseThatAreTooSmallAreNamed) {
+  PlannedBytes bytes;
+  const std::string folder = fs::temp_directory_path();
+  EXPECT_TRUE(lacking_room(bytes, folder).empty());
+  bytes.frames = uint64_t{1} << 60;
+  const std::vector<std::string> lines = lacking_room(bytes, folder);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NE(lines[0].find(folder), std::string::npos) << lines[0];
+  EXPECT_NE(lines[0].find("GiB"), std::string::npos) << lines[0];
+}
+
+}  // namespace
+}  // namespace gradus::memory
