@@ -5,6 +5,8 @@ from __future__ import annotations
 from fault import Fault, Test, native
 
 SAMPLING = "native/src/render/sequence/frame_sampling.cpp"
+REPLAY_PLAN = "native/src/render/sequence/replay_plan.cpp"
+STORED_HALF = "native/src/render/sequence/stored_half.cpp"
 RECORD = "native/src/render/sequence/frame_record.cpp"
 SEQUENCE = "native/src/render/sequence/sequence.cpp"
 FILE_WRITER = "native/src/frame/file_writer.cpp"
@@ -93,7 +95,7 @@ SEQUENCES = (
         23,
         REPLAY,
         "as many as the frame's mean, not as the frame before has taken",
-        SAMPLING,
+        REPLAY_PLAN,
         "if (source != kNoLink) counts[i] = before->counts[size_t(source)];",
         "if (source < kNoLink) counts[i] = before->counts[size_t(source)];",
         (native("A8_Sequence.ReplaysTakeTheCountsOfWhatTheyReplay"),),
@@ -156,8 +158,8 @@ SEQUENCES = (
         25,
         CUT,
         "all frames are linked",
-        SAMPLING,
-        " && !is_cut(before->snapshot->camera, input_.snapshot->camera)",
+        REPLAY_PLAN,
+        " && !is_cut(before->snapshot->camera, now.camera)",
         "",
         (native("C8_Sequence.ACutSeparatesWhatLiesBeforeAndAfter"),),
     ),
@@ -300,7 +302,7 @@ SEQUENCES = (
         29,
         STORE,
         "of other settings",
-        SAMPLING,
+        STORED_HALF,
         "if (sampling_key(other) != sampling_key(settings)) return",
         "if (sampling_key(other) == 0) return",
         OF_SETTINGS,
@@ -309,7 +311,7 @@ SEQUENCES = (
         29,
         STORE,
         "of another scene",
-        SAMPLING,
+        STORED_HALF,
         "if (stored.scene_key != scene_key)",
         "if (stored.scene_key != scene_key && scene_key == 0)",
         OF_SETTINGS,

@@ -1,104 +1,22 @@
 #include "render/sequence/frame_sampling.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numeric>
 
 #include "base/bill.h"
 #include "base/error.h"
-#include "frame/features.h"
 #include "render/sequence/halves.h"
+#include "render/sequence/replay_plan.h"
+#include "render/sequence/stored_half.h"
 #include "settings/options.h"
-#include "settings/pass_table.h"
-#include "settings/sampling_differences.h"
-#include "temporal/pixel_links.h"
 
 namespace gradus {
-namespace {
-
-constexpr const char* kWayOut = ": remove it, or choose another frame store";
-
-// "depth, normal": those of `passes` that `others` lack.
-std::string names_of_missing(uint64_t passes, uint64_t others) {
-  std::string names;
-  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (!wants(passes & ~others, pass)) continue;
-    if (!names.empty()) names += ", ";
-    names += pass_info(pass).name;
-  }
-  return names;
-}
-
-std::string region_text(const uint32_t* r) {
-  if (r[2] == 0 && r[3] == 0) return "the whole frame";
-  char text[64];
-  std::snprintf(text, sizeof(text), "region %u,%u,%u,%u", r[0], r[1], r[2], r[3]);
-  return text;
-}
-
-// What makes a stored frame another one than is asked for; "" if it fits.
-std::string difference(const FrameHeader& stored, const GradusSettings& settings, uint64_t scene_key) {
-  const GradusSettings& other = stored.settings;
-  if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
-  const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
-  if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
-  if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
-  if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
-  if (stored.scene_key != scene_key) return "shows another scene";
-  const bool adaptive = other.noise_threshold > 0.0f;
-  return adaptive && !(settings.noise_threshold > 0.0f) ? "was sampled with a noise threshold, which is 0 now" : "";
-}
-
-void require_same(const FrameHeader& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
-  const std::string why = difference(stored, settings, scene_key);
-  if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kWayOut);
-}
-
-template <class Read>
-auto read_or_name_the_way_out(const Read& read) {
-  try {
-    return read();
-  } catch (const Error& e) {
-    throw Error(e.code(), e.what() + std::string(kWayOut));
-  }
-}
-
-double mean_of(const std::vector<uint32_t>& counts) {
-  return double(std::accumulate(counts.begin(), counts.end(), uint64_t{0})) / double(counts.size());
-}
-
-// The samples of each pixel that a replay takes: those of what it replays, the mean in holes, and where that is not known.
-std::vector<uint32_t> replayed_counts(const SampleSources& sources, const FrameBefore* before, double mean) {
-  std::vector<uint32_t> counts(sources.pixel.size(), uint32_t(std::max(1L, std::lround(mean))));
-  if (!before || before->counts.empty()) return counts;
-  for (size_t i = 0; i < counts.size(); ++i) {
-    const int32_t source = sources.pixel[i];
-    if (source != kNoLink) counts[i] = before->counts[size_t(source)];
-  }
-  return counts;
-}
-
-// No more of them than `most` on average: where a frame is dearer than the one before, a time limit allows fewer.
-void limit_mean(double most, std::vector<uint32_t>* counts) {
-  const double mean = mean_of(*counts);
-  if (mean <= most) return;
-  for (uint32_t& count : *counts) count = std::max(1u, uint32_t(std::lround(count * most / mean)));
-}
-
-}  // namespace
-
-void FrameSampling::require_features() const {
-  const bool lacks = record_.plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED && stored_base_ && !has_features(*stored_base_);
-  if (!lacks) return;
-  throw invalid_argument("stored frame " + sequence_->folder_.path(input_.settings.frame, FramePart::kBase) +
-                         " lacks the features that reconstruction regularized reads" + kWayOut);
-}
 
 FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input)
     : sequence_(std::move(sequence)), input_(std::move(input)), stored_base_(stored(FramePart::kBase)), base_(base_input()) {
   record_.plan = base_.plan();
-  require_features();
+  if (stored_base_ && record_.plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    require_features(*stored_base_, sequence_->folder_.path(input_.settings.frame, FramePart::kBase));
+  }
   record_.stats.planned = sequence_->plan_job(record_.plan, input_.settings, &record_.stats.warnings);
   record_.plan.chosen.emplace_back("differences over time", "frames of an animation: half of the samples repeat those of the frame before");
 }
@@ -276,12 +194,7 @@ void FrameSampling::sample_offset(const FrameHeader& base, const std::vector<uin
   save(*offset_->frame(), FramePart::kOffset);
 }
 
-bool FrameSampling::follows_before() const {
-  const FrameBefore* before = sequence_->before_.get();
-  const GradusSettings& now = input_.settings;
-  return before && before->settings.width == now.width && before->settings.height == now.height &&
-         show_same_region(before->settings, now) && !is_cut(before->snapshot->camera, input_.snapshot->camera);
-}
+bool FrameSampling::follows_before() const { return follows(sequence_->before_.get(), *input_.snapshot, input_.settings); }
 
 bool FrameSampling::replays_before(const FrameHeader& offset) const {
   if (!sequence_->before_) return true;
@@ -290,19 +203,13 @@ bool FrameSampling::replays_before(const FrameHeader& offset) const {
 
 std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, const std::vector<uint32_t>& counts) {
   auto replay = std::make_shared<Replay>();
-  const size_t pixels = size_t(base.region.area());
-  replay->sources = {input_.settings.frame, std::vector<int32_t>(pixels, kNoLink)};
+  replay->sources = {input_.settings.frame, std::vector<int32_t>(size_t(base.region.area()), kNoLink)};
   const FrameBefore* before = sequence_->before_.get();
   if (follows_before()) {
-    const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, input_.settings.width, input_.settings.height); };
-    const Camera camera_before = camera(*before->snapshot), camera_now = camera(*input_.snapshot);
     const Bill bill(&record_.stats.seconds.links, &record_.stats.cpu_seconds.links);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      const auto is_cancelled = [this] { return is_stopped(); };
-      const auto from = view_centres(*before->snapshot, camera_before, base.region, is_cancelled);
-      const auto to = view_centres(*input_.snapshot, camera_now, base.region, is_cancelled);
+      replay->sources = link_sources(*before, *input_.snapshot, input_.settings, base.region, [this] { return is_stopped(); });
       stop_if_asked();
-      replay->sources = {before->stream_frame, inverse_links(link_pixels(from, to))};
     });
   }
   if (!has_counts(input_.settings)) return replay;

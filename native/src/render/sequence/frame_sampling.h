@@ -28,8 +28,6 @@ class FrameSampling final : public RenderTask {
 
   // What the folder has of the frame, if it fits.
   std::optional<FrameHeader> stored(FramePart part) const;
-  // Of a stored half. Throws invalid_argument with its path.
-  void require_features() const;
   // The frame that is sampled or was stored. With the lock.
   std::shared_ptr<const Frame> own_half(const char* what) const;
   std::shared_ptr<Frame> read(FramePart part, StoredContent content) const;

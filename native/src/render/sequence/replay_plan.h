@@ -1,0 +1,28 @@
+// What a frame repeats of the one before: whose random numbers its pixels take, and how many of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/cancel_test.h"
+#include "frame/frame.h"
+#include "render/sequence/frame_record.h"
+
+namespace gradus {
+
+// Whether the frame before shows the same pixels, without a cut between. before: nullptr where there is none.
+bool follows(const FrameBefore* before, const Snapshot& now, const GradusSettings& settings);
+
+// Of each pixel of the region the one that shows the same point in the frame before. Empty once cancelled.
+SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const GradusSettings& settings, const Region& region,
+                           const CancelTest& cancel);
+
+double mean_of(const std::vector<uint32_t>& counts);
+
+// The samples of each pixel: those of what it replays, the mean in holes, and where that is not known (nullptr, or without counts).
+std::vector<uint32_t> replayed_counts(const SampleSources& sources, const FrameBefore* before, double mean);
+
+// No more of them than `most` on average: where a frame is dearer than the one before, a time limit allows fewer.
+void limit_mean(double most, std::vector<uint32_t>* counts);
+
+}  // namespace gradus

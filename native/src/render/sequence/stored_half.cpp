@@ -1,0 +1,57 @@
+#include "render/sequence/stored_half.h"
+
+#include <cstdio>
+
+#include "frame/features.h"
+#include "render/sequence/frame_record.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
+#include "settings/sampling_differences.h"
+
+namespace gradus {
+namespace {
+
+// "depth, normal": those of `passes` that `others` lack.
+std::string names_of_missing(uint64_t passes, uint64_t others) {
+  std::string names;
+  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
+    if (!wants(passes & ~others, pass)) continue;
+    if (!names.empty()) names += ", ";
+    names += pass_info(pass).name;
+  }
+  return names;
+}
+
+std::string region_text(const uint32_t* r) {
+  if (r[2] == 0 && r[3] == 0) return "the whole frame";
+  char text[64];
+  std::snprintf(text, sizeof(text), "region %u,%u,%u,%u", r[0], r[1], r[2], r[3]);
+  return text;
+}
+
+// What makes a stored frame another one than is asked for; "" if it fits.
+std::string difference(const FrameHeader& stored, const GradusSettings& settings, uint64_t scene_key) {
+  const GradusSettings& other = stored.settings;
+  if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
+  const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
+  if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
+  if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
+  if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
+  if (stored.scene_key != scene_key) return "shows another scene";
+  const bool adaptive = other.noise_threshold > 0.0f;
+  return adaptive && !(settings.noise_threshold > 0.0f) ? "was sampled with a noise threshold, which is 0 now" : "";
+}
+
+}  // namespace
+
+void require_same(const FrameHeader& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
+  const std::string why = difference(stored, settings, scene_key);
+  if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kWayOut);
+}
+
+void require_features(const FrameHeader& stored, const std::string& path) {
+  if (has_features(stored)) return;
+  throw invalid_argument("stored frame " + path + " lacks the features that reconstruction regularized reads" + kWayOut);
+}
+
+}  // namespace gradus

@@ -1,0 +1,27 @@
+// What of a frame store a job may take for its own. All errors name the file and the way out.
+#pragma once
+
+#include <string>
+
+#include "base/error.h"
+#include "frame/frame_header.h"
+
+namespace gradus {
+
+inline constexpr const char* kWayOut = ": remove it, or choose another frame store";
+
+// Throws invalid_argument that says what differs, where a half was sampled otherwise than these settings ask for, but for its samples.
+void require_same(const FrameHeader& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key);
+// Throws invalid_argument where it lacks what REGULARIZED reads.
+void require_features(const FrameHeader& stored, const std::string& path);
+
+template <class Read>
+auto read_or_name_the_way_out(const Read& read) {
+  try {
+    return read();
+  } catch (const Error& e) {
+    throw Error(e.code(), e.what() + std::string(kWayOut));
+  }
+}
+
+}  // namespace gradus
