@@ -106,7 +106,10 @@ class LivePicture:
 
 @contextmanager
 def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
-    """Blender's picture of the job's shot, with the job's buffer laid out for it. is_kept: what is in it in the end is the frame's."""
+    """Blender's picture of the job's shot, with the job's buffer laid out for it.
+
+    is_kept: what is in it in the end is the frame's. After a cancel it always is: what was seen last stays.
+    """
     engine, settings = job.engine, job.shot.settings
     result = engine.begin_result(0, 0, settings.width, settings.height, layer=job.layer.name, view=view)
     if result is None:
@@ -121,4 +124,6 @@ def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
         yield result
     finally:
         # Also after a failure, which the caller reports: an open result would stay in memory.
+        is_kept = is_kept or job.cancelled
         engine.end_result(result, cancel=not is_kept)
+        job.has_result = job.has_result or is_kept

@@ -109,6 +109,7 @@ class Job:
         self.overrides = options.Overrides() if self.is_preview else options.current()
         self.is_silent = False
         self.cancelled = False
+        self.has_result = False
         self.infos = active_passes(self.scene, self.layer, self.overrides)
         self.views = compat.view_names(self.scene.render)
         kind, space = (PREVIEW, id(self)) if self.is_preview else (FINAL, 0)
@@ -265,7 +266,8 @@ def render(engine: Any, depsgraph: Any) -> None:
             _render_view(job, view)
     except (Cancelled, ExportCancelled):
         job.cancelled = True
-        _empty_result(job)
+        if not job.has_result:
+            _empty_result(job)
     finally:
         engine.job = None  # engine and job refer to each other, and the buffers are large
         job.free()

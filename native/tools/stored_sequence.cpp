@@ -27,6 +27,18 @@ std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind)
   return numbers;
 }
 
+// ": try a, b": the folders below that do. A frame store has one for each scene, layer and view.
+std::string advice(const std::string& folder) {
+  std::set<std::string> places;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string file = entry.path().filename().string();
+    if (std::regex_match(file, std::regex("f[+-][0-9]{7,8}\\.base\\.exr"))) places.insert(entry.path().parent_path().string());
+  }
+  std::string text;
+  for (const std::string& place : places) text += (text.empty() ? ": try " : ", ") + place;
+  return text;
+}
+
 std::string text_of(int32_t first, int32_t last) {
   return first == last ? std::to_string(first) : std::to_string(first) + " to " + std::to_string(last);
 }
@@ -37,9 +49,9 @@ StoredSequence::StoredSequence(const std::string& folder) : folder_(folder) {
   const std::set<int32_t> base = numbers_in(folder, "base"), offset = numbers_in(folder, "offset");
   std::set_intersection(base.begin(), base.end(), offset.begin(), offset.end(), std::back_inserter(frames_));
   if (frames_.empty()) {
-    throw invalid_argument(folder + (base.empty() && numbers_in(folder, "").empty()
-                                         ? " holds no stored frames"
-                                         : " holds stored frames, but none of a sequence: reconstruct them one by one"));
+    const bool has_none = base.empty() && numbers_in(folder, "").empty();
+    throw invalid_argument(folder + (has_none ? " holds no stored frames" + advice(folder)
+                                              : " holds stored frames, but none of a sequence: reconstruct them one by one"));
   }
   int32_t step = 0;
   for (size_t i = 1; i < frames_.size(); ++i) step = std::gcd(step, frames_[i] - frames_[i - 1]);

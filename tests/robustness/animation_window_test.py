@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import time
 from pathlib import Path
 
 import pytest
@@ -64,6 +65,13 @@ def script(folder: Path, samples: int, extra: str = "") -> str:
     return SCENE.replace("FOLDER", str(folder)).replace("SAMPLES", str(samples)).replace("EXTRA", extra)
 
 
+def wait_for_file(path: Path, limit: float = 120) -> None:
+    end = time.monotonic() + limit
+    while not path.exists():
+        assert time.monotonic() < end, f"no {path.name} after {limit} s"
+        time.sleep(0.1)
+
+
 def lines(folder: Path) -> list[dict]:
     return [json.loads(line) for line in (folder / "stats.jsonl").read_text().splitlines()]
 
@@ -97,6 +105,20 @@ def test_frames_ahead_are_seen_while_they_are_sampled(tmp_path: Path) -> None:
         blender.press("Escape")
         blender.wait_for("RENDER-CANCELLED", limit=3)
     assert list(tmp_path.glob("f_*.png")) == []
+
+
+def test_escape_between_frames_keeps_what_was_seen(tmp_path: Path) -> None:
+    """The frames ahead of a later frame were cancelled, and the picture on the screen was empty."""
+    moves = MOVES.replace("FOLDER", str(tmp_path)).replace("12", "40")
+    with window.blender(glow.SCENE.replace("SAMPLES", "64") + moves) as blender:
+        blender.wait_for("WINDOW-READY")
+        blender.press("ctrl+F12")
+        wait_for_file(tmp_path / "f_0005.png")
+        glow.wait_for_picture(blender)
+        blender.press("Escape")
+        blender.wait_for("RENDER-CANCELLED", limit=3)
+        glow.wait_for_picture(blender)
+    assert not (tmp_path / "f_0040.png").exists()
 
 
 def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:

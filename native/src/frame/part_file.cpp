@@ -5,13 +5,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <mutex>
-#include <set>
+#include <string>
 
 namespace gradus {
 namespace {
@@ -55,12 +57,17 @@ void remove_dead_parts(const fs::path& folder) {
   }
 }
 
-// Once in a process: to look through a long animation's folder at each frame takes longer and longer.
+// Once in a process: to look through a long animation's folder at each frame takes longer and longer. Of the last folders, by a hash:
+// temporary ones come and go.
 bool is_first_use(const std::string& folder) {
   static std::mutex mutex;
-  static std::set<std::string> used;
+  static std::array<size_t, 64> used{};
+  static size_t uses = 0;
+  const size_t key = std::hash<std::string>{}(folder);
   const std::lock_guard lock(mutex);
-  return used.insert(folder).second;
+  if (std::find(used.begin(), used.end(), key) != used.end()) return false;
+  used[uses++ % used.size()] = key;
+  return true;
 }
 
 // The first part file's name that `make` can give to something.

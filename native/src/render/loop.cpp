@@ -209,7 +209,6 @@ void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
 }
 
 bool RenderLoop::show_is_due(uint32_t begin) const {
-  if (input_.samples_only) return false;
   const uint32_t reconstruction = frame_->settings.reconstruction;
   if (begin < kBothHalves) return live_view_.quarter_is_due(reconstruction);
   return live_view_.refresh_is_due(reconstruction, sampling_.seconds(), tracker_.fraction() / ProgressTracker::kSamplingShare);

@@ -9,6 +9,7 @@
 #include "render/sequence/frame_sampling.h"
 #include "render/sequence/halves.h"
 #include "render/sequence/sequence_needs.h"
+#include "render/sequence/stored_half.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
 #include "temporal/spooled_frames.h"
@@ -96,7 +97,7 @@ const FrameForm& Sequence::form_at(int place) {
   const int32_t frame = frame_at(place);
   const auto known = forms_.find(frame);
   if (known != forms_.end()) return known->second;
-  return forms_[frame] = form_of(folder_.header(frame, FramePart::kBase));
+  return forms_[frame] = form_of(read_or_name_the_way_out([&] { return folder_.header(frame, FramePart::kBase); }));
 }
 
 bool Sequence::goes_on_at(int place, uint32_t reconstruction) {
@@ -151,7 +152,7 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
 }
 
 LoadPart Sequence::load_part(FramePart part) const {
-  return [this, part](int place) { return folder_.load(frame_at(place), part); };
+  return [this, part](int place) { return read_or_name_the_way_out([&] { return folder_.load(frame_at(place), part); }); };
 }
 
 void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
