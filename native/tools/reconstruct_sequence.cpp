@@ -93,6 +93,16 @@ uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
   return asked == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
 }
 
+// Those of another size are of another animation.
+void require_one_size(const StoredSequence& stored, const std::vector<int32_t>& frames) {
+  const GradusSettings first = load_header(stored.path(frames.front())).settings;
+  for (const int32_t frame : frames) {
+    const GradusSettings settings = load_header(stored.path(frame)).settings;
+    if (settings.width == first.width && settings.height == first.height) continue;
+    throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, stored.path(frame) + " has another size than " + stored.path(frames.front()));
+  }
+}
+
 void write_picture(const client::Render& render, uint64_t passes, const std::string& path) {
   const auto [width, height] = render.frame().size();
   std::vector<ImageLayer> layers;
@@ -117,6 +127,7 @@ int reconstruct_sequence(const ReconstructArguments& args) {
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
                         args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
   }
+  require_one_size(stored, frames);
   const uint64_t passes = passes_of(args, stored.path(frames.front()));
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   const client::Sequence sequence = open(device, args, stored, {frames.front(), frames.back()});

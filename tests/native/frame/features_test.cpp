@@ -141,9 +141,10 @@ TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
   std::stringstream content;
   content << std::ifstream(path, std::ios::binary).rdbuf();
   std::string bytes = content.str();
-  const size_t format = bytes.find("\"format\":4");
+  const std::string key = "\"format\":";
+  const size_t format = bytes.find(key);
   ASSERT_NE(format, std::string::npos);
-  bytes[format + 9] = '3';
+  bytes[format + key.size()] = '3';
   std::ofstream(path, std::ios::binary) << bytes;
   try {
     load_frame(path);

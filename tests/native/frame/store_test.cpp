@@ -43,7 +43,9 @@ namespace fs = std::filesystem;
 class F6_Store : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder = fs::temp_directory_path() / ("gradus_store_" + std::to_string(getpid()));
+    // A name for each test: a process looks through a folder once.
+    const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder = fs::temp_directory_path() / ("gradus_store_" + std::to_string(getpid()) + "_" + test);
     fs::create_directories(folder);
   }
   void TearDown() override { fs::remove_all(folder); }
