@@ -16,10 +16,9 @@ bool follows(const FrameBefore* before, const Snapshot& now, const GradusSetting
 
 SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const GradusSettings& settings, const Region& region,
                            const CancelTest& cancel) {
-  const auto view = [&](const Snapshot& snapshot) {
-    return view_centres(snapshot, Camera(snapshot.camera, settings.width, settings.height), region, cancel);
-  };
-  const auto from = view(*before.snapshot), to = view(now);
+  const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, settings.width, settings.height); };
+  const Camera camera_before = camera(*before.snapshot), camera_now = camera(now);  // the views keep them
+  const auto from = view_centres(*before.snapshot, camera_before, region, cancel), to = view_centres(now, camera_now, region, cancel);
   if (cancel()) return {};
   return {before.stream_frame, inverse_links(link_pixels(from, to))};
 }
