@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common.h"
+#include "frame/frame_name.h"
 #include "frame/image_exr.h"
 #include "progress_line.h"
 
@@ -26,9 +27,7 @@ struct RenderArguments {
 fs::path frame_path(const RenderArguments& args, int32_t frame) {
   const fs::path output = args.output;
   if (output.extension() == ".exr") return output;
-  char name[32];
-  std::snprintf(name, sizeof(name), "f%+08d.exr", frame);
-  return output / fs::path(args.scene).stem() / "ViewLayer" / name;
+  return output / fs::path(args.scene).stem() / "ViewLayer" / frame_name(frame, "exr");
 }
 
 void append_line(const std::string& path, const std::string& line) {

@@ -93,14 +93,15 @@ uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
   return asked == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
 }
 
-// Those of another size are of another animation.
-void require_one_size(const StoredSequence& stored, const std::vector<int32_t>& frames) {
-  const GradusSettings first = load_header(stored.path(frames.front())).settings;
+// Of their files. Those of another size are of another animation.
+std::vector<GradusSettings> settings_of_files(const StoredSequence& stored, const std::vector<int32_t>& frames) {
+  std::vector<GradusSettings> all;
   for (const int32_t frame : frames) {
-    const GradusSettings settings = load_header(stored.path(frame)).settings;
-    if (settings.width == first.width && settings.height == first.height) continue;
+    all.push_back(load_header(stored.path(frame)).settings);
+    if (all.back().width == all.front().width && all.back().height == all.front().height) continue;
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, stored.path(frame) + " has another size than " + stored.path(frames.front()));
   }
+  return all;
 }
 
 void write_picture(const client::Render& render, uint64_t passes, const std::string& path) {
@@ -127,17 +128,17 @@ int reconstruct_sequence(const ReconstructArguments& args) {
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
                         args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
   }
-  require_one_size(stored, frames);
+  const std::vector<GradusSettings> of_files = settings_of_files(stored, frames);
   const uint64_t passes = passes_of(args, stored.path(frames.front()));
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   const client::Sequence sequence = open(device, args, stored, {frames.front(), frames.back()});
   fs::create_directories(args.output);
   const SequenceFolder folder(args.input);
   std::set<std::string> warnings;
-  for (const int32_t frame : frames) {
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const int32_t frame = frames[i];
     // Exposure and the like may change from frame to frame, of frames that share their files, too.
-    const auto asked = folder.settings(frame);
-    const GradusSettings settings = settings_of(args, asked ? *asked : load_header(stored.path(frame)).settings);
+    const GradusSettings settings = settings_of(args, folder.settings(frame).value_or(of_files[i]));
     const client::Render render = sequence.deliver(frame, settings);
     render.wait();
     for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings")) warnings.insert(text.get<std::string>());

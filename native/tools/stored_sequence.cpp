@@ -1,23 +1,24 @@
 #include "stored_sequence.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <numeric>
 #include <regex>
 #include <set>
 
 #include "base/error.h"
+#include "frame/frame_name.h"
 
 namespace gradus::tool {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Numbers of the files of one kind; "": of frames on their own.
+// Of the files of one kind, with the number; "": of frames on their own.
+std::regex name_of(const std::string& kind) { return std::regex("f([+-][0-9]{7,8})" + (kind.empty() ? "" : "\\." + kind) + "\\.exr"); }
+
 std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind) {
-  const std::regex name("f([+-][0-9]{7,8})" + (kind.empty() ? "" : "\\." + kind) + "\\.exr");
+  const std::regex name = name_of(kind);
   std::set<int32_t> numbers;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     std::smatch match;
@@ -29,10 +30,10 @@ std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind)
 
 // ": try a, b": the folders below that do. A frame store has one for each scene, layer and view.
 std::string advice(const std::string& folder) {
+  const std::regex name = name_of("base");
   std::set<std::string> places;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string file = entry.path().filename().string();
-    if (std::regex_match(file, std::regex("f[+-][0-9]{7,8}\\.base\\.exr"))) places.insert(entry.path().parent_path().string());
+    if (std::regex_match(entry.path().filename().string(), name)) places.insert(entry.path().parent_path().string());
   }
   std::string text;
   for (const std::string& place : places) text += (text.empty() ? ": try " : ", ") + place;
@@ -58,11 +59,7 @@ StoredSequence::StoredSequence(const std::string& folder) : folder_(folder) {
   if (step > 0) step_ = step;
 }
 
-std::string StoredSequence::path(int32_t frame) const {
-  std::array<char, 40> name{};
-  std::snprintf(name.data(), name.size(), "f%+08d.base.exr", frame);
-  return (fs::path(folder_) / name.data()).string();
-}
+std::string StoredSequence::path(int32_t frame) const { return (fs::path(folder_) / frame_name(frame, "base.exr")).string(); }
 
 std::vector<int32_t> StoredSequence::expected(int32_t first, int32_t last) const {
   std::vector<int32_t> frames;

@@ -47,8 +47,10 @@ void read_variance(const Frame& frame, const PassPlane& plane, size_t pixel, flo
 
 }  // namespace
 
-bool has_features(const FrameHeader& header) { return (header.planes & feature_passes()) == feature_passes(); }
-bool has_features(const Frame& frame) { return (kept_passes(frame) & feature_passes()) == feature_passes(); }
+bool holds_features(uint64_t planes) { return (planes & feature_passes()) == feature_passes(); }
+
+bool has_features(const FrameHeader& header) { return holds_features(header.planes); }
+bool has_features(const Frame& frame) { return holds_features(kept_passes(frame)); }
 
 FeatureImage read_feature(const Frame& frame, uint32_t pass, HalfRange halves) {
   const PassPlane* plane = find_plane(frame, pass);

@@ -1,9 +1,9 @@
 // The step of the denoiser, of a render and of a frame of a sequence.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "base/cancel_test.h"
 #include "render/denoise_combined.h"
 #include "render/stats.h"
 
@@ -11,6 +11,6 @@ namespace gradus {
 
 // denoise_combined() by the frame's own reconstruction; the stats tell what it took, by whom, or what went wrong. Empty then.
 std::vector<float> denoise_and_bill(const OidnLibrary& library, const Frame& frame, const Region& region, uint32_t threads,
-                                    const std::function<bool()>& cancel, const std::vector<float>& combined, RenderStats* stats);
+                                    const CancelTest& cancel, const std::vector<float>& combined, RenderStats* stats);
 
 }  // namespace gradus

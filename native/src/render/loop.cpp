@@ -10,6 +10,7 @@
 #include "render/combine.h"
 #include "render/denoise_and_bill.h"
 #include "render/pass_read.h"
+#include "render/require_memory.h"
 #include "render/resume.h"
 #include "render/show_combined.h"
 #include "render/tiles.h"
@@ -51,11 +52,7 @@ RenderLoop::RenderLoop(LoopInput input)
       picture_(plan_.delivered),
       live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
-  const uint64_t bytes = planned_bytes(plan_), available = machine_memory_bytes();
-  if (available > 0 && bytes > available) {
-    throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "the frame needs " + std::to_string(bytes >> 20) + " MiB, the machine has " +
-                                                std::to_string(available >> 20) + " MiB: render fewer pixels or passes");
-  }
+  require_memory("the frame", planned_bytes(plan_), "render fewer pixels or passes");
   if (input_.resumed) resume(input_.resumed);
 }
 

@@ -80,7 +80,7 @@ class Builder {
     const uint64_t key = input.key();
     for (const auto& group : groups_)
       if (group->key == key) return group;
-    return build_group(device_, input, progress, &mesh_scenes_);
+    return build_group(device_, input, key, progress, &mesh_scenes_);
   }
 
   const std::shared_ptr<Device>& device_;

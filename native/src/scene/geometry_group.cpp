@@ -103,9 +103,10 @@ RayBox bounds_of(RTCScene scene) {
 
 class GroupBuild {
  public:
-  GroupBuild(const std::shared_ptr<Device>& device, const BuildProgress& progress, MeshScenes* known)
+  GroupBuild(const std::shared_ptr<Device>& device, uint64_t key, const BuildProgress& progress, MeshScenes* known)
       : device_(device), progress_(progress), known_(*known) {
     group_->device = device;
+    group_->key = key;
     group_->scene = rtcNewScene(device->embree());
   }
 
@@ -129,7 +130,6 @@ class GroupBuild {
       group_->meshes.push_back(input.instance(member).mesh);
       triangles = make_flat_triangles(*input.instance(member).mesh, group_->flat_positions[flat++]->data());
     }
-    group_->key = input.key();
     return group_;
   }
 
@@ -179,9 +179,9 @@ uint64_t GroupInput::key() const {
   return hash.result();
 }
 
-std::shared_ptr<const GeometryGroup> build_group(const std::shared_ptr<Device>& device, const GroupInput& input,
+std::shared_ptr<const GeometryGroup> build_group(const std::shared_ptr<Device>& device, const GroupInput& input, uint64_t key,
                                                  const BuildProgress& progress, MeshScenes* known) {
-  return GroupBuild(device, progress, known).run(input);
+  return GroupBuild(device, key, progress, known).run(input);
 }
 
 }  // namespace gradus

@@ -63,8 +63,8 @@ struct GeometryGroup {
   ~GeometryGroup();
 };
 
-// known: mesh scenes that exist; those that are built are added. Throws Error CANCELLED or OUT_OF_MEMORY.
-std::shared_ptr<const GeometryGroup> build_group(const std::shared_ptr<Device>& device, const GroupInput& input,
+// key: the input's. known: mesh scenes that exist; those that are built are added. Throws Error CANCELLED or OUT_OF_MEMORY.
+std::shared_ptr<const GeometryGroup> build_group(const std::shared_ptr<Device>& device, const GroupInput& input, uint64_t key,
                                                  const BuildProgress& progress, MeshScenes* known);
 
 }  // namespace gradus

@@ -78,7 +78,7 @@ void for_each_pixel(size_t count, const Body& body) {
 
 }  // namespace
 
-CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region, const std::function<bool()>& is_cancelled) {
+CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region, const CancelTest& is_cancelled) {
   CentreView view{&snapshot, &camera, region, std::vector<Hit>(size_t(region.area())), std::vector<Vec3>(size_t(region.area()))};
   const float time = snapshot.shutter.time_of_frame();
   const Camera pinhole = camera.without_lens();

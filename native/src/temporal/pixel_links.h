@@ -2,9 +2,9 @@
 // Tracing, section 4.2). It decides who is compared with whom, nothing else: a wrong link costs variance, never the right result.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "base/cancel_test.h"
 #include "frame/frame.h"
 #include "frame/links.h"
 #include "scene/camera.h"
@@ -22,7 +22,7 @@ struct CentreView {
 };
 // Both live as long as the view. Cancelled: some of its pixels see nothing.
 CentreView view_centres(
-    const Snapshot& snapshot, const Camera& camera, const Region& region, const std::function<bool()>& is_cancelled = [] { return false; });
+    const Snapshot& snapshot, const Camera& camera, const Region& region, const CancelTest& is_cancelled = [] { return false; });
 
 // By pixels of `from`: the pixel of `to`, or kNoLink. One-to-one. A link leads back to within a pixel of where it came from; of several
 // pixels that lead to one the nearest to the camera has it. Both views have the same region.

@@ -10,21 +10,6 @@
 namespace gradus::test {
 namespace {
 
-// Of a material that shows an image.
-void set_image_material(uint64_t key, uint64_t image, Scene* scene) {
-  const GradusNode nodes[2] = {{GRADUS_OP_IMAGE, 0, 0, 1, 0, 0, image}, {GRADUS_OP_EMISSION, 0, 1, 2, 0, 0, 0}};
-  const GradusInput inputs[3] = {{-1, 0, {}}, {0, 0, {}}, {-1, 0, {1, 1, 1, 1}}};
-  GradusMaterial desc{};
-  desc.struct_size = sizeof(desc);
-  desc.nodes = nodes;
-  desc.node_count = 2;
-  desc.inputs = inputs;
-  desc.input_count = 3;
-  desc.surface = 1;
-  desc.name = "image";
-  scene->set_material(key, desc);
-}
-
 void set_image_file(uint64_t key, const std::string& path, Scene* scene) {
   GradusImageTile tile{};
   tile.path = path.c_str();
@@ -55,7 +40,7 @@ uint64_t key_of(const Names& names) {
   scene.material(names.plain, MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)));
   for (const auto& [name, picture] : {std::pair(names.first, kFirstPicture), std::pair(names.second, kSecondPicture)}) {
     set_image_file(name, picture_path(picture), &scene.scene);
-    set_image_material(name, name, &scene.scene);
+    scene.scene.set_material(name, testing::ImageMaterial(name).desc());
   }
   scene.instance(names.small, Mat4(1.0f), GRADUS_VISIBLE_ALL, names.plain);
   scene.instance(names.large, translation(Vec3(5, 0, 0)), GRADUS_VISIBLE_ALL, names.first);
@@ -98,7 +83,7 @@ TEST(C7_ContentKey, AnImageThatIsRewrittenUnderItsNameShows) {
   const auto key_with = [&](const gradus::testing::FileBytes& bytes) {
     const std::string path = gradus::testing::write_temporary("content_key_rewritten.exr", bytes);
     set_image_file(3, path, &scene.scene);
-    set_image_material(2, 3, &scene.scene);
+    scene.scene.set_material(2, testing::ImageMaterial(3).desc());
     const uint64_t key = scene.commit()->content_key;
     std::remove(path.c_str());
     return key;

@@ -8,10 +8,33 @@
 #include <vector>
 
 #include "color/color.h"
+#include "gradus/gradus_nodes.h"
 #include "scene/image_store.h"
 #include "support/image_files.h"
 
 namespace gradus::testing {
+
+// A material that shines as an image does.
+class ImageMaterial {
+ public:
+  explicit ImageMaterial(uint64_t image) {
+    nodes_[0].resource = image;
+    desc_.struct_size = sizeof(desc_);
+    desc_.nodes = nodes_;
+    desc_.node_count = 2;
+    desc_.inputs = inputs_;
+    desc_.input_count = 3;
+    desc_.surface = 1;
+    desc_.name = "image";
+  }
+  ImageMaterial(const ImageMaterial&) = delete;
+  const GradusMaterial& desc() const { return desc_; }
+
+ private:
+  GradusNode nodes_[2] = {{GRADUS_OP_IMAGE, 0, 0, 1, 0, 0, 0}, {GRADUS_OP_EMISSION, 0, 1, 2, 0, 0, 0}};
+  const GradusInput inputs_[3] = {{-1, 0, {}}, {0, 0, {}}, {-1, 0, {1, 1, 1, 1}}};
+  GradusMaterial desc_{};
+};
 
 struct StoredImage {
   ImageStore store;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/image_store.h"
+#include "scene/image_test_support.h"
 #include "scene/scene_fixture.h"
 #include "scene/scene_state.h"
 
@@ -46,27 +47,13 @@ TEST(ImageUpdate, UnchangedImagesKeepTheirStore) {
   EXPECT_EQ(state.image_store, store);
 }
 
-std::shared_ptr<const MaterialSource> shows_the_image() {
-  const GradusNode nodes[2] = {{GRADUS_OP_IMAGE, 0, 0, 1, 0, 0, kKey}, {GRADUS_OP_EMISSION, 0, 1, 2, 0, 0, 0}};
-  const GradusInput inputs[3] = {{-1, 0, {}}, {0, 0, {}}, {-1, 0, {1, 1, 1, 1}}};
-  GradusMaterial desc{};
-  desc.struct_size = sizeof(desc);
-  desc.nodes = nodes;
-  desc.node_count = 2;
-  desc.inputs = inputs;
-  desc.input_count = 3;
-  desc.surface = 1;
-  desc.name = "image";
-  return std::make_shared<const MaterialSource>(desc);
-}
-
 // A stroke on one image compiled all materials again, the tables of skies as well.
 TEST(ImageUpdate, OnlyMaterialsThatLookAtImagesAreCompiledAgain) {
   constexpr uint64_t kPlain = 1, kShown = 2;
   Scene::State state;
   state.images[kKey] = {grey(0), nullptr};
   state.materials[kPlain] = std::make_shared<const MaterialSource>(MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)).desc());
-  state.materials[kShown] = shows_the_image();
+  state.materials[kShown] = std::make_shared<const MaterialSource>(testing::ImageMaterial(kKey).desc());
   const auto compiled = [&] {
     committed_value(&state);
     const CommitMonitor monitor(nullptr, nullptr);

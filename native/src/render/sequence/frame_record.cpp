@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "frame/features.h"
 #include "settings/options.h"
-#include "settings/pass_table.h"
 
 namespace gradus {
 namespace {
@@ -15,10 +15,7 @@ uint64_t key_without_frame(GradusSettings settings) {
 
 }  // namespace
 
-FrameForm form_of(const FrameHeader& frame) {
-  const bool features = (feature_passes() & ~frame.planes) == 0;
-  return {frame.region, frame.channels, frame.gradients, features, frame.settings};
-}
+FrameForm form_of(const FrameHeader& frame) { return {frame.region, frame.channels, frame.gradients, has_features(frame), frame.settings}; }
 
 bool have_same_pixels(const FrameForm& a, const FrameForm& b) {
   return a.region.x0 == b.region.x0 && a.region.y0 == b.region.y0 && a.region.x1 == b.region.x1 && a.region.y1 == b.region.y1;

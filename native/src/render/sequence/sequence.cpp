@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/clock.h"
 #include "base/error.h"
+#include "render/require_memory.h"
 #include "render/resume.h"
 #include "render/sequence/frame_delivery.h"
 #include "render/sequence/frame_sampling.h"
@@ -73,12 +73,7 @@ FrameRange Sequence::own_places() const {
 PlannedBytes Sequence::plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings) {
   const SequenceMethod method{plan.reconstruction, settings.reconstruction_alpha, wants(settings.passes, GRADUS_PASS_ERROR)};
   const PlannedBytes bytes = planned_bytes(plan, method, settings_.windows, own_places().count(), !folder_.is_temporary());
-  const uint64_t available = machine_memory_bytes();
-  if (available > 0 && bytes.memory > available) {
-    throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "the animation needs " + std::to_string(bytes.memory >> 20) + " MiB, the machine has " +
-                                                std::to_string(available >> 20) +
-                                                " MiB: render fewer pixels or passes, or smaller windows");
-  }
+  require_memory("the animation", bytes.memory, "render fewer pixels or passes, or smaller windows");
   if (!room_is_checked_) *warnings = lacking_room(bytes, folder_.path());
   room_is_checked_ = true;
   return bytes;

@@ -1,7 +1,5 @@
 #include "render/sequence/sequence_folder.h"
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 
 #include "base/error.h"
 #include "frame/file_writer.h"
+#include "frame/frame_name.h"
 #include "frame/part_file.h"
 #include "settings/options.h"
 
@@ -30,11 +29,7 @@ SequenceFolder::SequenceFolder(const std::string& path)
   if (error) throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make the frame store's folder " + path_ + ": " + error.message());
 }
 
-std::string SequenceFolder::path(int32_t frame, const char* ending) const {
-  std::array<char, 40> name{};
-  std::snprintf(name.data(), name.size(), "/f%+08d.%s", frame, ending);
-  return path_ + name.data();
-}
+std::string SequenceFolder::path(int32_t frame, const char* ending) const { return path_ + "/" + frame_name(frame, ending); }
 
 std::string SequenceFolder::path(int32_t frame, FramePart part) const {
   return path(frame, part == FramePart::kBase ? "base.exr" : "offset.exr");

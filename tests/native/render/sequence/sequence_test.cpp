@@ -413,6 +413,13 @@ void expect_alone(const SettingsOf& settings, const std::map<int32_t, Delivered>
   }
 }
 
+// Of ten frames, those before the fourth and those from it on.
+void expect_cut_at_4(const SettingsOf& settings) {
+  const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9);
+  expect_alone(settings, whole, 0, 3);
+  expect_alone(settings, whole, 4, 9);
+}
+
 GradusSettings with_film(int32_t frame, int32_t first_transparent) {
   GradusSettings settings = settings_of(frame);
   settings.film_transparent = frame >= first_transparent ? 1 : 0;
@@ -421,22 +428,16 @@ GradusSettings with_film(int32_t frame, int32_t first_transparent) {
 
 // They ended the animation: "has another size or other planes than those beside it".
 TEST(C8_Sequence, FramesWithAnotherNumberOfChannelsAreACut) {
-  const auto settings = [](int32_t frame) { return with_film(frame, 4); };
-  const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9);
-  expect_alone(settings, whole, 0, 3);
-  expect_alone(settings, whole, 4, 9);
+  expect_cut_at_4([](int32_t frame) { return with_film(frame, 4); });
 }
 
 TEST(C8_Sequence, FramesWithAndWithoutDifferencesAreACut) {
-  const auto settings = [](int32_t frame) {
+  expect_cut_at_4([](int32_t frame) {
     GradusSettings s = settings_of(frame);
     s.integrator = GRADUS_INTEGRATOR_AUTO;
     s.reconstruction = frame < 4 ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_REGULARIZED;
     return s;
-  };
-  const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9);
-  expect_alone(settings, whole, 0, 3);
-  expect_alone(settings, whole, 4, 9);
+  });
 }
 
 // Features were asked of frames that had none.

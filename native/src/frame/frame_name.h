@@ -1,0 +1,18 @@
+// Names of frames in a folder of a frame store (contract 7.2).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+namespace gradus {
+
+// "f+0000017.base.exr". ending: what follows the number.
+inline std::string frame_name(int32_t frame, const char* ending) {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "f%+08d.%s", frame, ending);
+  return name.data();
+}
+
+}  // namespace gradus
