@@ -55,9 +55,9 @@ bench-errors:   ## error against CPU time alone; limited by the same variables
 bench-agreement: ## converged images against those of Cycles and Mitsuba; limited by the same variables
 	@SCENES='$(SCENES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' tools/bench.sh --agreement
 
-bench-animation: ## flicker of animations against CPU time; limited by the same variables
-	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
-	 tools/bench.sh --animation
+bench-animation: ## flicker of animations against CPU time; limited by the same variables, varied by SIZE=320x180 FRAMES=24 BLUR=1
+	@SCENES='$(SCENES)' MODES='$(MODES)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
+	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' tools/bench.sh --animation
 
 bench-quick:    ## errors of two scenes, in under five minutes
 	@tools/bench.sh --quick

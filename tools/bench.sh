@@ -4,7 +4,7 @@
 #   --quick   the same of two scenes, smaller
 #   --compare  the errors of two versions among the stored results; OLD=772811d NEW=414ff4f WIDTH=160
 #   --agreement  converged images against those of Cycles and Mitsuba; SCENES, WIDTH and REFERENCE as above
-#   --animation  flicker against CPU time; SCENES, MODES, WIDTH, REFERENCE, SEEDS, SAMPLES and MINUTES limit it
+#   --animation  flicker against CPU time; SCENES, MODES, REFERENCE, SEEDS, SAMPLES and MINUTES limit it; SIZE=320x180 FRAMES=24 BLUR=1 vary it
 #   --speed   time of a sample in the room; ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3 MINUTES=60 limit it
 #   --designs  reconstructions that were published, written anew in Python, against the product's; SCENES and REFERENCE as above
 #   --suite   time of the statistical tests and of the reconstructions
@@ -26,7 +26,6 @@ option() { [ -z "$2" ] || arguments+=("$1" "$2"); }
 limits() {
   option --scenes "${SCENES:-}"
   option --modes "${MODES:-}"
-  option --width "${WIDTH:-}"
   option --reference "${REFERENCE:-}"
   option --seeds "${SEEDS:-}"
   option --samples "${SAMPLES:-}"
@@ -35,11 +34,15 @@ limits() {
 errors() {
   local arguments=("$@")
   limits
+  option --width "${WIDTH:-}"
   "$python" tools/bench/bench.py "${arguments[@]}"
 }
 animation() {
   local arguments=()
   limits
+  option --size "${SIZE:-}"
+  option --frames "${FRAMES:-}"
+  [ -z "${BLUR:-}" ] || arguments+=(--blur)
   "$python" tools/bench/animation.py "${arguments[@]}"
 }
 compare() {

@@ -173,3 +173,11 @@ def test_all_measures_have_names() -> None:
     assert found["flicker_warped_moving"] == pytest.approx(found["flicker_warped"], rel=0.1)
     assert len(found["relmse_by_frame"]) == FRAMES
     assert "flicker_warped_moving" not in measures.all_measures(RESTING, RESTING, NONE, np.zeros((*SHAPE[:3], 4)))
+
+
+def test_along_motion_nothing_is_measured_without_vectors() -> None:
+    """With motion blur a pixel shows points of different motion."""
+    images = REFERENCE + noise(5, *SHAPE)
+    every, blurred = (measures.all_measures(images, REFERENCE, NONE, vectors) for vectors in (vectors_of_motion(), None))
+    assert blurred == {name: value for name, value in every.items() if "warped" not in name}
+    assert {"flicker_warped", "flicker_warped_trimmed", "flicker_warped_moving"} == every.keys() - blurred.keys()

@@ -1,6 +1,6 @@
 """Flicker of animations against CPU time: modes frame by frame, temporal ones, and Cycles on the same frames.
 
-    animation.py [--scenes a,b] [--modes path,temporal-l2] [--minutes 60] [--references-only]
+    animation.py [--scenes a,b] [--modes path,temporal-l2] [--size 320x180] [--frames 24] [--blur] [--minutes 60] [--references-only]
 
 Every run renders the whole range of frames in one job, as `blender -b -a` does, and is appended to docs/benchmark/animation.jsonl with the
 version that made it: an interrupted benchmark goes on. Each engine is compared with its own converged frames, which are cached
@@ -22,6 +22,7 @@ from animation_modes import MODES, REFERENCES
 from animation_references import Reference, reference, vectors
 from animation_renderer import AnimationRenderer
 from animation_scenes import Animation, select
+from animation_variants import SHUTTER, USUAL, Variant, of_row
 from bench import append, bench_each, powers_of_two
 from results import FOLDER
 from version import cpu_name
@@ -41,21 +42,25 @@ def jobs_of(arguments: argparse.Namespace) -> list[Job]:
     return [Job(seed, samples, mode) for seed in range(arguments.seeds) for samples in arguments.samples for mode in arguments.modes]
 
 
-def done_jobs(animation: Animation, width: int, version: str) -> set[Job]:
+def variant_of(arguments: argparse.Namespace) -> Variant:
+    return Variant(arguments.size, arguments.frames, SHUTTER if arguments.blur else 0.0)
+
+
+def done_jobs(animation: Animation, variant: Variant, version: str) -> set[Job]:
     if not RESULTS.exists():
         return set()
     rows = [json.loads(line) for line in RESULTS.read_text().splitlines()]
-    wanted = (animation.name, list(animation.frames), width, version)
-    return {Job(r["seed"], r["samples"], r["mode"]) for r in rows if (r["scene"], r["frames"], r["width"], r["version"]) == wanted}
+    wanted = (animation.name, list(animation.frames), variant, version)
+    return {Job(r["seed"], r["samples"], r["mode"]) for r in rows if (r["scene"], r["frames"], of_row(r), r["version"]) == wanted}
 
 
 class AnimationBench:
-    """One animation at one size, with its process and references."""
+    """One animation in one variant, with its process and references."""
 
     def __init__(self, animation: Animation, arguments: argparse.Namespace, version: str) -> None:
         self.animation, self.samples, self.version = animation, arguments.reference, version
-        self.size = (arguments.width, arguments.width * 9 // 16)
-        self.renderer = AnimationRenderer(animation, self.size)
+        self.variant = variant_of(arguments)
+        self.renderer = AnimationRenderer(animation, self.variant)
         self._references: dict[str, Reference] = {}
 
     def works(self, mode: str) -> bool:
@@ -67,23 +72,23 @@ class AnimationBench:
         """Of the engine of a mode."""
         engine = REFERENCES[MODES[mode].engine]
         if engine not in self._references:
-            self._references[engine] = reference(self.renderer, engine, self.size, self.samples)
+            self._references[engine] = reference(self.renderer, engine, self.samples)
         return self._references[engine]
 
     def run(self, job: Job) -> None:
         images, answer = self.renderer.render(job.mode, job.samples, job.seed)
         row = {
             "scene": self.animation.name, "frames": self.animation.frames, "mode": job.mode, "samples": job.samples, "seed": job.seed,
-            "width": self.size[0], "height": self.size[1], "version": self.version, "machine": cpu_name(),
+            "version": self.version, "machine": cpu_name(),
         }  # fmt: skip
-        append(row | answer | self._measures(job.mode, images), RESULTS)
-        if animation_strips.wanted(self.animation, job.mode, job.samples, job.seed):
+        append(row | self.variant.row() | answer | self._measures(job.mode, images), RESULTS)
+        if animation_strips.wanted(self.animation, self.variant, job.mode, job.samples, job.seed):
             animation_strips.store(self.animation, job.mode, images, self.reference(job.mode).mean)
         print(f"{self.animation.name:18} {job.mode:27} {job.samples:5} spp seed {job.seed}: {answer['cpu']:8.2f} CPU-s", flush=True)
 
     def _measures(self, mode: str, images: np.ndarray) -> dict[str, Any]:
         converged = self.reference(mode)
-        found = temporal_metrics.all_measures(images, converged.mean, converged.variance, vectors(self.renderer, self.size))
+        found = temporal_metrics.all_measures(images, converged.mean, converged.variance, vectors(self.renderer))
         if self.animation.goes_off is not None:
             off = self.animation.goes_off - self.animation.frames[0]
             found["shares_of_light"] = temporal_metrics.shares_of_a_light(images, converged.mean, off)
@@ -91,7 +96,7 @@ class AnimationBench:
 
 
 def bench_animation(animation: Animation, arguments: argparse.Namespace, version: str, deadline: float) -> None:
-    done = done_jobs(animation, arguments.width, version)
+    done = done_jobs(animation, variant_of(arguments), version)
     jobs = [job for job in jobs_of(arguments) if job not in done]
     if not jobs:
         return
@@ -115,18 +120,31 @@ def names(text: str) -> list[str]:
     return text.split(",")
 
 
+def size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    return int(width), int(height)
+
+
+def several(text: str) -> int:
+    if int(text) < 2:
+        raise argparse.ArgumentTypeError("what flickers are two frames or more")
+    return int(text)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="")
     parser.add_argument("--minutes", type=float, default=600.0)
     parser.add_argument("--references-only", action="store_true", help="compute what is not timed, and stop")
-    parser.add_argument("--width", type=int, default=160)
+    parser.add_argument("--size", type=size, default=USUAL.size, help="pixels, as 320x180")
+    parser.add_argument("--frames", type=several, default=USUAL.length, help="how many")
+    parser.add_argument("--blur", action="store_true", help="motion blur, of all engines and their converged frames")
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--reference", type=int, default=512, help="samples per pixel of the references")
     parser.add_argument("--samples", type=powers_of_two, default=[4, 16, 64])
     parser.add_argument("--modes", type=names, default=list(MODES))
     arguments = parser.parse_args()
-    bench_each(select(arguments.scenes), bench_animation, arguments)
+    bench_each(select(arguments.scenes, arguments.frames), bench_animation, arguments)
 
 
 if __name__ == "__main__":

@@ -51,9 +51,9 @@ class _Sums:
         return Reference(mean, np.maximum(variance, 0.0), self.parts * PART)
 
 
-def reference(renderer: AnimationRenderer, engine: str, size: tuple[int, int], samples: int) -> Reference:
+def reference(renderer: AnimationRenderer, engine: str, samples: int) -> Reference:
     """`engine` is a mode of plain path tracing."""
-    sums = _Sums(_file(renderer, engine, size))
+    sums = _Sums(file_of(renderer, engine))
     sums.load()
     while sums.parts < max(samples // PART, LEAST_PARTS):
         sums.add(renderer.render(engine, PART, 1000 + sums.parts)[0])
@@ -61,19 +61,26 @@ def reference(renderer: AnimationRenderer, engine: str, size: tuple[int, int], s
     return sums.reference()
 
 
-def vectors(renderer: AnimationRenderer, size: tuple[int, int]) -> np.ndarray:
-    """Pass Vector of Gradus (frames, height, width, 4)."""
-    file = _file(renderer, "vectors", size)
+def vectors(renderer: AnimationRenderer) -> np.ndarray | None:
+    """Pass Vector of Gradus (frames, height, width, 4). None with motion blur, where a pixel shows points of different motion."""
+    if renderer.variant.shutter > 0.0:
+        return None
+    file = file_of(renderer, "vectors")
     if not file.exists():
         _store(file, vectors=renderer.vectors(VECTOR_SAMPLES).astype(np.float32))
     return np.load(file)["vectors"].astype(np.float64)
 
 
-def _file(renderer: AnimationRenderer, what: str, size: tuple[int, int]) -> Path:
-    animation = renderer.animation
+def file_of(renderer: AnimationRenderer, what: str) -> Path:
+    """Where it is cached, by all that it depends on but the version."""
+    animation, variant = renderer.animation, renderer.variant
     content = hashlib.sha256(animation.scene.path.read_bytes()).hexdigest()[:12]
     first, last = animation.frames
-    return CACHE / f"animation-{animation.name}-{content}-{first}-{last}-{what}-{size[0]}x{size[1]}.npz"
+    blur = f"-shutter-{variant.shutter:g}" if variant.shutter > 0.0 else ""
+    return (
+        CACHE
+        / f"animation-{animation.name}-{content}-{first}-{last}-{what}-{variant.size[0]}x{variant.size[1]}{blur}.npz"
+    )
 
 
 def _store(file: Path, **arrays: np.ndarray | float | int) -> None:

@@ -10,22 +10,23 @@ from typing import Any
 import numpy as np
 from animation_modes import is_temporal, per_frame
 from animation_scenes import Animation
+from animation_variants import Variant
 from renderers import RefusedError, Worker
 
 WORKER = Path(__file__).with_name("animation_worker.py")
 
 
 class AnimationRenderer:
-    def __init__(self, animation: Animation, size: tuple[int, int]) -> None:
-        self.animation = animation
+    def __init__(self, animation: Animation, variant: Variant) -> None:
+        self.animation, self.variant = animation, variant
         self._folder = tempfile.TemporaryDirectory()
-        self._worker = Worker([sys.executable, str(WORKER), str(animation.scene.path), *(str(s) for s in size)])
+        self._worker = Worker([sys.executable, str(WORKER), str(animation.scene.path), *(str(s) for s in variant.size)])
 
     def render(self, mode: str, samples: int, seed: int, **more: Any) -> tuple[np.ndarray, dict]:
         """Pictures (frames, height, width, 3) and what they took."""
         out = Path(self._folder.name) / "frames.npy"
         job = {"mode": mode, "samples": samples, "seed": seed, "frames": self.animation.frames, "out": str(out)}
-        answer = self._worker.ask(job | more)
+        answer = self._worker.ask(job | {"shutter": self.variant.shutter} | more)
         return np.load(out).astype(np.float64), answer
 
     def vectors(self, samples: int) -> np.ndarray:

@@ -12,7 +12,9 @@ import numpy as np
 import temporal_metrics
 from animation_modes import MODES, is_temporal, per_frame
 from animation_scenes import ANIMATIONS, Animation
+from animation_variants import USUAL, Variant, of_row
 from document import Block, HtmlOnly, Table, Text, number
+from modes import GRADUS
 from results import FOLDER, Point, SceneResults
 
 RESULTS = FOLDER / "animation.jsonl"
@@ -21,7 +23,7 @@ PEER = "cycles-denoised"
 
 
 class AnimationResults(SceneResults):
-    """The newest runs of one animation."""
+    """The newest runs of one animation in one variant."""
 
     def __init__(self, animation: Animation, rows: list[dict]) -> None:
         super().__init__(animation.name, rows)
@@ -69,24 +71,53 @@ AIMS = (
 )
 
 
-def load() -> list[AnimationResults]:
-    """Of each mode the rows of its newest version, at the size and range of the newest row of the scene."""
+def load() -> dict[Variant, list[AnimationResults]]:
+    """By variants, the newest runs of each mode."""
     if not RESULTS.exists():
-        return []
-    rows = [row for line in RESULTS.read_text().splitlines() if (row := json.loads(line))["mode"] in MODES]
-    setting = {row["scene"]: (row["width"], row["frames"]) for row in rows}
-    newest = {(row["scene"], row["mode"]): row["version"] for row in rows}
-    by_scene: dict[str, list[dict]] = defaultdict(list)
-    for row in rows:
-        if setting[row["scene"]] == (row["width"], row["frames"]) and newest[row["scene"], row["mode"]] == row["version"]:
-            by_scene[row["scene"]].append(row)
-    return [AnimationResults(animation, by_scene[animation.name]) for animation in ANIMATIONS if animation.name in by_scene]
+        return {}
+    by_mode: dict[tuple[Variant, str, str], list[dict]] = defaultdict(list)
+    for line in RESULTS.read_text().splitlines():
+        row = json.loads(line)
+        by_mode[of_row(row), row["scene"], row["mode"]].append(row)
+    found: dict[Variant, dict[str, list[dict]]] = defaultdict(lambda: defaultdict(list))
+    for (variant, scene, mode), rows in by_mode.items():
+        if mode in MODES:
+            found[variant][scene] += newest(rows)
+    return {variant: _animations(variant, found[variant]) for variant in sorted(found)}
+
+
+def newest(rows: list[dict]) -> list[dict]:
+    """Of one mode, those of its newest version. Our versions do not change peers: of these, counts of samples that the newest one lacks are
+    taken from those before, if they have as many seeds. So a curve can be made longer."""
+    last = [row for row in rows if row["version"] == rows[-1]["version"]]
+    if MODES[rows[-1]["mode"]].engine == GRADUS:
+        return last
+    found, seeds = list(last), len({row["seed"] for row in last})
+    for samples in sorted({row["samples"] for row in rows} - {row["samples"] for row in last}):
+        before = [row for row in rows if row["samples"] == samples]
+        before = [row for row in before if row["version"] == before[-1]["version"]]
+        found += before if len(before) >= seeds else []
+    return found
+
+
+def _animations(variant: Variant, by_scene: dict[str, list[dict]]) -> list[AnimationResults]:
+    """Over the frames that each has in a variant."""
+    made = []
+    for animation in (animation.lasting(variant.length) for animation in ANIMATIONS):
+        if rows := [row for row in by_scene[animation.name] if tuple(row["frames"]) == animation.frames]:
+            made.append(AnimationResults(animation, rows))
+    return made
 
 
 def blocks() -> list[Block]:
-    scenes = load()
-    if not scenes:
-        return []
+    found = load()
+    made = usual(found.pop(USUAL)) if USUAL in found else []
+    for variant, scenes in found.items():
+        made += varied(variant, scenes)
+    return made
+
+
+def usual(scenes: list[AnimationResults]) -> list[Block]:
     made: list[Block] = [Text(PREFACE.read_text()), about(scenes), Text("### Aims at equal CPU time"), aims(scenes)]
     made += [HtmlOnly(Text("The same without the worst 0.1 % of the pixels:")), HtmlOnly(aims(scenes, "_trimmed"))]
     made += [Text("Modes frame by frame and peers, F over that of Gradus PT and of Cycles with its denoiser at equal CPU time:")]
@@ -143,6 +174,32 @@ def lags(scenes: list[AnimationResults]) -> list[Block]:
                 made.rows.append([scene.name, MODES[mode].label, str(point.samples), *map(str, found)])
     text = "A light goes off: frames in which more than 5 % of it is wrong, from then on and before (mean over the seeds)."
     return [Text(text), made] if made.rows else []
+
+
+VARIED = tuple(aim for aim in AIMS if "warped" not in aim.measure)
+
+
+def varied(variant: Variant, scenes: list[AnimationResults]) -> list[Block]:
+    """The main figures; all measures on the page alone."""
+    made: list[Block] = [Text(f"### Animations: {variant.title}"), figures(scenes)]
+    for scene in scenes:
+        made += [HtmlOnly(Text(f"Measures of {scene.name}:")), HtmlOnly(measures(scene))]
+    return made
+
+
+def figures(scenes: list[AnimationResults]) -> Table:
+    made = Table(["animation", "frames", "mode", "spp", "seeds", *(f"{aim.label}, ≤ {aim.most:g}" for aim in VARIED), "late", "early"])
+    for scene in scenes:
+        for mode in scene.modes():
+            points = scene.points[mode]
+            counts, seeds = ", ".join(str(point.samples) for point in points), min(len(point.rows) for point in points)
+            ratios = [aim.ratio(scene, mode) if is_temporal(mode) or aim.other is not per_frame else None for aim in VARIED]
+            lag = scene.lag_and_lead(points[-1])
+            made.rows.append(
+                [scene.name, "{}–{}".format(*scene.animation.frames), MODES[mode].label, counts, str(seeds), *map(number, ratios)]
+                + (["–", "–"] if lag is None else [str(frames) for frames in lag])
+            )
+    return made
 
 
 def details(scene: AnimationResults) -> list[Block]:

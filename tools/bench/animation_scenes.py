@@ -1,8 +1,9 @@
-"""The animations of the benchmark: ten frames of each, chosen by looking at all of them, where most moves."""
+"""The animations of the benchmark: ten frames of each, chosen by looking at all of them, where most moves. Other numbers of frames are
+taken around these."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scenes import MADE, REAL, SAMPLES, Scene, chosen
 
@@ -13,6 +14,7 @@ class Animation:
     frames: tuple[int, int]
     moves: str
     goes_off: int | None = None  # first frame without a light that shone before
+    until: int = 24  # last frame of the motion
 
     @property
     def name(self) -> str:
@@ -21,6 +23,12 @@ class Animation:
     @property
     def length(self) -> int:
         return self.frames[1] - self.frames[0] + 1
+
+    def lasting(self, length: int) -> Animation:
+        """From the same frame on, or from one before it where the motion would end too early."""
+        first = min(self.frames[0], self.until - length + 1)
+        last = first + length - 1
+        return replace(self, frames=(first, last), goes_off=self.goes_off if self.goes_off and self.goes_off <= last else None)
 
 
 ANIMATIONS = [
@@ -34,6 +42,7 @@ ANIMATIONS = [
         (1, 10),
         "nothing; one of two lamps goes off at frame 6",
         goes_off=6,
+        until=100,  # all rests
     ),
     Animation(
         Scene("moving-light", REAL / "moving-light.blend"),
@@ -58,7 +67,11 @@ ANIMATIONS = [
 ]
 
 
-def select(names: str) -> list[Animation]:
-    """Animations by name ('a,b'), all for ''. Missing files are named on standard output."""
+def select(names: str, length: int) -> list[Animation]:
+    """Animations by name ('a,b'), all for '', of so many frames. Missing files, and those too short, are named on standard output."""
     scenes = chosen([animation.scene for animation in ANIMATIONS], names)
-    return [animation for animation in ANIMATIONS if animation.scene in scenes]
+    found = [animation for animation in ANIMATIONS if animation.scene in scenes]
+    for animation in found:
+        if animation.until < length:
+            print(f"SKIP {animation.name}: it has {animation.until} frames")
+    return [animation.lasting(length) for animation in found if animation.until >= length]

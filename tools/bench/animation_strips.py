@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from animation_modes import MODES
 from animation_scenes import ANIMATIONS, Animation
+from animation_variants import USUAL, Variant
 from document import Table
 from metrics import displayed, white_of
 from PIL import Image
@@ -24,8 +25,8 @@ TALL = 6  # pixels that a frame takes in a strip over time
 QUALITY = 95
 
 
-def wanted(animation: Animation, mode: str, samples: int, seed: int) -> bool:
-    return animation.scene.own and mode in SHOWN and (samples, seed) == (SAMPLES, SEED)
+def wanted(animation: Animation, variant: Variant, mode: str, samples: int, seed: int) -> bool:
+    return animation.scene.own and mode in SHOWN and (variant, samples, seed) == (USUAL, SAMPLES, SEED)
 
 
 def store(animation: Animation, mode: str, images: np.ndarray, reference: np.ndarray) -> None:

@@ -1,7 +1,8 @@
 """Renders ranges of frames inside the Python module bpy, as `blender -b -a` does: one process per scene, so that modes interleave.
 
 Reads one JSON job per line from standard input, answers with one JSON line prefixed by RESULT:
-  {"mode": "path", "samples": 16, "seed": 3, "frames": [8, 17], "out": "x.npy"}  ->  {"cpu": 9.1, "wall": 4.7, "peak_memory_bytes": …}
+  {"mode": "path", "samples": 16, "seed": 3, "frames": [8, 17], "shutter": 0.5, "out": "x.npy"}
+  ->  {"cpu": 9.1, "wall": 4.7, "peak_memory_bytes": …}
 A job with "vectors" stores the pass Vector in place of the picture. What cannot be done is answered by {"error": "why"}.
 Stored is float32 (frames, height, width, channels), top row first. CPU seconds are those of the whole process during the operator: of
 every frame export, build, sampling, reconstruction or denoising, and writing a small file.
@@ -26,6 +27,7 @@ def render(job: dict, folder: Path) -> dict:
     if "use_temporal" in scene.gradus.bl_rna.properties:
         scene.gradus.use_temporal = False
     modes.apply(scene, animation_modes.MODES[job["mode"]], job["samples"], job["seed"])
+    set_motion_blur(scene, layer, job["shutter"])
     wants_vectors = job.get("vectors", False)
     layer.use_pass_vector = wants_vectors
     worker.choose_file(layers=wants_vectors)
@@ -42,6 +44,13 @@ def render(job: dict, folder: Path) -> dict:
     for file in files:
         file.unlink()  # a frame that the next job does not write must be missed
     return answer
+
+
+def set_motion_blur(scene: bpy.types.Scene, layer: bpy.types.ViewLayer, shutter: float) -> None:
+    """For all engines alike; position, curve and steps are the file's."""
+    scene.render.use_motion_blur = layer.use_motion_blur = shutter > 0.0
+    if shutter > 0.0:
+        scene.render.motion_blur_shutter = shutter
 
 
 def open_scene(path: str, width: int, height: int) -> Callable[[dict, Path], dict]:

@@ -98,10 +98,11 @@ def lead(shares: list[float], off: int) -> int:
     return next((off - frame for frame, share in enumerate(shares[:off]) if abs(share) >= ANSWERED), 0)
 
 
-def all_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray) -> dict[str, float | list[float]]:
-    """By their names in animation.jsonl."""
+def all_measures(
+    images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray | None
+) -> dict[str, float | list[float]]:
+    """By their names in animation.jsonl; without vectors none along motion."""
     errors, flicker = error_map(images, reference, variance), flicker_map(images, reference, variance)
-    warped = warped_flicker_map(images, reference, variance, vectors)
     found = {
         "relmse": float(errors.mean()),
         "relmse_trimmed": trimmed_mean(errors),
@@ -109,10 +110,14 @@ def all_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray
         "flicker": float(flicker.mean()),
         "flicker_trimmed": trimmed_mean(flicker),
         "flicker_if_independent": float(independent_map(images, reference, variance).mean()),
-        "flicker_warped": float(np.nanmean(warped)),
-        "flicker_warped_trimmed": trimmed_mean(warped),
         "fast_share": fast_share(images, reference, variance),
     }
+    return found if vectors is None else found | warped_measures(images, reference, variance, vectors)
+
+
+def warped_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray) -> dict[str, float]:
+    warped = warped_flicker_map(images, reference, variance, vectors)
+    found = {"flicker_warped": float(np.nanmean(warped)), "flicker_warped_trimmed": trimmed_mean(warped)}
     if np.isfinite(along := warped[moving(vectors)]).any():
         found["flicker_warped_moving"] = trimmed_mean(along)
     return found
