@@ -128,7 +128,7 @@ def test_converged_frames_are_those_of_the_variant() -> None:
         variant = variants.Variant(length=frames, **more)
         return references.file_of(SimpleNamespace(animation=animation.lasting(frames), variant=variant), "path").name
 
-    assert file(10).endswith("-10-19-path-160x90.npz")
+    assert file(10).endswith("-10-19-path-limits-of-file-160x90.npz")
     assert len({file(10), file(12), file(10, size=(320, 180)), file(10, shutter=0.5), file(10, shutter=0.25)}) == 5
 
 
@@ -136,6 +136,31 @@ def test_strips_are_of_the_usual_variant_alone() -> None:
     own, mode = next(animation for animation in animation_scenes.ANIMATIONS if animation.scene.own), strips.SHOWN[0]
     assert strips.wanted(own, variants.USUAL, mode, strips.SAMPLES, strips.SEED)
     assert not strips.wanted(own, variants.Variant(shutter=0.5), mode, strips.SAMPLES, strips.SEED)
+
+
+def test_runs_of_other_bounce_limits_are_named_and_go_as_soon_as_there_are_new_ones(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = [rows("path", 1.0), rows("temporal-l2", 0.1), rows(report.PEER, 0.1)]
+    (old,) = stored(tmp_path, monkeypatch, *before)[variants.USUAL]
+    (new,) = stored(tmp_path, monkeypatch, *before, rows("path", 1.0, limits="file", version="newer"))[variants.USUAL]
+    assert "in lamp-off Gradus had its own bounce limits" in report.shorter_paths([old])[0].as_markdown()
+    assert old.modes() == ["path", "temporal-l2", report.PEER]
+    assert new.modes() == ["path", report.PEER], "Cycles always had those of the file"
+    assert not report.shorter_paths([new])
+
+
+@pytest.mark.module
+def test_all_engines_have_the_bounce_limits_of_the_file(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Gradus kept its own in animations."""
+    import animation_worker
+
+    scene.cycles.max_bounces, scene.cycles.diffuse_bounces = 9, 7
+    file = tmp_path / "limits.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    animation_worker.open_scene(str(file), 32, 18)
+    gradus = bpy.context.scene.gradus
+    assert (gradus.max_bounces, gradus.diffuse_bounces) == (9, 7)
 
 
 @pytest.mark.module

@@ -79,7 +79,7 @@ class AnimationBench:
         images, answer = self.renderer.render(job.mode, job.samples, job.seed)
         row = {
             "scene": self.animation.name, "frames": self.animation.frames, "mode": job.mode, "samples": job.samples, "seed": job.seed,
-            "version": self.version, "machine": cpu_name(),
+            "version": self.version, "machine": cpu_name(), "limits": "file",
         }  # fmt: skip
         append(row | self.variant.row() | answer | self._measures(job.mode, images), RESULTS)
         if animation_strips.wanted(self.animation, self.variant, job.mode, job.samples, job.seed):

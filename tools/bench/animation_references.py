@@ -18,6 +18,7 @@ from references import CACHE
 PART = 64  # samples per pixel
 LEAST_PARTS = 4  # for a variance
 VECTOR_SAMPLES = 16
+STORED_AS = {"path": "path-limits-of-file"}  # what is stored as "path" has the bounce limits of Gradus, not those of the file
 
 
 @dataclass
@@ -79,7 +80,7 @@ def file_of(renderer: AnimationRenderer, what: str) -> Path:
     blur = f"-shutter-{variant.shutter:g}" if variant.shutter > 0.0 else ""
     return (
         CACHE
-        / f"animation-{animation.name}-{content}-{first}-{last}-{what}-{variant.size[0]}x{variant.size[1]}{blur}.npz"
+        / f"animation-{animation.name}-{content}-{first}-{last}-{STORED_AS.get(what, what)}-{variant.size[0]}x{variant.size[1]}{blur}.npz"
     )
 
 

@@ -54,7 +54,8 @@ def set_motion_blur(scene: bpy.types.Scene, layer: bpy.types.ViewLayer, shutter:
 
 
 def open_scene(path: str, width: int, height: int) -> Callable[[dict, Path], dict]:
-    worker.prepare(path, width, height)
+    for name, limit in worker.prepare(path, width, height).items():
+        setattr(bpy.context.scene.gradus, name, limit)  # the same work for all engines
     bpy.context.scene.render.use_overwrite, bpy.context.scene.render.use_placeholder = True, False
     return render
 
