@@ -202,14 +202,14 @@ VARIED = tuple(aim for aim in AIMS if "warped" not in aim.measure)
 
 def varied(variant: Variant, scenes: list[AnimationResults]) -> list[Block]:
     """The main figures; all measures on the page alone."""
-    made: list[Block] = [Text(f"### Animations: {variant.title}"), figures(scenes)]
+    made: list[Block] = [Text(f"### Animations: {variant.title}"), about(scenes), figures(scenes)]
     for scene in scenes:
         made += [HtmlOnly(Text(f"Measures of {scene.name}:")), HtmlOnly(measures(scene))]
     return made
 
 
 def figures(scenes: list[AnimationResults]) -> Table:
-    made = Table(["animation", "frames", "mode", "spp", "seeds", *(f"{aim.label}, ≤ {aim.most:g}" for aim in VARIED), "late", "early"])
+    made = Table(["animation", "mode", "spp", "seeds", *(f"{aim.label}, ≤ {aim.most:g}" for aim in VARIED), "late", "early"])
     for scene in scenes:
         for mode in scene.modes():
             points = scene.points[mode]
@@ -217,7 +217,7 @@ def figures(scenes: list[AnimationResults]) -> Table:
             ratios = [aim.ratio(scene, mode) if is_temporal(mode) or aim.other is not per_frame else None for aim in VARIED]
             lag = scene.lag_and_lead(points[-1])
             made.rows.append(
-                [scene.name, "{}–{}".format(*scene.animation.frames), MODES[mode].label, counts, str(seeds), *map(number, ratios)]
+                [scene.name, MODES[mode].label, counts, str(seeds), *map(number, ratios)]
                 + (["–", "–"] if lag is None else [str(frames) for frames in lag])
             )
     return made
