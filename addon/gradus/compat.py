@@ -9,6 +9,9 @@ from typing import Any
 
 import bpy
 
+VERSION: tuple[int, int, int] = tuple(bpy.app.version)
+"""Of the running Blender."""
+
 
 def color_config_path() -> str:
     """OpenColorIO configuration that this Blender uses: the variable OCIO if it is set, else the one that came with it."""
@@ -46,7 +49,7 @@ def image_color_spaces() -> set[str]:
 
 def default_surface_is_principled() -> bool:
     """Faces without a material are an untouched Principled BSDF; before 5.0 a grey diffuse."""
-    return bpy.app.version >= (5, 0, 0)
+    return VERSION >= (5, 0, 0)
 
 
 def fixed_threads(render: Any) -> int:

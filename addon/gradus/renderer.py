@@ -18,7 +18,6 @@ from .failure import Failure
 from .progress import Display, open_result, wait
 from .store import FINAL, PREVIEW, Cancelled, Key, Session
 
-VERSION = bpy.app.version
 _files = output.FrameFiles()
 
 
@@ -46,7 +45,7 @@ def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
     except options.OptionError:
         overrides = options.Overrides()  # update() reports it, once
     for info in active_passes(scene, view_layer, overrides):
-        engine.register_pass(scene, view_layer, info.blender_name(VERSION), info.channels, info.ids, info.kind)
+        engine.register_pass(scene, view_layer, info.blender_name(compat.VERSION), info.channels, info.ids, info.kind)
 
 
 def host_value(name: str, scene: Any, overrides: options.Overrides) -> Any:

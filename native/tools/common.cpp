@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base/text_list.h"
 #include "settings/options.h"
 
 namespace gradus::tool {
@@ -111,7 +112,7 @@ uint64_t parse_passes(const std::string& text) {
   for (const std::string& part : split(text)) {
     std::string all;
     uint32_t pass = 0;
-    for (; pass < GRADUS_PASS_COUNT && typed_name(pass) != canonical(part); ++pass) all += (pass ? ", " : "") + typed_name(pass);
+    for (; pass < GRADUS_PASS_COUNT && typed_name(pass) != canonical(part); ++pass) add_item(&all, typed_name(pass));
     if (pass == GRADUS_PASS_COUNT) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "there is no pass " + part + "; there are " + all);
     mask |= uint64_t{1} << pass;
   }

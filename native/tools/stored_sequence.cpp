@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text_list.h"
 #include "frame/frame_name.h"
 
 namespace gradus::tool {
@@ -35,9 +36,9 @@ std::string advice(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (std::regex_match(entry.path().filename().string(), name)) places.insert(entry.path().parent_path().string());
   }
-  std::string text;
-  for (const std::string& place : places) text += (text.empty() ? ": try " : ", ") + place;
-  return text;
+  std::string list;
+  for (const std::string& place : places) add_item(&list, place);
+  return list.empty() ? "" : ": try " + list;
 }
 
 std::string text_of(int32_t first, int32_t last) {
@@ -72,7 +73,7 @@ std::vector<int32_t> StoredSequence::expected(int32_t first, int32_t last) const
 
 std::string StoredSequence::missing(int32_t first, int32_t last) const {
   std::string text;
-  const auto add = [&](int32_t from, int32_t to) { text += (text.empty() ? "" : ", ") + text_of(from, to); };
+  const auto add = [&](int32_t from, int32_t to) { add_item(&text, text_of(from, to)); };
   int32_t from = 0, to = 0;
   bool open = false;
   for (const int32_t frame : expected(first, last)) {

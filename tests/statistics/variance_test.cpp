@@ -133,7 +133,7 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
       if (!(threshold > 0.0f)) continue;
       for (const float v : read_variance(*frame)) estimated += v / seeds;
       for (size_t i = 0; i < frame->count[0].size(); ++i) {
-        const uint32_t n = frame->count[0][i] + frame->count[1][i];
+        const uint32_t n = samples_at(*frame, i);
         least = std::min(least, n);
         most = std::max(most, n);
       }

@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 
-from .. import native
+from .. import compat, native
 from . import camera, instances, left_out, light, mesh, motion, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
@@ -232,7 +232,7 @@ class _Sync:
         matrix = matrices[16 * entry.index : 16 * entry.index + 16]
         record = native.Light()
         scale = tuple(sum(value * value for value in matrix[4 * axis : 4 * axis + 3]) ** 0.5 for axis in range(3))
-        state = light.light_state(data, scale, bpy.app.version)
+        state = light.light_state(data, scale, compat.VERSION)
         emission = light.constant_emission(data)
         if emission is None:
             record.material = self._materials.key(data, "LIGHT")

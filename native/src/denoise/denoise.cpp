@@ -8,7 +8,6 @@
 namespace gradus {
 namespace {
 
-using Cancel = std::function<bool()>;
 using Image = std::vector<float>;  // 3 floats per pixel
 
 // Sums over blocks of pixels stay finite, too.
@@ -27,7 +26,7 @@ Image packed(const float* pixels, size_t stride, size_t count) {
 // The network, for images of one size.
 class Network {
  public:
-  Network(const OidnApi& api, int width, int height, uint32_t threads, const Cancel& cancel)
+  Network(const OidnApi& api, int width, int height, uint32_t threads, const CancelTest& cancel)
       : api_(api), width_(size_t(width)), height_(size_t(height)), cancel_(cancel), device_(api.new_device(kOidnCpu), api.release_device) {
     if (!device_) throw failure("no device");
     api_.set_device_int(device_.get(), "numThreads", int(threads));
@@ -56,14 +55,14 @@ class Network {
     api_.set_filter_bool(filter.get(), "hdr", true);
     api_.set_filter_bool(filter.get(), "cleanAux", true);
     api_.set_filter_int(filter.get(), "quality", kOidnQualityHigh);
-    api_.set_filter_progress(filter.get(), &goes_on, const_cast<Cancel*>(&cancel_));
+    api_.set_filter_progress(filter.get(), &goes_on, const_cast<CancelTest*>(&cancel_));
     api_.commit_filter(filter.get());
     check();
     api_.execute_filter(filter.get());
     check();
   }
 
-  static bool goes_on(void* cancel, double /*done*/) { return !(*static_cast<const Cancel*>(cancel))(); }
+  static bool goes_on(void* cancel, double /*done*/) { return !(*static_cast<const CancelTest*>(cancel))(); }
 
   void check() const {
     const char* text = nullptr;
@@ -80,13 +79,13 @@ class Network {
 
   const OidnApi& api_;
   const size_t width_, height_;
-  const Cancel& cancel_;
+  const CancelTest& cancel_;
   const std::unique_ptr<OidnApi::Device, void (*)(OidnApi::Device*)> device_;
 };
 
 }  // namespace
 
-std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const Cancel& cancel) {
+std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const CancelTest& cancel) {
   const size_t count = size_t(picture.width) * size_t(picture.height);
   Image color = packed(picture.color, picture.stride, count);
   Image albedo = picture.albedo ? packed(picture.albedo, 3, count) : Image();

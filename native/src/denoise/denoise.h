@@ -5,9 +5,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "base/cancel_test.h"
 #include "denoise/oidn_library.h"
 
 namespace gradus {
@@ -23,6 +23,6 @@ struct NoisyPicture {
 
 // RGB, 3 floats per pixel, finite. Numbers that are not count as 0. Throws Error CANCELLED, or UNKNOWN with the library's text. Call it
 // from outside of TBB's arenas: it brings its own, of `threads`.
-std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const std::function<bool()>& cancel);
+std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const CancelTest& cancel);
 
 }  // namespace gradus

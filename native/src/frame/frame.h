@@ -31,6 +31,7 @@ struct Region {
   int32_t height() const { return y1 - y0; }
   int64_t area() const { return int64_t(width()) * height(); }
   bool contains(int32_t x, int32_t y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  bool operator==(const Region&) const = default;
 };
 
 // Radiance (RGB) and, with a transparent film, alpha as the fourth channel; 0 otherwise.
@@ -106,6 +107,8 @@ class Frame {
   int32_t frame_number = 0;
 };
 
+// Samples of the pixel with this index.
+inline uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
 // Samples of a pixel, on average over the region.
 double mean_samples(const Frame& frame);
 // Samples of each pixel.

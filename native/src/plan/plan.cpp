@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/text_list.h"
 #include "bsdf/ggx.h"
 #include "frame/pass_planes.h"
 #include "settings/options.h"
@@ -146,8 +147,7 @@ void choose_passes(const GradusSettings& settings, Plan* plan) {
 void list_passes(Plan* plan) {
   std::string names;
   for (uint32_t pass = GRADUS_PASS_NOISY_IMAGE; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (wants(plan->passes, pass)) continue;
-    names += names.empty() ? pass_info(pass).name : std::string(", ") + pass_info(pass).name;
+    if (!wants(plan->passes, pass)) add_item(&names, pass_info(pass).name);
   }
   if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
 }

@@ -17,8 +17,7 @@ AdaptiveSampling::AdaptiveSampling(const Frame& frame, float threshold, uint32_t
       spread_(grid_.cells.size(), 1.0),
       stopped_(grid_.cells.size(), 0) {
   for (const Region& cell : grid_.cells) {
-    const size_t i = frame.index(cell.x0, cell.y0);
-    taken_.push_back(frame.count[0][i] + frame.count[1][i]);
+    taken_.push_back(samples_at(frame, frame.index(cell.x0, cell.y0)));
   }
   const bool goes_on = !frame.shared.rays.empty();
   uncounted_ = goes_on ? frame.shared.uncounted : taken_.front();

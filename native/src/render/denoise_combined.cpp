@@ -74,7 +74,7 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
 namespace {
 
 std::vector<float> denoise_or_throw(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const std::function<bool()>& cancel, const std::vector<float>& combined) {
+                                    uint32_t threads, const CancelTest& cancel, const std::vector<float>& combined) {
   // Samples are there around a region, too; a reconstruction is not.
   const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED, sampled = blends || reconstruction == GRADUS_RECONSTRUCTION_NONE;
   const Region& seen = sampled ? frame.region : region;
@@ -104,8 +104,7 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const Frame& fra
 float denoised_error(uint32_t reconstruction) { return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kErrorOfMean : 1.0f; }
 
 std::vector<float> denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const std::function<bool()>& cancel, const std::vector<float>& combined,
-                                    std::string* failure) {
+                                    uint32_t threads, const CancelTest& cancel, const std::vector<float>& combined, std::string* failure) {
   const char* const what = "the picture was not denoised: ";
   try {
     return denoise_or_throw(library, frame, reconstruction, region, threads, cancel, combined);

@@ -1,11 +1,11 @@
 // Combined by the host's denoiser (denoise/denoise.h), guided by what the frame knows of the surfaces.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/cancel_test.h"
 #include "denoise/oidn_library.h"
 #include "frame/frame.h"
 
@@ -21,8 +21,7 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
 // and of the noisy image denoised where it is REGULARIZED: a network makes nothing more of what is smooth. Empty where something went
 // wrong, memory included, and what. Throws Error CANCELLED. Call it from outside of TBB's arenas.
 std::vector<float> denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const std::function<bool()>& cancel, const std::vector<float>& combined,
-                                    std::string* failure);
+                                    uint32_t threads, const CancelTest& cancel, const std::vector<float>& combined, std::string* failure);
 
 // Squared error of what comes out, over that of what went in: as measured where it is a mean with REGULARIZED (docs/method.md), and 1, as
 // nobody knows, elsewhere.

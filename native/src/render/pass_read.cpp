@@ -23,8 +23,6 @@ void for_pixels(const Frame& frame, const Region& region, Function&& function) {
   }
 }
 
-uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
-
 float inverse_count(const Frame& frame, size_t i) {
   const uint32_t n = samples_at(frame, i);
   return n > 0 ? 1.0f / static_cast<float>(n) : 0.0f;

@@ -13,8 +13,6 @@
 namespace gradus {
 namespace {
 
-bool same(const Region& a, const Region& b) { return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1; }
-
 // The key is taken with the integrator that was used, not with AUTO.
 uint64_t key_of(GradusSettings settings, uint32_t integrator) {
   settings.integrator = integrator;
@@ -53,18 +51,17 @@ void check_gradients(const Frame& frame, bool wanted) {
 
 uint32_t resumed_samples(const Frame& frame, bool adaptively) {
   const bool by_cells = adaptively && !frame.shared.rays.empty();
-  const auto samples = [&](size_t i) { return frame.count[0][i] + frame.count[1][i]; };
   for (const Region& part : by_cells ? make_cells(frame.region) : std::vector<Region>{frame.region}) {
-    const uint32_t first = samples(frame.index(part.x0, part.y0));
+    const uint32_t first = samples_at(frame, frame.index(part.x0, part.y0));
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
-        if (samples(frame.index(x, y)) == first) continue;
+        if (samples_at(frame, frame.index(x, y)) == first) continue;
         throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot go on from it");
       }
     }
   }
   if (by_cells) return frame.shared.mean;
-  return frame.region.area() > 0 ? samples(0) : 0;
+  return frame.region.area() > 0 ? samples_at(frame, 0) : 0;
 }
 
 void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
@@ -75,7 +72,7 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
     const std::string which = sampling_differences(frame.settings, wanted);
     throw invalid_argument("the frame was sampled with other settings: " + (which.empty() ? "another integrator" : which));
   }
-  if (!same(frame.region, plan.sampled) || frame.settings.first_sample != settings.first_sample) {
+  if (frame.region != plan.sampled || frame.settings.first_sample != settings.first_sample) {
     throw invalid_argument("the frame has another region or first sample");
   }
   const std::string gap = frame.samples.first_gap(settings.first_sample);
@@ -107,7 +104,7 @@ void merge_frames(Frame* frame, const Frame& other) {
   if (frame->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
   if (sampling_key(frame->settings) != sampling_key(other.settings))
     throw invalid_argument("the frames were sampled with different settings");
-  if (!same(frame->region, other.region) || frame->channels != other.channels || frame->gradients != other.gradients ||
+  if (frame->region != other.region || frame->channels != other.channels || frame->gradients != other.gradients ||
       frame->components.size() != other.components.size() || !same_planes(*frame, other)) {
     throw invalid_argument("the frames differ in size or planes");
   }

@@ -137,7 +137,7 @@ std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vect
   table->lamps = std::move(lamps);
   sort_lamps(table.get());
   find_triangles(snapshot, monitor, table.get());
-  table->tree.build(all_bounds(snapshot, *table, monitor), [&] { return monitor.go_on(); });
+  table->tree.build(all_bounds(snapshot, *table, monitor), [&] { return !monitor.go_on(); });
   monitor.check();
   table->world = build_world(snapshot, world, monitor);
   return table;

@@ -40,14 +40,13 @@ float measure_at(const Environment::Radiance& radiance, const Vec2& p) {
 }
 
 // Mean channel of the radiance in each cell. Returns false when stopped.
-bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const std::function<bool()>& go_on,
-             std::vector<float>* out) {
+bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const CancelTest& cancel, std::vector<float>* out) {
   const uint32_t height = width / 2;
   const float step = 1.0f / float(points);
   out->assign(size_t(width) * height, 0.0f);
   std::atomic<bool> stopped{false};
   tbb::parallel_for(0u, height, [&](uint32_t y) {
-    if (stopped || !go_on()) {
+    if (stopped || cancel()) {
       stopped = true;
       return;
     }
@@ -138,8 +137,7 @@ Environment Environment::uniform(float mean) {
   return world;
 }
 
-void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution,
-                        const std::function<bool()>& go_on) {
+void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelTest& cancel) {
   *this = Environment();
   std::vector<Cone> cones;
   for (const Cone& cone : suns) {
@@ -150,7 +148,7 @@ void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns,
   const auto without_suns = [&](const Vec3& direction) { return radiance(beside_suns(cones, direction)); };
   const uint32_t width = std::clamp(resolution.width, kMinWidth, kMaxWidth) & ~1u;
   std::vector<float> values;
-  if (!measure(without_suns, width, std::max(resolution.points, 1u), go_on, &values)) return;
+  if (!measure(without_suns, width, std::max(resolution.points, 1u), cancel, &values)) return;
   mean_ = mean_over_sphere(values, width);
   std::erase_if(suns_, [&](const Sun& sun) { return sun.irradiance < kFaintSun * kPi * mean_; });
   if (mean_ > 0.0f && !is_constant(values)) map_ = std::make_shared<Distribution2D>(width, width / 2, weights(values, width, mean_));

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/cancel_test.h"
 #include "base/types.h"
 #include "scene/cone.h"
 #include "scene/distribution.h"
@@ -27,9 +28,9 @@ class Environment {
 
   // A world that shines alike from everywhere; mean: of the channels of its radiance.
   static Environment uniform(float mean);
-  // suns: cones that hold little but a sun each; those that shine no more than what lies beside them are left to the map. go_on is polled.
+  // suns: cones that hold little but a sun each; those that shine no more than what lies beside them are left to the map. cancel is polled.
   // Without a map where the radiance turns out to be constant. black(): there is nothing to sample.
-  void build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const std::function<bool()>& go_on);
+  void build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelTest& cancel);
   bool black() const { return mean_ <= 0.0f && suns_.empty(); }
   // Mean over the sphere of the mean channel, without the suns.
   float mean() const { return mean_; }

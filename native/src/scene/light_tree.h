@@ -7,9 +7,9 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <vector>
 
+#include "base/cancel_test.h"
 #include "base/types.h"
 #include "scene/emitters.h"
 
@@ -28,8 +28,8 @@ struct LightBounds {
 
 class LightTree {
  public:
-  // go_on is polled; false: the tree is left unfinished.
-  void build(const std::vector<LightBounds>& lights, const std::function<bool()>& go_on);
+  // cancel is polled; true: the tree is left unfinished.
+  void build(const std::vector<LightBounds>& lights, const CancelTest& cancel);
   bool empty() const { return nodes_.empty(); }
   size_t size() const { return trails_.size(); }
 

@@ -18,7 +18,7 @@ struct LightTree::Builder {
 
   LightTree* tree;
   const std::vector<LightBounds>& lights;
-  const std::function<bool()>& go_on;
+  const CancelTest& cancel;
   std::vector<uint32_t> order;
   std::atomic<uint32_t> next{1};  // node not yet used
   std::atomic<bool> stopped{false};
@@ -93,7 +93,7 @@ struct LightTree::Builder {
       tree->trails_[order[first]] = trail;
       return fill(index, lights[order[first]], kLeaf | order[first]);
     }
-    if (stopped || (last - first > 512 && !go_on())) {
+    if (stopped || (last - first > 512 && cancel())) {
       stopped = true;
       return {};
     }
@@ -126,12 +126,12 @@ struct LightTree::Builder {
   }
 };
 
-void LightTree::build(const std::vector<LightBounds>& lights, const std::function<bool()>& go_on) {
+void LightTree::build(const std::vector<LightBounds>& lights, const CancelTest& cancel) {
   nodes_.clear();
   trails_.assign(lights.size(), 0);
   if (lights.empty()) return;
   nodes_.resize(2 * lights.size());
-  Builder builder{this, lights, go_on, std::vector<uint32_t>(lights.size())};
+  Builder builder{this, lights, cancel, std::vector<uint32_t>(lights.size())};
   std::iota(builder.order.begin(), builder.order.end(), 0u);
   builder.build(0, 0, uint32_t(lights.size()), 0, 0);
 }

@@ -77,7 +77,7 @@ Environment measure_world(const Snapshot& snapshot, const WorldMap& map, const C
   state.flags = 0;
   Environment world;
   const auto radiance = [&](const Vec3& direction) { return shade_world(snapshot, direction, state); };
-  world.build(radiance, sun_cones(*map.material), resolution(snapshot, map), [&] { return monitor.go_on(); });
+  world.build(radiance, sun_cones(*map.material), resolution(snapshot, map), [&] { return !monitor.go_on(); });
   monitor.check();
   return world;
 }

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "base/text_list.h"
 #include "settings/options.h"
 
 namespace gradus {
@@ -22,8 +23,7 @@ std::string sampling_differences(const GradusSettings& stored, const GradusSetti
   std::string text;
   for (const Option& option : options()) {
     if (!option.sampling || get_option(stored, option) == get_option(wanted, option)) continue;
-    if (!text.empty()) text += ", ";
-    text += std::string(option.name) + " is " + value_text(stored, option) + ", not " + value_text(wanted, option);
+    add_item(&text, std::string(option.name) + " is " + value_text(stored, option) + ", not " + value_text(wanted, option));
   }
   return text;
 }

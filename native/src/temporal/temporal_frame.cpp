@@ -18,8 +18,6 @@ HalvedImages read_halved(const Frame& frame, TemporalContent content) {
   return images;
 }
 
-uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
-
 }  // namespace
 
 void check_alike(const GradientImages& images, const GradientImages& other, int32_t frame) {

@@ -33,7 +33,7 @@ std::shared_ptr<const Frame> render_frame(const GradusSettings& settings, std::s
 double mean_count(const Frame& frame, int x0, int x1) {
   double sum = 0.0;
   for (int y = 0; y < kHeight; ++y) {
-    for (int x = x0; x < x1; ++x) sum += frame.count[0][frame.index(x, y)] + frame.count[1][frame.index(x, y)];
+    for (int x = x0; x < x1; ++x) sum += samples_at(frame, frame.index(x, y));
   }
   return sum / double(kHeight * (x1 - x0));
 }
@@ -74,13 +74,13 @@ TEST(Adaptive, SamplesOfAPixelAreNumberedWithoutGaps) {
     for (int x = 0; x < kWidth; x += 3) {
       const size_t i = frame->index(x, y);
       float sum[kHalves] = {};
-      for (uint32_t s = 5; s < 5 + frame->count[0][i] + frame->count[1][i]; ++s) sum[s % 2] += fake.value_of(x, y, s);
+      for (uint32_t s = 5; s < 5 + samples_at(*frame, i); ++s) sum[s % 2] += fake.value_of(x, y, s);
       ASSERT_EQ(frame->components[0].primal[0][i].x, sum[0]) << x << " " << y;
       ASSERT_EQ(frame->components[0].primal[1][i].x, sum[1]) << x << " " << y;
     }
   }
   uint32_t most = 0;
-  for (size_t i = 0; i < frame->count[0].size(); ++i) most = std::max(most, frame->count[0][i] + frame->count[1][i]);
+  for (size_t i = 0; i < frame->count[0].size(); ++i) most = std::max(most, samples_at(*frame, i));
   EXPECT_EQ(frame->samples.list(), (std::vector<SampleRange>{{5, 5 + most}}));
 }
 

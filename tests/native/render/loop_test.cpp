@@ -331,8 +331,8 @@ TEST(Loop, StopsTilesByNoise) {
   EXPECT_FALSE(stats["unbiased"]);
   uint32_t least = UINT32_MAX, most = 0;
   for (size_t i = 0; i < frame.count[0].size(); ++i) {
-    least = std::min(least, frame.count[0][i] + frame.count[1][i]);
-    most = std::max(most, frame.count[0][i] + frame.count[1][i]);
+    least = std::min(least, samples_at(frame, i));
+    most = std::max(most, samples_at(frame, i));
   }
   EXPECT_GE(least, 16u);
   EXPECT_LT(most, 256u);

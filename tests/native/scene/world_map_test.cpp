@@ -126,7 +126,7 @@ TEST(WorldMap, MeasuresEachCellAsOftenAsAsked) {
     return Rgb(1.0f + d.z);
   };
   Environment world;
-  world.build(radiance, {}, {64, 1}, [] { return true; });
+  world.build(radiance, {}, {64, 1}, [] { return false; });
   EXPECT_EQ(calls, 64u * 32u);
   EXPECT_NEAR(world.mean(), 1.0f, 1e-3f);
 }

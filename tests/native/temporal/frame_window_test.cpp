@@ -157,7 +157,7 @@ TEST_F(FiveFrames, SharesAreThoseOfTheSamples) {
   const Frame &base = *base_[1], &replay = *replay_[1];
   const TemporalFrame frame = make_temporal_frame(base, replay);
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {
-    const uint32_t own = base.count[0][i] + base.count[1][i], other = replay.count[0][i] + replay.count[1][i];
+    const uint32_t own = samples_at(base, i), other = samples_at(replay, i);
     EXPECT_NEAR(frame.replay_share[i] * float(own + other), float(other), 1e-5f) << own << ' ' << other;
   }
 }

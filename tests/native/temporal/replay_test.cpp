@@ -116,7 +116,7 @@ struct Pan {
 
 float gray(const Frame& frame, size_t pixel) {
   Radiance sum = frame.components[0].primal[0][pixel] + frame.components[0].primal[1][pixel];
-  const uint32_t count = frame.count[0][pixel] + frame.count[1][pixel];
+  const uint32_t count = samples_at(frame, pixel);
   return (sum.x + sum.y + sum.z) / (3.0f * float(count));
 }
 

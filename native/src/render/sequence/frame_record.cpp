@@ -17,13 +17,9 @@ uint64_t key_without_frame(GradusSettings settings) {
 
 FrameForm form_of(const FrameHeader& frame) { return {frame.region, frame.channels, frame.gradients, has_features(frame), frame.settings}; }
 
-bool have_same_pixels(const FrameForm& a, const FrameForm& b) {
-  return a.region.x0 == b.region.x0 && a.region.y0 == b.region.y0 && a.region.x1 == b.region.x1 && a.region.y1 == b.region.y1;
-}
-
 bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstruction) {
   const bool features = a.features == b.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
-  return have_same_pixels(a, b) && a.channels == b.channels && a.gradients == b.gradients && features;
+  return a.region == b.region && a.channels == b.channels && a.gradients == b.gradients && features;
 }
 
 std::unique_ptr<FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,

@@ -21,7 +21,6 @@ struct FrameForm {
   GradusSettings settings{};
 };
 FrameForm form_of(const FrameHeader& frame);
-bool have_same_pixels(const FrameForm& a, const FrameForm& b);
 // Whether one window can hold both: they have all that it reads of its frames.
 bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstruction);
 

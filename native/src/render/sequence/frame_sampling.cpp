@@ -214,7 +214,7 @@ std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, con
   }
   if (!has_counts(input_.settings)) return replay;
   const double mean = mean_of(counts);
-  const bool is_counted = before && before->form && have_same_pixels(*before->form, form_of(base));
+  const bool is_counted = before && before->form && before->form->region == base.region;
   replay->counts = replayed_counts(replay->sources, is_counted ? before : nullptr, mean);
   const double seconds = base_.what_it_took().seconds.sample;
   if (input_.settings.time_limit > 0.0f && seconds > 0.0) {

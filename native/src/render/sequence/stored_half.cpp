@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/text_list.h"
 #include "frame/features.h"
 #include "render/sequence/frame_record.h"
 #include "settings/options.h"
@@ -15,9 +16,7 @@ namespace {
 std::string names_of_missing(uint64_t passes, uint64_t others) {
   std::string names;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (!wants(passes & ~others, pass)) continue;
-    if (!names.empty()) names += ", ";
-    names += pass_info(pass).name;
+    if (wants(passes & ~others, pass)) add_item(&names, pass_info(pass).name);
   }
   return names;
 }

@@ -584,7 +584,6 @@ TEST(A8_Sequence, ReplaysTakeTheCountsOfWhatTheyReplay) {
   for (int32_t t = 0; t <= 1; ++t) sample(sequence.get(), pan.at(t), adaptive(t));
   const SequenceFolder files(folder.path());
   const auto base = files.load(0, FramePart::kBase), offset = files.load(1, FramePart::kOffset);
-  const auto samples_at = [](const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; };
   uint32_t least = UINT32_MAX, most = 0;
   for (size_t q = 0; q < offset->replayed.pixel.size(); ++q) {
     const int32_t source = offset->replayed.pixel[q];
