@@ -39,6 +39,7 @@ class Visibility(IntFlag):
     VISIBLE_ALL = 63
     HOLDOUT = 64
     SHADOW_CATCHER = 128
+    MAY_MOVE = 256
 
 
 class LightType(IntEnum):

@@ -13,9 +13,10 @@ from typing import Any
 
 from . import left_out, shadow_terminator
 from .arrays import read
+from .may_move import MayMove
 from .object_random import name_hash
 from .shutter import SHARP, Blur, blur_of
-from .visibility import ALL_RAYS, visibility
+from .visibility import ALL_RAYS, MAY_MOVE, visibility
 
 InstanceKey = tuple[int, ...]
 
@@ -84,8 +85,9 @@ class _Facts:
 class _Parts:
     """Facts of objects, each looked up once: most of an export of many instances is this loop."""
 
-    def __init__(self, view_layer: Any, warnings: list[str]) -> None:
+    def __init__(self, view_layer: Any, warnings: list[str], may_move: MayMove | None) -> None:
         self._view_layer = view_layer
+        self._may_move = may_move
         self._warnings = warnings
         self._override = view_layer.material_override
         self._facts: dict[tuple[int, int], _Facts] = {}
@@ -99,6 +101,8 @@ class _Parts:
             # Originals: a new depsgraph, as each frame of an animation may have, has other evaluated addresses.
             key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
             bits = visibility(obj, parent, self._view_layer)
+            if self._may_move is not None and obj.type == "MESH" and self._may_move(owner, parent):
+                bits |= MAY_MOVE
             terminator = shadow_terminator.geometry_offset(obj)
             found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color), terminator, blur_of(owner, parent))
             self._warnings.extend(left_out.of_object(owner, self._view_layer))
@@ -113,15 +117,15 @@ class _Parts:
         return found
 
 
-def collect(depsgraph: Any, poll: Callable[[], None]) -> Collected:
-    """All visible surfaces and lamps of the depsgraph at its frame.
+def collect(depsgraph: Any, poll: Callable[[], None], may_move: MayMove | None = None) -> Collected:
+    """All visible surfaces and lamps of the depsgraph at its frame. may_move: hints for the surfaces; None: without any.
 
     Curves, text, surfaces and metaballs come twice: as themselves, and as an instance that shows the mesh which Blender made of
     them (3.4 to 5.0). Only the latter has a surface.
     """
     instances = depsgraph.object_instances
     collected = Collected(array("f"))
-    parts = _Parts(depsgraph.view_layer_eval, collected.left_out)
+    parts = _Parts(depsgraph.view_layer_eval, collected.left_out, may_move)
     surfaces = depsgraph.view_layer_eval.use_solid
     for index, instance in enumerate(instances):
         if index & 255 == 0:

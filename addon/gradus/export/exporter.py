@@ -16,6 +16,7 @@ from . import camera, instances, left_out, light, mesh, motion, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
+from .may_move import MayMove
 from .mesh import MeshArrays
 from .report import ExportError, ExportReport, Poll, Warnings
 from .shutter import blur_of, shutter_of
@@ -114,7 +115,8 @@ class _Sync:
 
     def run(self) -> None:
         now = self._camera()
-        collected = collect(self._depsgraph, self._poll)
+        # Where the moments around are read, they tell exactly what moves.
+        collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove())
         for text in (
             *left_out.of_scene(self._scene, self._depsgraph.view_layer_eval),
             *collected.left_out,

@@ -7,6 +7,7 @@ from typing import Any
 CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME, SHADOW = 1, 2, 4, 8, 16, 32
 ALL_RAYS = 63
 HOLDOUT, SHADOW_CATCHER = 64, 128
+MAY_MOVE = 256
 
 RAY_SWITCHES = (
     ("visible_camera", CAMERA),

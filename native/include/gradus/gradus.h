@@ -142,7 +142,8 @@ typedef enum GradusVisibility {
   GRADUS_VISIBLE_SHADOW = 32,
   GRADUS_VISIBLE_ALL = 63,
   GRADUS_HOLDOUT = 64,
-  GRADUS_SHADOW_CATCHER = 128
+  GRADUS_SHADOW_CATCHER = 128,
+  GRADUS_MAY_MOVE = 256 /* a hint: other frames may show it elsewhere or in another shape; what rests is kept from frame to frame */
 } GradusVisibility;
 
 /* All instances of the scene, as arrays of length count. Optional arrays may be NULL. */

@@ -1,5 +1,6 @@
 // What rests is built once and shared by the snapshots; what moves lies beside it, and rays meet both as if they were one.
 #include <algorithm>
+#include <ostream>
 
 #include <gtest/gtest.h>
 
@@ -82,6 +83,41 @@ void furnish(TestScene* scene, int side) {
   scene->instance(2, translation(Vec3(1, 2, 0)));
 }
 
+bool holds(const Accelerator& accelerator, const GeometryGroup* group) {
+  return accelerator.resting.group.get() == group || accelerator.moving.group.get() == group;
+}
+
+// Triangles in the top levels of `now` that those of `before` do not share.
+uint64_t built_triangles(const Accelerator& now, const Accelerator& before) {
+  uint64_t sum = 0;
+  for (const auto* group : {now.resting.group.get(), now.moving.group.get()}) {
+    if (!group || holds(before, group)) continue;
+    for (const auto& mesh : group->meshes) sum += mesh->triangle_count;
+  }
+  return sum;
+}
+
+// Frames that tell nothing of motion: a room, a ball that is told to move and does, and what `show` adds.
+constexpr uint32_t kTold = GRADUS_VISIBLE_ALL | GRADUS_MAY_MOVE;
+
+struct Hints {
+  const char* name;
+  void (*show)(TestScene* scene, int frame);
+};
+
+std::shared_ptr<const Snapshot> show_frame(TestScene* scene, int frame, const Hints& hints) {
+  while (scene->instance_count() > 0) scene->remove_last();
+  scene->mesh(2, sphere(Vec3(0.0f), 1.0f, 20, 20));
+  scene->instance(1);
+  scene->instance(2, translation(Vec3(float(frame), 2, 0)), kTold);
+  hints.show(scene, frame);
+  return scene->commit();
+}
+
+void PrintTo(const Hints& hints, std::ostream* out) { *out << hints.name; }
+
+class AcceleratorHints : public testing::TestWithParam<Hints> {};
+
 }  // namespace
 
 TEST(Accelerator, WhatRestsIsBuiltOnceAndSharedByTheFrames) {
@@ -155,6 +191,85 @@ TEST(Accelerator, BlurredInstancesLieBesideASmallScene) {
     }
   }
 }
+
+TEST(Accelerator, WhatMayMoveLiesBesideALargeSceneThatRests) {
+  for (const int side : {12, kSoupSide}) {
+    TestScene scene;
+    furnish(&scene, side);
+    scene.instance(2, translation(Vec3(0, -3, 0)), GRADUS_VISIBLE_ALL | GRADUS_MAY_MOVE);
+    const auto snapshot = scene.commit();
+    const std::vector<uint32_t> moving = side == kSoupSide ? std::vector<uint32_t>{2} : std::vector<uint32_t>{};
+    EXPECT_EQ(snapshot->accelerator->moving.instances, moving);
+    Hit hit;
+    ASSERT_TRUE(snapshot->intersect({Vec3(0, -3, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+    EXPECT_EQ(hit.instance, 2u);
+    EXPECT_TRUE(snapshot->occluded({Vec3(0, -3, 5), 0.0f, Vec3(0, 0, -1), 6.0f}));
+  }
+}
+
+TEST(Accelerator, FramesThatTellNothingOfMotionBuildWhatIsToldToMoveAlone) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 8.0f, kSoupSide, kSoupSide));
+  const Hints told{"", [](TestScene*, int) {}};
+  auto before = show_frame(&scene, 1, told);
+  const uint64_t ball = before->instances[1].mesh->triangle_count, room = before->instances[0].mesh->triangle_count;
+  EXPECT_EQ(built_triangles(*before->accelerator, {}), room + ball);
+  for (int frame = 2; frame < 5; ++frame) {
+    const auto now = show_frame(&scene, frame, told);
+    EXPECT_EQ(built_triangles(*now->accelerator, *before->accelerator), ball);
+    before = now;
+  }
+  scene.move(1, translation(Vec3(-3, 0, 0)));
+  EXPECT_EQ(built_triangles(*scene.commit()->accelerator, *before->accelerator), ball);
+}
+
+TEST_P(AcceleratorHints, WhatIsWrongCostsTimeAlone) {
+  const Queries queries(3000);
+  const Soup room = sphere(Vec3(0.0f), 8.0f, kSoupSide, kSoupSide);
+  TestScene scene;
+  scene.mesh(1, room);
+  std::vector<std::vector<Answer>> seen;
+  for (int frame = 1; frame < 4; ++frame) {
+    TestScene alone;
+    alone.mesh(1, room);
+    const auto snapshot = show_frame(&scene, frame, GetParam());
+    seen.push_back(ask(*snapshot, queries));
+    EXPECT_EQ(seen.back(), ask(*show_frame(&alone, frame, GetParam()), queries)) << "frame " << frame;
+    expect_packets_agree(*snapshot, queries, seen.back());
+  }
+  EXPECT_TRUE(seen[0] != seen[1] && seen[1] != seen[2]) << "the test says something";
+}
+
+constexpr uint32_t kUntold = GRADUS_VISIBLE_ALL;
+
+INSTANTIATE_TEST_SUITE_P(
+    All, AcceleratorHints,
+    testing::Values(Hints{"MovesUntold",
+                          [](TestScene* scene, int frame) { scene->instance(2, translation(Vec3(-3, float(frame), 0)), kUntold); }},
+                    Hints{"DeformsUntold",
+                          [](TestScene* scene, int frame) {
+                            scene->mesh(3, sphere(Vec3(0.0f), 0.5f + 0.25f * float(frame), 20, 20));
+                            scene->instance(3, translation(Vec3(-3, 0, 0)), kUntold);
+                          }},
+                    Hints{"AppearsUntold",
+                          [](TestScene* scene, int frame) {
+                            if (frame > 1) scene->instance(2, translation(Vec3(-3, 0, 0)), kUntold);
+                          }},
+                    Hints{"VanishesUntold",
+                          [](TestScene* scene, int frame) {
+                            if (frame < 3) scene->instance(2, translation(Vec3(-3, 0, 0)), kUntold);
+                          }},
+                    Hints{"IsHiddenUntold",
+                          [](TestScene* scene, int frame) {
+                            scene->instance(2, translation(Vec3(-3, 0, 0)),
+                                            frame == 2 ? kUntold & ~uint32_t(GRADUS_VISIBLE_CAMERA) : kUntold);
+                          }},
+                    Hints{"RestsThoughTold", [](TestScene* scene, int) { scene->instance(2, translation(Vec3(-3, 0, 0)), kTold); }},
+                    Hints{"IsToldNowAndThen",
+                          [](TestScene* scene, int frame) {
+                            scene->instance(2, translation(Vec3(-3, float(frame / 2), 0)), frame == 2 ? kTold : kUntold);
+                          }}),
+    [](const testing::TestParamInfo<Hints>& info) { return std::string(info.param.name); });
 
 TEST(Accelerator, SnapshotsTraceRightAfterTheNextOnes) {
   const Queries queries(5000);
