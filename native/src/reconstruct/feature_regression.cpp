@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
+#include "reconstruct/keep_own_light.h"
 #include "reconstruct/light_around.h"
 #include "reconstruct/regression_error.h"
 #include "reconstruct/solver_planes.h"
@@ -24,9 +26,12 @@ constexpr float kOwnShare = 0.3f;
 // Noise that is not told from none: a share of the light around, and one of the image's median luminance.
 constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
 // A pixel's own value counts by the noise around it and for this share, since the mean of windows is better than its parts; for less where
-// it stands out, and where noise is above a tenth of the light: there both halves may have met the same firefly. kLeastVariance: of what
-// shows none.
+// it stands out, and where noise is above a tenth of the light: there both halves may have met the same firefly, if the pixel is not darker
+// than what is around it. kLeastVariance: of what shows none.
 constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kLeastVariance = 1e-10f;
+// Noise goes with the root of the light, as of photons, down to this share of what noise leaves unknown of the light: below it pixels may
+// be dark by chance.
+constexpr float kDarkByChance = 0.5f;
 // Light around a pixel, by which residuals are measured.
 constexpr int kLightRadius = 3;
 // Around a pixel, where small and large windows are compared, by their share of the light close to it.
@@ -42,11 +47,23 @@ struct PixelWeights {
   Field in_windows, own;
 };
 
+// Changes of light may be 0 between greater ones by chance.
+constexpr float kNotDark = std::numeric_limits<float>::max();
+
+// Of a pixel's own value: 1/variance. Light is its share of the light around; noise, that of the pixels around, in the same unit.
+float weigh_own(float light, float around, float noise, float own_noise) {
+  const float unit = 1.0f / (around + kLeastVariance), brightness = std::min(1.0f, light * unit), relative = noise * unit;
+  const float dark = std::max(brightness, std::min(1.0f, kDarkByChance * relative)), usual = noise * std::sqrt(dark);
+  const float excess = noise > 0.0f ? std::max(1.0f, own_noise / noise) : 1.0f, firefly = brightness * relative / kVisible;
+  const float doubt = excess * excess * (1.0f + firefly * firefly);
+  return kOwnTrust / (usual * usual * doubt * doubt + kLeastVariance);
+}
+
 PixelWeights weigh_pixels(const HalvedImage& image) {
   const int w = image.mean.width(), h = image.mean.height();
   const Field own = make_field(w, h, [&](int x, int y) { return std::sqrt(mean_of_squares(image.half_difference, x, y)); });
-  const Field noise = box_mean(own, kNoiseRadius);
-  const Field light = box_mean(make_field(w, h, [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); }), kNoiseRadius);
+  const Field own_light = make_field(w, h, [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); });
+  const Field noise = box_mean(own, kNoiseRadius), light = box_mean(own_light, kNoiseRadius);
   return {make_field(w, h,
                      [&](int x, int y) {
                        const float around = noise.row(y)[x] + kShareOfLight * light.row(y)[x];
@@ -54,10 +71,7 @@ PixelWeights weigh_pixels(const HalvedImage& image) {
                        return 1.0f / (deviation * deviation);
                      }),
           make_field(w, h, [&](int x, int y) {
-            const float usual = noise.row(y)[x], seen = own.row(y)[x], excess = usual > 0.0f ? std::max(1.0f, seen / usual) : 1.0f;
-            const float relative = usual / (kVisible * light.row(y)[x] + kLeastVariance),
-                        doubt = excess * excess * (1.0f + relative * relative);
-            return kOwnTrust / (usual * usual * doubt * doubt + kLeastVariance);
+            return weigh_own(image.is_light ? own_light.row(y)[x] : kNotDark, light.row(y)[x], noise.row(y)[x], own.row(y)[x]);
           })};
 }
 
@@ -188,6 +202,11 @@ FeatureRegression::FeatureRegression(const Features& features, const HalvedImage
     blend_bias(share_, coarse.bias, &first.bias);
   }
   add_residual(features, image, predictors->weights, &first, cancel);
+  if (image.is_light) {
+    own_ = keep_own_light(image.mean, first.mean);
+    blend_own(own_, image.mean, &first.mean);
+    blend_own(own_, image.half_difference, &first.noise);
+  }
   error_ = regression_error({image.mean, image.half_difference, first.mean, first.noise}, first.bias);
   image_ = std::move(first.mean);
 }
@@ -212,6 +231,7 @@ Field FeatureRegression::apply(const Field& values, const CancelTest& cancel) co
   Field residual = difference(values, result);
   scale_by(kept_, &residual);
   add(of_residual_.apply(residual, cancel), &result);
+  if (own_.channels() > 0) blend_own(own_, values, &result);
   return result;
 }
 

@@ -12,6 +12,7 @@ namespace gradus {
 struct HalvedImage {
   Field mean;
   Field half_difference;  // (A − B)/2; a guess where a half has no samples
+  bool is_light = true;   // not negative; else changes of it
 };
 
 // Brings what was read into that scale, within bounds.
@@ -35,6 +36,7 @@ class FeatureRegression {
   LocalRegression fine_, coarse_, of_residual_;
   Field share_;  // of each pixel that the fine windows have
   Field kept_;   // share of each pixel's residual that is given back: outliers are limited
+  Field own_;    // share of its own sampled value that a pixel has in the end, against black beside highlights; none for changes
   Field image_, error_;
 };
 

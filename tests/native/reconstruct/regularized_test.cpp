@@ -193,6 +193,23 @@ TEST(B2_Regularized, BelievesPixelsByTheirVariance) {
   EXPECT_LT(share, 0.5);
 }
 
+// Gaps between small balls, darker than all around them and with less noise: they were taken to be as noisy as the balls, and got their
+// light, with 128 samples more than twice the error of the samples alone.
+TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
+  const auto is_gap = [](int x, int y) { return x % 3 == 0 && y % 3 == 0; };
+  FeatureFrame description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
+  description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_gap(x, y) ? 0.05f : 1.0f; });
+  description.sigma = [&](size_t i) { return is_gap(int(i % kWidth), int(i / kWidth)) ? 0.02f : 0.25f; };
+  const std::vector<float> image = solve(make_feature_frame(description));
+  double gaps = 0.0;
+  int count = 0;
+  for (int y = 0; y < kHeight; y += 3) {
+    for (int x = 0; x < kWidth; x += 3, ++count) gaps += image[3 * (size_t(y) * kWidth + size_t(x))];
+  }
+  std::printf("  gaps have %.3f of 0.05\n", gaps / count);
+  EXPECT_LT(gaps / count, 0.3);
+}
+
 // One sample in sixteen carries all light: windows take it for outliers, and the first step loses nearly all of it. The second gives
 // most of it back, by the albedo. As one half alone has such samples, all of it may be chance, and the error knows.
 TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
@@ -280,6 +297,19 @@ TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
     std::printf("  seed %u: least %.3f\n", description.seed, least);
     EXPECT_GT(least, 0.02f) << "of 0.2";
   }
+}
+
+// Without differences, too: the planes of windows with a lamp's reflection go below 0 beside it. On a mirror pixels were black whose
+// samples, and those around, were not.
+TEST(B2_Regularized, NoBlackPixelsBesideReflectionsOfLamps) {
+  const auto is_lamp = [](int x, int y) { return (x / 4) % 4 == 0 && (y / 3) % 4 == 0; };
+  FeatureFrame description{kWidth, kHeight, {}, {}, [](int x, int y, int c, int) { return hashed(x, y, c, 0); }};
+  description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_lamp(x, y) ? 50.0f : 0.5f; });
+  description.sigma = [&](size_t i) { return is_lamp(int(i % kWidth), int(i / kWidth)) ? 20.0f : 0.1f; };
+  const std::vector<float> image = solve(make_feature_frame(description));
+  const float least = *std::min_element(image.begin(), image.end());
+  std::printf("  least %.3f of 0.5\n", least);
+  EXPECT_GT(least, 0.05f);
 }
 
 TEST(BadInput_Regularized, ConstantFeatures) {

@@ -65,7 +65,7 @@ Change regress_change(const HalvedWindowSource& source, int t, const Features& f
   Change change{read_links(source, t), Field(size.width, size.height, size.channels), Field(size.width, size.height, 1)};
   const auto values = [&](int y, float* row) { source.read_row(RowKind::kDt, t, y, row); };
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
-  HalvedImage image{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves)};
+  HalvedImage image{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves), false};
   normalise(scale, &image);
   fill_holes(linked_pixels(change.links), &image);
   const FeatureRegression regression(features, image, cancel);
