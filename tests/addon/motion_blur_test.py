@@ -79,6 +79,27 @@ def test_the_camera_moves_and_zooms(blurred: bpy.types.Scene) -> None:
     assert np.allclose(recorded.shutter["windows"][:, 1], [0.5 * (4.0 + 0.4 * t) for t in (4.75, 5.0, 5.25)], atol=1e-4)
 
 
+def cut_to_another_camera(scene: bpy.types.Scene, frame: int) -> None:
+    """By markers, from the scene's own, which looks elsewhere."""
+    first, second = scene.camera, recording.add_camera(type="PERSP", lens=60.0)
+    first.location, first.rotation_euler = (3.0, 0.0, 5.0), (0.0, 0.5, 0.0)
+    for start, camera in ((1, first), (frame, second)):
+        scene.timeline_markers.new(f"cut {start}", frame=start).camera = camera
+    scene.frame_set(frame)
+
+
+def test_a_cut_by_markers_does_not_mix_two_cameras(blurred: bpy.types.Scene) -> None:
+    """The camera was asked for anew at each moment: the first frame of a shot was smeared from the pose of the shot before."""
+    recording.add(recording.grid(1))
+    cut_to_another_camera(blurred, 5)
+    blurred.view_layers[0].use_pass_vector = True
+    recorded = export(blurred, 5)
+    assert recorded.shutter["matrices"] is None, "each camera rests"
+    for name in ("previous", "next"):
+        assert list(getattr(recorded.camera, f"matrix_{name}")) == list(recorded.camera.matrix)
+        assert list(getattr(recorded.camera, f"window_{name}")) == list(recorded.camera.window)
+
+
 def test_a_deforming_mesh_has_positions(blurred: bpy.types.Scene) -> None:
     obj = recording.add(recording.grid(1), "Deforming")
     moving_key_shape(obj, (0, 0, 1), {0: 0.0, 10: 1.0})
@@ -180,6 +201,19 @@ def test_a_square_that_flies_by_leaves_a_trapezium_of_light(blurred: bpy.types.S
     expected = np.clip(1.0 - np.abs(centres) / 2.0, 0.0, 1.0)
     assert np.abs(found - expected).max() < 0.05
     assert np.abs(found - expected).mean() < 0.01
+
+
+@pytest.mark.parametrize("frame", [4, 5])
+def test_pictures_beside_a_cut_by_markers_show_one_camera(frame: int, blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:
+    glowing(recording.add(recording.grid(1)))
+    cut_to_another_camera(blurred, 5)
+    blurred.view_layers[0].use_pass_vector = True
+    found = render(blurred, frame=frame, samples=16, vector_with_motion_blur=True, **EXACT)
+    blurred.render.use_motion_blur = False
+    still = render(blurred, frame=frame, samples=16, **EXACT)
+    assert 0.05 < still["Combined"].mean() < 0.95, "there is an edge that could be smeared"
+    assert np.abs(found["Combined"] - still["Combined"]).mean() < 0.01
+    assert not found["Vector"].any() and not still["Vector"].any()
 
 
 def test_vectors_are_0_under_blur_unless_they_are_asked_for(blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:

@@ -101,6 +101,7 @@ class _Sync:
         self._wanted = wanted
         resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
+        self._camera_object: Any = None  # in the file; markers may bind another one to the scene at other moments
         self._deforming: dict[InstanceKey, _Deforming] = {}
         self._sharp: list[str] = []  # objects that cannot be blurred
 
@@ -137,30 +138,28 @@ class _Sync:
         self._set_instances(collected, mesh_of, moments)
         self._set_camera(now, moments)
 
-    def _camera_object(self) -> Any:
-        found = getattr(self._engine, "camera_override", None) or self._scene.camera
-        if found is None:
-            raise ExportError(f"Scene '{self._scene.name}' has no camera")
-        return found
-
     def _camera(self) -> camera.CameraState:
         if self._view is not None:
             return camera.view_state(self._view)
-        return camera.camera_state(self._camera_object(), self._scene, *self.size, self._engine)
+        found = getattr(self._engine, "camera_override", None) or self._scene.camera
+        if found is None:
+            raise ExportError(f"Scene '{self._scene.name}' has no camera")
+        self._camera_object = found.original
+        return camera.camera_state(found, self._scene, *self.size, self._engine)
 
     def _set_camera(self, now: camera.CameraState, moments: motion.Moments) -> None:
         around = [moments[time].camera for time in motion.AROUND] if self._wanted.vectors else [None, None]
         shutter = self._wanted.shutter
-        keys = motion.camera_blur(self._camera_object(), now, shutter, moments) if shutter is not None else []
+        keys = motion.camera_blur(self._camera_object, now, shutter, moments) if shutter is not None else []
         struct, _keep = camera.fill_camera(now, *around, shutter, keys)
         self._target.set_camera(struct)
 
     def _moments(self, collected: Collected) -> motion.Moments:
         if not self._wanted.any():
             return {}
-        times = self._wanted.times({blur_of(self._camera_object()), *(entry.blur for entry in collected.surfaces)})
+        times = self._wanted.times({blur_of(self._camera_object), *(entry.blur for entry in collected.surfaces)})
         deforming = {key: found.arrays for key, found in self._deforming.items()}
-        return motion.read_moments(self._depsgraph, self._engine, times, deforming, self.size, self._poll)
+        return motion.read_moments(self._depsgraph, self._engine, times, deforming, self._camera_object, self.size, self._poll)
 
     def _add_motion(self, key: InstanceKey, found: _Deforming, moments: motion.Moments) -> None:
         arrays, shutter = found.arrays, self._wanted.shutter

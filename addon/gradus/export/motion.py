@@ -88,22 +88,25 @@ def read_moments(
     engine: Any,
     times: list[float],
     deforming: dict[InstanceKey, MeshArrays],
+    camera: Any,
     size: tuple[int, int],
     poll: Callable[[], None],
 ) -> Moments:
-    """Visits the times in order. deforming: one instance for each mesh that may deform, with its arrays at the rendered frame."""
+    """Visits the times in order. deforming: one instance for each mesh that may deform, with its arrays at the rendered frame.
+
+    camera: the frame's, as it is in the file.
+    """
     moments: Moments = {}
     with other_frames(depsgraph.scene, engine) as step:
         for time in times:
             poll()
             step(time)
-            moments[time] = _read_moment(depsgraph, engine, deforming, size, poll)
+            moments[time] = _read_moment(depsgraph, deforming, poll)
+            moments[time].camera = camera_state(camera.evaluated_get(depsgraph), depsgraph.scene_eval, *size, engine)
     return moments
 
 
-def _read_moment(
-    depsgraph: Any, engine: Any, deforming: dict[InstanceKey, MeshArrays], size: tuple[int, int], poll: Callable[[], None]
-) -> Moment:
+def _read_moment(depsgraph: Any, deforming: dict[InstanceKey, MeshArrays], poll: Callable[[], None]) -> Moment:
     moment = Moment()
     collected = collect(depsgraph, poll)
     for entry in collected.surfaces:
@@ -114,10 +117,6 @@ def _read_moment(
             positions = _same_topology_positions(entry, arrays)
             if positions is not None:
                 moment.positions[entry.key] = positions
-    scene = depsgraph.scene_eval
-    camera = getattr(engine, "camera_override", None) or scene.camera
-    if camera is not None:
-        moment.camera = camera_state(camera, scene, *size, engine)
     return moment
 
 
