@@ -8,7 +8,7 @@ import modes
 from modes import CYCLES, GRADUS, Mode
 
 TEMPORAL = {"use_temporal": True}
-PER_FRAME = ("path", "path-regularized", "gradient-l2", "gradient-weighted", "gradient-l1", "gradient-regularized")
+PER_FRAME = ("path", "path-regularized", "gradient-l2", "gradient-weighted", "gradient-l1", "gradient-regularized", "auto-denoised")
 PEERS = ("cycles", "cycles-denoised")
 
 
@@ -24,6 +24,7 @@ MODES = {
     "temporal-l1": _temporal("Gradus T-GPT + L1", "gradient-l1"),
     "temporal-regularized": _temporal("Gradus T-GPT + REGULARIZED", "gradient-regularized"),
     "temporal-auto": _temporal("Gradus AUTO over windows", "auto"),
+    "temporal-auto-denoised": _temporal("Gradus AUTO over windows + AUTO denoiser", "auto-denoised"),
     **{name: modes.MODES[name] for name in PEERS},
     # As in a new file: all frames have the same noise, which does not flicker where nothing moves.
     "cycles-denoised-still-seed": replace(
@@ -41,4 +42,5 @@ def is_temporal(name: str) -> bool:
 
 def per_frame(name: str) -> str:
     """A temporal mode frame by frame. AUTO takes plain paths and REGULARIZED for stills."""
-    return "path-regularized" if name == "temporal-auto" else name.replace("temporal", "gradient")
+    stills = {"temporal-auto": "path-regularized", "temporal-auto-denoised": "auto-denoised"}
+    return stills.get(name) or name.replace("temporal", "gradient")
