@@ -219,8 +219,8 @@ MOTION = (
         VECTORS,
         "those of meshes, where blur is read, too",
         EXPORTED_MOTION,
-        "found = [moments[time].positions.get(key) for time in AROUND]",
-        "found = [moments[time].positions.get(key) for time in sorted(moments)[:2]]",
+        "found = [moments[time].positions.get(deforming.shape) for time in AROUND]",
+        "found = [moments[time].positions.get(deforming.shape) for time in sorted(moments)[:2]]",
         OF_VECTORS,
     ),
 )

@@ -6,7 +6,6 @@ from __future__ import annotations
 import time
 from array import array
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -18,8 +17,9 @@ from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
 from .may_move import MayMove
 from .mesh import MeshArrays
+from .motion import Deforming, Shape
 from .report import ExportError, ExportReport, Poll, Warnings
-from .shutter import blur_of, shutter_of
+from .shutter import SHARP, blur_of, shutter_of
 from .target import Target
 
 
@@ -73,15 +73,6 @@ class Exporter:
         self._target.set_camera(camera.fill_camera(camera.view_state(view))[0])
 
 
-@dataclass
-class _Deforming:
-    """A mesh whose positions may differ between moments, and the instance that stands for it."""
-
-    place: int
-    arrays: MeshArrays
-    entry: Entry
-
-
 class _Sync:
     """The state of one call of Exporter.sync."""
 
@@ -102,8 +93,7 @@ class _Sync:
         resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
         self._camera_object: Any = None  # in the file; markers may bind another one to the scene at other moments
-        self._deforming: dict[InstanceKey, _Deforming] = {}
-        self._sharp: list[str] = []  # objects that cannot be blurred
+        self._deforming: dict[InstanceKey, Deforming] = {}
 
     def _resolution(self) -> tuple[int, int]:
         if self._view is not None:
@@ -129,12 +119,9 @@ class _Sync:
         self._set_lights(collected)
         mesh_of = self._read_meshes(collected)
         moments = self._moments(collected)
-        for key, found in self._deforming.items():
-            self._add_motion(key, found, moments)
-            mesh_of[found.place] = self._set_mesh(found.arrays)
-        if self._sharp:
-            count, first = len(self._sharp), self._sharp[0]
-            self.warnings.add(f"Topology changes: the deformation of {count} objects is not blurred, the first is '{first}'")
+        for shape, found in {found.shape: found for found in self._deforming.values()}.items():
+            self._add_motion(found, moments)
+            mesh_of[shape] = self._set_mesh(found.arrays)
         self._set_instances(collected, mesh_of, moments)
         self._set_camera(now, moments)
 
@@ -158,44 +145,48 @@ class _Sync:
         if not self._wanted.any():
             return {}
         times = self._wanted.times({blur_of(self._camera_object), *(entry.blur for entry in collected.surfaces)})
-        deforming = {key: found.arrays for key, found in self._deforming.items()}
-        return motion.read_moments(self._depsgraph, self._engine, times, deforming, self._camera_object, self.size, self._poll)
+        return motion.read_moments(self._depsgraph, self._engine, times, self._deforming, self._camera_object, self.size, self._poll)
 
-    def _add_motion(self, key: InstanceKey, found: _Deforming, moments: motion.Moments) -> None:
+    def _add_motion(self, found: Deforming, moments: motion.Moments) -> None:
         arrays, shutter = found.arrays, self._wanted.shutter
         if self._wanted.vectors:
-            arrays.motion = motion.mesh_motion(key, arrays, moments)
+            arrays.motion = motion.mesh_motion(found, moments)
         if shutter is None or arrays.blur is not None:
             return
-        arrays.blur = motion.mesh_blur(key, arrays, found.entry.blur, shutter, moments)
-        if arrays.blur is None and found.entry.blur.deform and motion.changes_topology(key, moments):
-            self._sharp.append(found.entry.name)
+        arrays.blur = motion.mesh_blur(found, shutter, moments)
+        if motion.changes_topology(found, shutter, moments):
+            self.warnings.add(f"Object '{found.name}' changes its topology within the exposure: its deformation is not blurred")
 
     # Meshes
 
-    def _read_meshes(self, collected: Collected) -> dict[int, int]:
-        """Keys by place; those of deforming meshes follow when the frames around have been read."""
-        keys: dict[int, int] = {}
+    def _shape(self, entry: Entry) -> Shape:
+        """What the instances that share a mesh in the picture have in common. Without a shutter, all of the same mesh share it."""
+        return entry.place, entry.blur if self._wanted.shutter is not None else SHARP
+
+    def _read_meshes(self, collected: Collected) -> dict[Shape, int]:
+        """Keys by shape; those of deforming meshes follow when the frames around have been read."""
+        keys: dict[Shape, int] = {}
+        deforming: dict[Shape, Deforming] = {}
         wanted = frozenset(self._materials.attribute_names)
         for entry in collected.surfaces:
-            place = entry.place
-            if place in keys:
-                continue
-            self._poll()
-            keys[place] = 0
-            arrays = self._read_mesh(entry, wanted)
-            if arrays is None:
-                continue
-            if self._wanted.any() and motion.may_deform(entry):
-                self._deforming[entry.key] = _Deforming(place, arrays, entry)
-            else:
-                keys[place] = self._set_mesh(arrays)
+            shape = self._shape(entry)
+            if shape not in keys:
+                self._poll()
+                keys[shape] = 0
+                arrays = self._read_mesh(entry, wanted)
+                if arrays is not None and self._wanted.any() and motion.may_deform(entry):
+                    deforming[shape] = Deforming(shape, arrays, entry.name)
+                elif arrays is not None:
+                    keys[shape] = self._set_mesh(arrays)
+            if shape in deforming:
+                self._deforming[entry.key] = deforming[shape]
         return keys
 
     def _read_mesh(self, entry: Entry, wanted: frozenset[str]) -> MeshArrays | None:
         original = entry.object.original
         undeformed = None
-        if original.type == "MESH" and (original.modifiers or getattr(original.data, "shape_keys", None) is not None):
+        has_shape_keys = getattr(original.data, "shape_keys", None) is not None
+        if original.type == "MESH" and (original.modifiers or has_shape_keys or motion.is_deformed_by_parent(original)):
             undeformed = original.data
         if len(entry.data.polygons) == 0:
             return None
@@ -212,8 +203,9 @@ class _Sync:
             self._target.set_mesh(key, struct)
         return key
 
-    def _set_instances(self, collected: Collected, mesh_of: dict[int, int], moments: motion.Moments) -> None:
-        arrays = instances.instance_arrays(collected, mesh_of, self._ids.key)
+    def _set_instances(self, collected: Collected, mesh_of: dict[Shape, int], moments: motion.Moments) -> None:
+        mesh_keys = [mesh_of[self._shape(entry)] for entry in collected.surfaces]
+        arrays = instances.instance_arrays(collected, mesh_keys, self._ids.key)
         if self._wanted.vectors:
             around = (moments[time] for time in motion.AROUND)
             arrays.previous, arrays.following = (motion.instance_motion(arrays.entries, arrays.matrices, moment) for moment in around)

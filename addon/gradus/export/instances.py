@@ -38,13 +38,13 @@ class InstanceArrays:
     blur: InstanceBlur | None = None
 
 
-def instance_arrays(collected: Collected, mesh_of: dict[int, int], instance_id: Callable[[InstanceKey], int]) -> InstanceArrays:
-    """Arrays of the surfaces whose mesh exists. mesh_of: mesh keys by place, 0 = no mesh."""
-    entries = [entry for entry in collected.surfaces if mesh_of[entry.place]]
+def instance_arrays(collected: Collected, mesh_keys: list[int], instance_id: Callable[[InstanceKey], int]) -> InstanceArrays:
+    """Arrays of the surfaces whose mesh exists. mesh_keys: one for each surface, 0 = no mesh."""
+    entries = [entry for entry, key in zip(collected.surfaces, mesh_keys, strict=True) if key]
     arrays = InstanceArrays(
         entries=entries,
         matrices=_pick(collected.matrices, entries),
-        mesh_keys=array("Q", [mesh_of[entry.place] for entry in entries]),
+        mesh_keys=array("Q", filter(None, mesh_keys)),
         ids=array("Q", [instance_id(entry.key) for entry in entries]),
         materials=array("Q"),
         material_first=array("I"),

@@ -22,12 +22,26 @@ AROUND = (-1.0, 1.0)
 _BECOME_MESHES = frozenset({"CURVE", "SURFACE", "FONT", "META"})
 
 
+Shape = tuple[int, Blur]
+"""A mesh as it is shown in the rendered frame: its place, and how it is blurred."""
+
+
+@dataclass
+class Deforming:
+    """A mesh whose positions may differ between moments. Any of its instances shows it."""
+
+    shape: Shape
+    arrays: MeshArrays  # at the rendered frame
+    name: str  # of the object that it belongs to
+
+
 @dataclass
 class Moment:
     """What moved, at another time."""
 
     matrices: dict[InstanceKey, array] = field(default_factory=dict)
-    positions: dict[InstanceKey, array] = field(default_factory=dict)
+    positions: dict[Shape, array] = field(default_factory=dict)
+    other_topology: set[Shape] = field(default_factory=set)
     camera: CameraState | None = None
 
 
@@ -57,11 +71,16 @@ class Wanted:
 def may_deform(entry: Entry) -> bool:
     """Whether the positions of an instance's mesh may differ between moments."""
     original = entry.object.original
-    if original.type in _BECOME_MESHES:
+    if original.type in _BECOME_MESHES or is_deformed_by_parent(original):
         return True
     if any(modifier.show_render for modifier in original.modifiers):
         return True
     return getattr(original.data, "shape_keys", None) is not None
+
+
+def is_deformed_by_parent(obj: Any) -> bool:
+    """As a modifier of an armature, a lattice or a curve does, which is not among the object's own."""
+    return obj.parent is not None and obj.parent_type in ("ARMATURE", "LATTICE")  # a curve's reads as the first
 
 
 @contextmanager
@@ -87,15 +106,12 @@ def read_moments(
     depsgraph: Any,
     engine: Any,
     times: list[float],
-    deforming: dict[InstanceKey, MeshArrays],
+    deforming: dict[InstanceKey, Deforming],
     camera: Any,
     size: tuple[int, int],
     poll: Callable[[], None],
 ) -> Moments:
-    """Visits the times in order. deforming: one instance for each mesh that may deform, with its arrays at the rendered frame.
-
-    camera: the frame's, as it is in the file.
-    """
+    """Visits the times in order. deforming: by all instances. camera: the frame's, as it is in the file."""
     moments: Moments = {}
     with other_frames(depsgraph.scene, engine) as step:
         for time in times:
@@ -106,17 +122,21 @@ def read_moments(
     return moments
 
 
-def _read_moment(depsgraph: Any, deforming: dict[InstanceKey, MeshArrays], poll: Callable[[], None]) -> Moment:
+def _read_moment(depsgraph: Any, deforming: dict[InstanceKey, Deforming], poll: Callable[[], None]) -> Moment:
     moment = Moment()
     collected = collect(depsgraph, poll)
+    tried: set[tuple[Shape, int]] = set()
     for entry in collected.surfaces:
         moment.matrices[entry.key] = collected.matrices[16 * entry.index : 16 * entry.index + 16]
-        arrays = deforming.get(entry.key)
-        if arrays is not None:
-            poll()
-            positions = _same_topology_positions(entry, arrays)
-            if positions is not None:
-                moment.positions[entry.key] = positions
+        found = deforming.get(entry.key)
+        if found is None or found.shape in moment.positions or (found.shape, entry.place) in tried:
+            continue
+        poll()
+        tried.add((found.shape, entry.place))
+        positions = _same_topology_positions(entry, found.arrays)
+        if positions is not None:
+            moment.positions[found.shape] = positions
+    moment.other_topology = {shape for shape, _ in tried} - moment.positions.keys()
     return moment
 
 
@@ -132,9 +152,10 @@ def _same_topology_positions(entry: Entry, arrays: MeshArrays) -> array | None:
 # ------------------------------------------------------------------------------------------------ for vectors
 
 
-def mesh_motion(key: InstanceKey, arrays: MeshArrays, moments: Moments) -> tuple[array, array] | None:
+def mesh_motion(deforming: Deforming, moments: Moments) -> tuple[array, array] | None:
     """Positions before and after; None for a mesh at rest, or one whose topology changes."""
-    found = [moments[time].positions.get(key) for time in AROUND]
+    arrays = deforming.arrays
+    found = [moments[time].positions.get(deforming.shape) for time in AROUND]
     if all(values is None for values in found):
         return None
     still = arrays.positions.tobytes()
@@ -163,16 +184,20 @@ def _keys(times: list[float], now: Any, at: Callable[[float], Any]) -> list[Any]
     return found
 
 
-def mesh_blur(key: InstanceKey, arrays: MeshArrays, blur: Blur, shutter: Shutter, moments: Moments) -> array | None:
+def mesh_blur(deforming: Deforming, shutter: Shutter, moments: Moments) -> array | None:
     """Positions at the mesh's keys, one after the other; None for a mesh that stands still or whose topology changes."""
+    _, blur = deforming.shape
     if not blur.keys or not blur.deform:
         return None
-    found = _keys(shutter.times(blur.keys), arrays.positions, lambda time: moments[time].positions.get(key))
+    found = _keys(shutter.times(blur.keys), deforming.arrays.positions, lambda time: moments[time].positions.get(deforming.shape))
     return None if found is None else _joined(found)
 
 
-def changes_topology(key: InstanceKey, moments: Moments) -> bool:
-    return any(key in moment.matrices and key not in moment.positions for moment in moments.values())
+def changes_topology(deforming: Deforming, shutter: Shutter, moments: Moments) -> bool:
+    """While the shutter is open, of a mesh that would be blurred."""
+    _, blur = deforming.shape
+    times = shutter.times(blur.keys) if blur.deform else ()
+    return any(deforming.shape in moments[time].other_topology for time in times if time != 0.0)
 
 
 def velocity_blur(mesh: Any, arrays: MeshArrays, blur: Blur, shutter: Shutter, frames_per_second: float) -> array | None:
