@@ -24,7 +24,7 @@ from typing import Any
 
 import bpy
 
-from . import frame_store, native, simulation, store
+from . import compat, frame_store, native, simulation, store
 from .export import Cancelled as ExportCancelled
 from .progress import Display, is_watched, open_result, wait
 from .store import Cancelled
@@ -67,9 +67,15 @@ def _last_without_a_file(render: Any, frame: int, last: int, step: int) -> int:
     if render.use_overwrite or render.is_movie_format:
         return last
     for following in range(frame + step, last + 1, step):
-        if os.path.exists(render.frame_path(frame=following)):
+        if any(map(os.path.exists, _files_of(render, following))):
             return following - step
     return last
+
+
+def _files_of(render: Any, frame: int) -> list[str]:
+    """Those that Blender looks for: one of them is enough for it to leave the frame out."""
+    is_split = render.use_multiview and render.image_settings.views_format == "INDIVIDUAL"
+    return [render.frame_path(frame=frame, view=view) for view in (compat.view_names(render) if is_split else [""])]
 
 
 class Animation:

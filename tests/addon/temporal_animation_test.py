@@ -351,6 +351,19 @@ def test_files_that_are_there_split_the_animation(moving: bpy.types.Scene, expor
     assert (tmp_path / "f_0004.exr").read_bytes() == b"mine"
 
 
+def test_files_of_several_views_split_the_animation(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:
+    """They were looked for without the view's suffix: frames that are there were sampled for their neighbours. The file of one view is
+    enough for Blender to leave a frame out."""
+    moving.render.use_multiview, moving.render.use_overwrite = True, False
+    images.use_exr(moving, tmp_path / "f_####")
+    moving.render.use_file_extension, moving.render.image_settings.views_format = True, "INDIVIDUAL"
+    (tmp_path / "f_0004_R.exr").write_bytes(b"mine")
+    moving.frame_end = 6
+    bpy.ops.render.render(animation=True, scene=moving.name)
+    assert exports.frames() == [frame for frame in (1, 2, 3, 5, 6) for _ in range(2)]
+    assert sorted(path.name for path in tmp_path.glob("*_L.exr")) == [f"f_{frame:04d}_L.exr" for frame in (1, 2, 3, 5, 6)]
+
+
 def test_frames_that_processes_share_by_placeholders_are_on_their_own(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
     moving.render.use_overwrite, moving.render.use_placeholder = False, True
     moving.frame_end = 3
