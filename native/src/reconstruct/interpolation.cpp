@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-float quotient(float a, float b) { return b > 0.0f ? a / b : 0.0f; }
+float quotient(float a, float b) { return a * inverse_or_zero(b); }
 
 // Coarse pixels at a time in coarsen().
 constexpr int kBlock = 64;
@@ -42,15 +42,15 @@ struct Row {
 
 }  // namespace
 
-Interpolation::Interpolation(int width, int height)
-    : from_left_((width + 1) / 2, (height + 1) / 2, 1), from_right_(from_left_), from_below_(from_left_), from_above_(from_left_) {
-  for (auto& row : corner_) {
-    for (Field& field : row) field = from_left_;
-  }
+Interpolation::Interpolation(int width, int height) : corner_{{{Field((width + 1) / 2, (height + 1) / 2, 1)}}} {
+  corner_[0][1] = corner_[1][0] = corner_[1][1] = corner_[0][0];
 }
 
 void Interpolation::update(const Stencil& fine) {
   const int w = fine.width(), h = fine.height();
+  if (from_left_.width() == 0) {
+    for (Field* edges : {&from_left_, &from_right_, &from_below_, &from_above_}) *edges = Field((w + 1) / 2, (h + 1) / 2, 1);
+  }
   for_rows((h + 1) / 2, [&](int y) {
     const Row even(fine, 2 * y);
     float *left = from_left_.row(y), *right = from_right_.row(y);
@@ -165,11 +165,35 @@ void Interpolation::restrict_rows(int y, const float* below, const float* here, 
   const ptrdiff_t w = from_left_.width();
   const float *left = from_left_.row(y), *right = from_right_.row(y), *up = from_below_.row(y), *down = from_above_.row(y - 1);
   const float *c00 = corner_[0][0].row(y), *c01 = corner_[0][1].row(y), *c10 = corner_[1][0].row(y - 1), *c11 = corner_[1][1].row(y - 1);
+#pragma GCC ivdep
   for (ptrdiff_t x = 0; x < w; ++x) {
     out[x] = here[2 * x] + left[x] * here[2 * x + 1] + right[x - 1] * here[2 * x - 1]            //
              + up[x] * above[2 * x] + c00[x] * above[2 * x + 1] + c01[x - 1] * above[2 * x - 1]  //
              + down[x] * below[2 * x] + c10[x] * below[2 * x + 1] + c11[x - 1] * below[2 * x - 1];
   }
+}
+
+void Interpolation::add_to_red_row(int y, const float* lower, const float* upper, float* red) const {
+  const ptrdiff_t w = corner_[0][0].width();
+  if (y % 2 == 0) {
+    for (ptrdiff_t x = 0; x < w; ++x) red[x] += lower[x];
+    return;
+  }
+  const float *c00 = corner_[0][0].row(y / 2), *c01 = corner_[0][1].row(y / 2), *c10 = corner_[1][0].row(y / 2),
+              *c11 = corner_[1][1].row(y / 2);
+  for (ptrdiff_t x = 0; x < w; ++x) red[x] += c00[x] * lower[x] + c01[x] * lower[x + 1] + c10[x] * upper[x] + c11[x] * upper[x + 1];
+}
+
+void Interpolation::restrict_red_rows(int y, const float* below, const float* here, const float* above, float* out) const {
+  const ptrdiff_t w = corner_[0][0].width();
+  const float *c00 = corner_[0][0].row(y), *c01 = corner_[0][1].row(y), *c10 = corner_[1][0].row(y - 1), *c11 = corner_[1][1].row(y - 1);
+  for (ptrdiff_t x = 0; x < w; ++x) {
+    out[x] = here[x] + c00[x] * above[x] + c01[x - 1] * above[x - 1] + c10[x] * below[x] + c11[x - 1] * below[x - 1];
+  }
+}
+
+void Interpolation::keep_red() {
+  for (Field* edges : {&from_left_, &from_right_, &from_below_, &from_above_}) *edges = Field();
 }
 
 }  // namespace gradus

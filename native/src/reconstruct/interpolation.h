@@ -26,6 +26,13 @@ class Interpolation {
   // Coarse row y of Pᵀ r, from the fine rows 2y - 1, 2y, 2y + 1.
   void restrict_rows(int y, const float* below, const float* here, const float* above, float* out) const;
 
+  // The same for pixels with x + y even, of which there are every second in a row, side by side. Adds to them.
+  void add_to_red_row(int y, const float* lower, const float* upper, float* red) const;
+  // Of residuals that are 0 elsewhere.
+  void restrict_red_rows(int y, const float* below, const float* here, const float* above, float* out) const;
+  // Gives the rest back: from here on, red pixels are all that is asked for.
+  void keep_red();
+
  private:
   // Weights of coarse row y, from pixel x on, for the 3×3 fine pixels around each: columns of P. Row y - 1 of them is beyond the border
   // for y = 0 and 0 there, as all beyond it is.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "reconstruct/red_black.h"
+
 namespace gradus {
 namespace {
 
@@ -11,91 +13,96 @@ constexpr int kCoarsestSweeps = 8;
 // Rows at a time: the passes below make some rows around each piece once more.
 constexpr int kGrain = 64;
 
-// x = S b: what one sweep makes of 0. Rows beyond the grid are 0. s: scratch.
-void smooth_zero(const Stencil& a, const Field& b, int y, float* s, RollingRows* x) {
-  if (y >= 0 && y < a.height()) read_smoothing(a, y, s);
-  for (int c = 0; c < b.channels(); ++c) {
-    float* to = x->row(y, c);
-    if (y < 0 || y >= a.height()) {
-      std::fill_n(to, a.width(), 0.0f);
-      continue;
+// to = x + S(b - A x), make(y, &rows) making row y of x.
+template <class Make>
+void sweep(const Stencil& a, const Field& b, const Make& make, Field* to) {
+  const int w = a.width(), h = a.height(), channels = b.channels();
+  for_pieces(
+      h,
+      [&](int begin, int end) {
+        RollingRows x(w, channels);
+        std::vector<float> smoothing(static_cast<size_t>(w));
+        const auto make_or_clear = [&](int y) {
+          if (y >= 0 && y < h) return make(y, &x);
+          for (int c = 0; c < channels; ++c) std::fill_n(x.row(y, c), w, 0.0f);
+        };
+        make_or_clear(begin - 1);
+        make_or_clear(begin);
+        for (int y = begin; y < end; ++y) {
+          make_or_clear(y + 1);
+          read_smoothing(a, y, smoothing.data());
+          for (int c = 0; c < channels; ++c) {
+            const float *s = smoothing.data(), *from = b.row(y, c), *here = x.row(y, c);
+            float* out = to->row(y, c);
+            apply_row(a, y, x.row(y - 1, c), here, x.row(y + 1, c), out);
+            for (int i = 0; i < w; ++i) out[i] = here[i] + s[i] * (from[i] - out[i]);
+          }
+        }
+      },
+      kGrain);
+}
+
+// Two sweeps from 0.
+void sweep_twice(const Stencil& a, const Field& b, Field* to) {
+  const auto sweep_zero = [&](int y, RollingRows* x) {
+    std::vector<float> smoothing(static_cast<size_t>(a.width()));
+    read_smoothing(a, y, smoothing.data());
+    for (int c = 0; c < b.channels(); ++c) {
+      const float *s = smoothing.data(), *from = b.row(y, c);
+      float* out = x->row(y, c);
+      for (int i = 0; i < a.width(); ++i) out[i] = s[i] * from[i];
     }
-    const float* from = b.row(y, c);
-    for (int i = 0; i < a.width(); ++i) to[i] = s[i] * from[i];
-  }
+  };
+  sweep(a, b, sweep_zero, to);
 }
 
-// b - A x of a row
-void subtract_product(const Stencil& a, const Field& b, int y, int c, RollingRows* x, float* out) {
-  apply_row(a, y, x->row(y - 1, c), x->row(y, c), x->row(y + 1, c), out);
-  const float* from = b.row(y, c);
-  for (int i = 0; i < a.width(); ++i) out[i] = from[i] - out[i];
+// Two sweeps from x + P coarse, which overwrite x.
+void sweep_interpolated_twice(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* x, Field* to) {
+  const auto interpolate = [&](int y, RollingRows* rows) {
+    std::vector<float> correction(size_t(a.width()) + 1);
+    for (int c = 0; c < b.channels(); ++c) {
+      p.interpolate_row(y, coarse.row(y / 2, c), coarse.row(y / 2 + 1, c), correction.data());
+      const float *from = x->row(y, c), *more = correction.data();
+      float* out = rows->row(y, c);
+      for (int i = 0; i < a.width(); ++i) out[i] = from[i] + more[i];
+    }
+  };
+  const auto copy = [&](int y, RollingRows* rows) {
+    for (int c = 0; c < b.channels(); ++c) std::copy_n(to->row(y, c), a.width(), rows->row(y, c));
+  };
+  sweep(a, b, interpolate, to);
+  sweep(a, b, copy, x);
+  std::swap(*x, *to);
 }
 
-// coarse = Pᵀ(b - A S b)
-void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b, Field* coarse) {
+// coarse = Pᵀ(b - A x)
+void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b, const Field& x, Field* coarse) {
   for_pieces(
       coarse->height(),
       [&](int begin, int end) {
-        RollingRows x(a.width(), b.channels()), residual(a.width(), b.channels());
-        std::vector<float> s(static_cast<size_t>(a.width()));
-        const auto add_row = [&](int y) {
-          smooth_zero(a, b, y + 1, s.data(), &x);
+        RollingRows residual(a.width(), b.channels());
+        const auto make = [&](int y) {
           for (int c = 0; c < b.channels(); ++c) {
             float* to = residual.row(y, c);
             if (y < 0 || y >= a.height()) {
               std::fill_n(to, a.width(), 0.0f);
-            } else {
-              subtract_product(a, b, y, c, &x, to);
+              continue;
             }
+            apply_row(a, x, y, c, to);
+            const float* from = b.row(y, c);
+            for (int i = 0; i < a.width(); ++i) to[i] = from[i] - to[i];
           }
         };
-        smooth_zero(a, b, 2 * begin - 2, s.data(), &x);
-        smooth_zero(a, b, 2 * begin - 1, s.data(), &x);
-        add_row(2 * begin - 1);
+        make(2 * begin - 1);
         for (int y = begin; y < end; ++y) {
-          add_row(2 * y);
-          add_row(2 * y + 1);
+          make(2 * y);
+          make(2 * y + 1);
           for (int c = 0; c < b.channels(); ++c) {
             p.restrict_rows(y, residual.row(2 * y - 1, c), residual.row(2 * y, c), residual.row(2 * y + 1, c), coarse->row(y, c));
           }
         }
       },
       kGrain / 2);
-}
-
-// Makes the rows of x + S(b - A x) with x = S b + P coarse: take(y, channel, row).
-template <class Take>
-void interpolate_and_smooth(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, const Take& take) {
-  const int w = a.width();
-  for_pieces(
-      a.height(),
-      [&](int begin, int end) {
-        RollingRows x(w, b.channels());
-        std::vector<float> correction(size_t(w) + 1), s(static_cast<size_t>(w)), row(s);
-        const auto add_row = [&](int y) {
-          smooth_zero(a, b, y, s.data(), &x);
-          if (y < 0 || y >= a.height()) return;
-          for (int c = 0; c < b.channels(); ++c) {
-            p.interpolate_row(y, coarse.row(y / 2, c), coarse.row(y / 2 + 1, c), correction.data());
-            float* to = x.row(y, c);
-            for (int i = 0; i < w; ++i) to[i] += correction[i];
-          }
-        };
-        add_row(begin - 1);
-        add_row(begin);
-        for (int y = begin; y < end; ++y) {
-          add_row(y + 1);
-          read_smoothing(a, y, s.data());
-          for (int c = 0; c < b.channels(); ++c) {
-            subtract_product(a, b, y, c, &x, row.data());
-            const float* here = x.row(y, c);
-            for (int i = 0; i < w; ++i) row[size_t(i)] = here[i] + s[size_t(i)] * row[size_t(i)];
-            take(y, c, row.data());
-          }
-        }
-      },
-      kGrain);
 }
 
 // Sweeps of Jacobi from 0.
@@ -122,7 +129,8 @@ MultigridWork::MultigridWork(int width, int height, int channels) {
   levels_.emplace_back();
   while (std::max(width, height) > kCoarsestSide) {
     width = (width + 1) / 2, height = (height + 1) / 2;
-    levels_.push_back({Field(width, height, channels), Field(width, height, channels)});
+    Level& level = levels_.emplace_back();
+    level.b = level.z = level.swept = Field(width, height, channels);
   }
 }
 
@@ -140,38 +148,27 @@ void Multigrid::update() {
     levels_[i].interpolation.update(levels_[i].matrix);
     levels_[i].interpolation.coarsen(levels_[i].matrix, &levels_[i + 1].matrix);
   }
+  levels_.front().interpolation.keep_red();
 }
 
-const Field& Multigrid::coarse_solution(size_t level, const Field& b) {
-  MultigridWork::Level& next = work_->levels_[level + 1];
-  restrict_residual(levels_[level].matrix, levels_[level].interpolation, b, &next.b);
-  cycle(level + 1, next.b, &next.z);
-  return next.z;
-}
-
-RowSums Multigrid::cycle(size_t level, const Field& b, Field* z) {
+const Field& Multigrid::solve_coarse(size_t level) {
   const Level& here = levels_[level];
-  if (level + 1 == levels_.size()) return solve_coarsest(here.matrix, b, z);
-  RowSums sums(b.height(), b.channels());
-  interpolate_and_smooth(here.matrix, here.interpolation, b, coarse_solution(level, b), [&](int y, int c, const float* row) {
-    std::copy_n(row, b.width(), z->row(y, c));
-    sums.at(y, c) = dot_row(row, b.row(y, c), b.width());
-  });
-  return sums;
+  MultigridWork::Level& work = work_->levels_[level];
+  if (level + 1 == levels_.size()) {
+    solve_coarsest(here.matrix, work.b, &work.z);
+    return work.z;
+  }
+  sweep_twice(here.matrix, work.b, &work.swept);
+  restrict_residual(here.matrix, here.interpolation, work.b, work.swept, &work_->levels_[level + 1].b);
+  sweep_interpolated_twice(here.matrix, here.interpolation, work.b, solve_coarse(level + 1), &work.swept, &work.z);
+  return work.z;
 }
 
-void Multigrid::add_cycle(const Field& b, Field* z) {
+RowSums Multigrid::cycle(const Field& b, Field* z) {
   const Level& here = levels_.front();
-  const auto add = [&](int y, int c, const float* row) {
-    float* to = z->row(y, c);
-    for (int i = 0; i < b.width(); ++i) to[i] += row[i];
-  };
-  if (levels_.size() > 1) return interpolate_and_smooth(here.matrix, here.interpolation, b, coarse_solution(0, b), add);
-  Field more(b.width(), b.height(), b.channels());
-  solve_coarsest(here.matrix, b, &more);
-  for (int c = 0; c < b.channels(); ++c) {
-    for (int y = 0; y < b.height(); ++y) add(y, c, more.row(y, c));
-  }
+  if (levels_.size() == 1) return solve_coarsest(here.matrix, b, z);
+  restrict_after_sweep(here.matrix, here.interpolation, b, &work_->levels_[1].b);
+  return sweep_interpolated(here.matrix, here.interpolation, b, solve_coarse(1), z);
 }
 
 }  // namespace gradus

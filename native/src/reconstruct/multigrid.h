@@ -1,4 +1,5 @@
-// One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Damped Jacobi once before and once after, black-box interpolation.
+// One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Red-black Gauss-Seidel on the finest grid (red_black.h), damped Jacobi twice before
+// and twice after on the coarse ones, black-box interpolation.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@ class MultigridWork {
  private:
   friend class Multigrid;
   struct Level {
-    Field b, z;
+    Field b, z, swept;
   };
   std::vector<Level> levels_;  // the first is empty: its fields are the caller's
 };
@@ -33,18 +34,15 @@ class Multigrid {
   void update();
   // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two threads at once, nor
   // for two multigrids that share their work space.
-  RowSums cycle(const Field& b, Field* z) { return cycle(0, b, z); }
-  // z += what cycle() makes of b.
-  void add_cycle(const Field& b, Field* z);
+  RowSums cycle(const Field& b, Field* z);
 
  private:
   struct Level {
     Stencil matrix;
     Interpolation interpolation;  // from the next one
   };
-  RowSums cycle(size_t level, const Field& b, Field* z);
-  // What the grids below a level make of b.
-  const Field& coarse_solution(size_t level, const Field& b);
+  // What a coarse grid and those below make of its right side, → its z.
+  const Field& solve_coarse(size_t level);
   std::vector<Level> levels_;
   std::shared_ptr<MultigridWork> work_;
 };

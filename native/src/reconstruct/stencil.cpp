@@ -17,20 +17,25 @@ Stencil::Stencil(int width, int height, bool with_corners)
 
 void read_smoothing(const Stencil& a, int y, float* out) {
   const float* d = a.diagonal.row(y);
-  for (int x = 0; x < a.width(); ++x) out[x] = d[x] > 0.0f ? kDamping / d[x] : 0.0f;
+  for (int x = 0; x < a.width(); ++x) out[x] = kDamping * inverse_or_zero(d[x]);
 }
 
 void apply_row(const Stencil& a, int y, const float* below, const float* here, const float* above, float* out) {
   const int w = a.width();
   const float *diagonal = a.diagonal.row(y), *right = a.right.row(y), *up = a.up.row(y), *down = a.up.row(y - 1);
-  for (int i = 0; i < w; ++i) {
-    out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] - down[i] * below[i];
+  if (!a.corners) {
+    for (int i = 0; i < w; ++i) {
+      out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] - down[i] * below[i];
+    }
+    return;
   }
-  if (!a.corners) return;
   const float *up_right = a.up_right.row(y), *up_left = a.up_left.row(y), *down_left = a.up_right.row(y - 1),
               *down_right = a.up_left.row(y - 1);
+  // More rows than compilers compare with each other: none of them is `out`.
+#pragma GCC ivdep
   for (int i = 0; i < w; ++i) {
-    out[i] -= up_right[i] * above[i + 1] + up_left[i] * above[i - 1] + down_left[i - 1] * below[i - 1] + down_right[i + 1] * below[i + 1];
+    out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] - down[i] * below[i] -
+             up_right[i] * above[i + 1] - up_left[i] * above[i - 1] - down_left[i - 1] * below[i - 1] - down_right[i + 1] * below[i + 1];
   }
 }
 

@@ -1,6 +1,9 @@
 // A symmetric matrix on a grid that couples each pixel with its eight neighbours at most.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "reconstruct/field.h"
 
 namespace gradus {
@@ -16,6 +19,12 @@ struct Stencil {
   Field up_right, up_left;  // minus those for (x + 1, y + 1) and (x - 1, y + 1); empty without corners
   bool corners = false;
 };
+
+// 1/d; 0 where d is not positive, as of a pixel that nothing holds. Without a branch, so that loops of it take vectors.
+inline float inverse_or_zero(float d) {
+  constexpr float kLeast = std::numeric_limits<float>::min();
+  return std::clamp(d / kLeast, 0.0f, 1.0f) / std::max(d, kLeast);
+}
 
 // Damped Jacobi of row y: damping / diagonal.
 void read_smoothing(const Stencil& a, int y, float* out);

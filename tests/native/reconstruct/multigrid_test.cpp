@@ -96,6 +96,44 @@ TEST(B2_Multigrid, CoarseMatrixIsTheFineOneBetweenInterpolations) {
   }
 }
 
+// Of each row the pixels with x + y even, side by side.
+std::vector<float> red_of(const Field& field, int y) {
+  std::vector<float> red;
+  for (int x = y & 1; x < field.width() + (y & 1); x += 2) red.push_back(y >= 0 && y < field.height() ? field.row(y)[x] : 0.0f);
+  return red;
+}
+
+TEST(B2_Multigrid, RedPixelsAreThoseOfTheWholeGrid) {
+  for (const auto& [w, h] : kSizes) {
+    Stencil fine(w, h, false);
+    fill(&fine);
+    Interpolation p(w, h);
+    p.update(fine);
+    const int cw = (w + 1) / 2, ch = (h + 1) / 2;
+    const Field coarse = random_field(cw, ch, 1, 2), whole = interpolated(p, coarse, w, h);
+    Field residual = random_field(w, h, 1, 3);
+    for (int y = 0; y < h; ++y) {
+      for (int x = 1 - (y & 1); x < w; x += 2) residual.row(y)[x] = 0.0f;
+    }
+    const Field expected = restricted(p, residual);
+    p.keep_red();
+    for (int y = 0; y < h; ++y) {
+      std::vector<float> red(static_cast<size_t>(cw), 0.0f);
+      p.add_to_red_row(y, coarse.row(y / 2), coarse.row(y / 2 + 1), red.data());
+      const std::vector<float> there = red_of(whole, y);
+      for (int i = 0; i < w / 2; ++i) EXPECT_NEAR(red[size_t(i)], there[size_t(i)], 1e-6) << w << "x" << h;
+    }
+    for (int y = 0; y < ch; ++y) {
+      std::vector<float> out(static_cast<size_t>(cw)), below{0.0f}, above{0.0f};
+      const std::vector<float> under = red_of(residual, 2 * y - 1), here = red_of(residual, 2 * y), over = red_of(residual, 2 * y + 1);
+      below.insert(below.end(), under.begin(), under.end());  // readable one pixel to the left
+      above.insert(above.end(), over.begin(), over.end());
+      p.restrict_red_rows(y, below.data() + 1, here.data(), above.data() + 1, out.data());
+      for (int x = 0; x < cw; ++x) EXPECT_NEAR(out[size_t(x)], expected.row(y)[x], 1e-5) << w << "x" << h;
+    }
+  }
+}
+
 TEST(B2_Multigrid, CycleIsSymmetricAndPositive) {
   for (const auto& [w, h] : kSizes) {
     Multigrid multigrid(w, h, 1);

@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-float parallel_sum(float a, float b) { return a > 0.0f && b > 0.0f ? a * b / (a + b) : 0.0f; }
+float parallel_sum(float a, float b) { return a * inverse_or_zero(a + b) * b; }
 
 // Until it is finished, a frame's matrix has screens in the place of its diagonal.
 void clear(Stencil* matrix) {
@@ -67,19 +67,34 @@ void copy(const Field& from, Field* to) {
   });
 }
 
+// Θ between what S⁻¹K makes of values that are smooth, of which S and K see the screens alone, and of such that are rough, of which they
+// see the diagonals. Cycles find what is rough the better.
+constexpr float kSmooth = 0.75f;
+
 // Θ, near S⁻¹K: what of the next frame's values a frame takes over before its cycle.
-void read_guess(const Stencil& s, const LaplacianRow& k, int y, float* out) {
-  const float *all = s.diagonal.row(y), *right = k.right();
-  for (int x = 0; x < s.width(); ++x) {
-    const float of_links = k.screen()[x] + right[x] + right[x - 1] + k.up()[x] + k.down()[x];
-    out[x] = all[x] > 0.0f ? of_links / all[x] : 0.0f;
-  }
+WeightPlane guess(const Stencil& s, const ScreenedLaplacian& coupling) {
+  WeightPlane plane(s.width(), s.height());
+  for_pieces(s.height(), [&](int begin, int end) {
+    LaplacianRow k(s.width());
+    std::vector<float> row(size_t(s.width()));
+    for (int y = begin; y < end; ++y) {
+      k.load(coupling, y);
+      const float *all = s.diagonal.row(y), *right = s.right.row(y), *up = s.up.row(y), *down = s.up.row(y - 1);
+      for (int x = 0; x < s.width(); ++x) {
+        const float k_all = k.screen()[x] + k.right()[x] + k.right()[x - 1] + k.up()[x] + k.down()[x];
+        const float screen = std::max(all[x] - right[x] - right[x - 1] - up[x] - down[x], k.screen()[x]);
+        row[size_t(x)] = kSmooth * k.screen()[x] * inverse_or_zero(screen) + (1.0f - kSmooth) * k_all * inverse_or_zero(all[x]);
+      }
+      plane.write_row(y, row.data());
+    }
+  });
+  return plane;
 }
 
 }  // namespace
 
-TimeLadder::TimeLadder(const SpaceTimeSystem& system, int channels, int cycles)
-    : system_(system), solved_(system.width(), system.height(), channels), cycles_(cycles) {
+TimeLadder::TimeLadder(const SpaceTimeSystem& system, int channels)
+    : system_(system), guesses_(size_t(system.frames()) - 1), solved_(system.width(), system.height(), channels) {
   const auto work = std::make_shared<MultigridWork>(system.width(), system.height(), channels);
   for (int t = 0; t < system.frames(); ++t) schur_.emplace_back(system.width(), system.height(), work);
 }
@@ -94,27 +109,9 @@ void TimeLadder::update() {
       add(system_.coupling(int(t)), &matrix);
     }
     add_edges_to_diagonal(&matrix);
+    if (t + 1 < schur_.size()) guesses_[t] = guess(matrix, system_.coupling(int(t)));
     schur_[t].update();
   }
-}
-
-void TimeLadder::solve_frame(size_t t, const Field& b, Field* residual) {
-  schur_[t].cycle(b, &solved_);
-  if (cycles_ == 1) return;
-  const Stencil& s = schur_[t].matrix();
-  const int w = b.width(), channels = b.channels();
-  for_pieces(b.height(), [&](int begin, int end) {
-    std::vector<float> product(static_cast<size_t>(w));
-    for (int y = begin; y < end; ++y) {
-      for (int c = 0; c < channels; ++c) {
-        apply_row(s, solved_, y, c, product.data());
-        const float* from = b.row(y, c);
-        float* to = residual->row(y, c);
-        for (int x = 0; x < w; ++x) to[x] = from[x] - product[size_t(x)];
-      }
-    }
-  });
-  schur_[t].add_cycle(*residual, &solved_);
 }
 
 // next += Fᵀ (K z + Θ (b − S z)), z the frame's solution for the right side b.
@@ -127,7 +124,7 @@ void TimeLadder::carry_forth(int t, const Field& b, const Field& z, Field* next)
     std::vector<float> carried(size_t(w) * size_t(channels)), guess(static_cast<size_t>(w)), product(guess);
     for (int y = begin; y < end; ++y) {
       weights.load(k, y);
-      read_guess(s, weights, y, guess.data());
+      guesses_[size_t(t)].read_row(y, guess.data());
       for (int c = 0; c < channels; ++c) {
         float* to = carried.data() + ptrdiff_t(c) * w;
         const float* from = b.row(y, c);
@@ -148,12 +145,11 @@ struct CarriedBack {
     for (int c = 0; c < next.channels(); ++c) std::fill_n(values.row(y, c), s.width(), 0.0f);
     if (y >= 0 && y < s.height()) {
       gather_row(links, y, next, &values);
-      weights.load(k, y);
-      read_guess(s, weights, y, guess.data());
+      guesses.read_row(y, guess.data());
     }
     for (int c = 0; c < next.channels(); ++c) {
       const float* from = values.row(y, c);
-      float* to = guesses.row(y, c);
+      float* to = guessed.row(y, c);
       for (int x = 0; x < s.width(); ++x) to[x] = guess[size_t(x)] * from[x];
     }
   }
@@ -161,17 +157,18 @@ struct CarriedBack {
     weights.load(k, y);
     for (int c = 0; c < next.channels(); ++c) {
       weights.apply(values.row(y - 1, c), values.row(y, c), values.row(y + 1, c), product.data());
-      apply_row(s, y, guesses.row(y - 1, c), guesses.row(y, c), guesses.row(y + 1, c), of_guess.data());
+      apply_row(s, y, guessed.row(y - 1, c), guessed.row(y, c), guessed.row(y + 1, c), of_guess.data());
       float* to = b->row(y, c);
       for (int x = 0; x < s.width(); ++x) to[x] += product[size_t(x)] - of_guess[size_t(x)];
     }
   }
   const ScreenedLaplacian& k;
   const Stencil& s;
+  const WeightPlane& guesses;
   const Links& links;
   const Field& next;
   Field* b;
-  RollingRows values{s.width(), next.channels()}, guesses{s.width(), next.channels()};
+  RollingRows values{s.width(), next.channels()}, guessed{s.width(), next.channels()};
   LaplacianRow weights{s.width()};
   std::vector<float> guess = std::vector<float>(size_t(s.width())), product = guess, of_guess = guess;
 };
@@ -181,18 +178,15 @@ struct CarriedBack {
 // The transpose, but for what is added after the cycle.
 void TimeLadder::carry_back(int t, const Field& next, Field* b) const {
   const Stencil& s = schur_[size_t(t)].matrix();
-  roll_over_rows(s.height(), [&] { return CarriedBack{system_.coupling(t), s, system_.links(t), next, b}; });
+  roll_over_rows(s.height(), [&] { return CarriedBack{system_.coupling(t), s, guesses_[size_t(t)], system_.links(t), next, b}; });
 }
 
 // z += Θ F next
 void TimeLadder::add_guess(int t, const Field& next, Field* z) const {
-  const Stencil& s = schur_[size_t(t)].matrix();
-  for_pieces(s.height(), [&](int begin, int end) {
-    LaplacianRow weights(s.width());
-    std::vector<float> guess(size_t(s.width()));
+  for_pieces(z->height(), [&](int begin, int end) {
+    std::vector<float> guess(size_t(z->width()));
     for (int y = begin; y < end; ++y) {
-      weights.load(system_.coupling(t), y);
-      read_guess(s, weights, y, guess.data());
+      guesses_[size_t(t)].read_row(y, guess.data());
       system_.links(t).for_runs(y, [&](int first, int last, int dx, int dy) {
         for (int c = 0; c < z->channels(); ++c) {
           const float* from = next.row(y + dy, c) + dx;
@@ -208,12 +202,11 @@ std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
   const int channels = solved_.channels();
   const size_t last = schur_.size() - 1;
   // z holds the right sides of the frames, to which the frame before adds its share on the way forth, and the frame behind on the way back.
-  // On the way forth the next frame's place is still free; at the end of it, and on the way back, the right side is not needed again.
   for (size_t t = 0; t <= last; ++t) {
     Field& right_side = (*z)[t];
     copy(r[t], &right_side);
     if (t > 0) carry_forth(int(t) - 1, (*z)[t - 1], solved_, &right_side);
-    solve_frame(t, right_side, t < last ? &(*z)[t + 1] : &right_side);
+    schur_[t].cycle(right_side, &solved_);
   }
   std::vector<RowSums> sums;
   for (size_t t = last;; --t) {
@@ -223,7 +216,7 @@ std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
                                 [&](int y, int c) { return dot_row(r[t].row(y, c), solution.row(y, c), system_.width()); }));
     if (t == 0) return sums;
     carry_back(int(t) - 1, solution, &(*z)[t - 1]);
-    solve_frame(t - 1, (*z)[t - 1], &(*z)[t - 1]);
+    schur_[t - 1].cycle((*z)[t - 1], &solved_);
     add_guess(int(t) - 1, solution, &solved_);
   }
 }

@@ -20,25 +20,21 @@ namespace gradus {
 
 class TimeLadder {
  public:
-  // cycles: of multigrid for each S⁻¹, 1 or 2. Equal weights need no second one. Where weights span decades it halves the steps, at less
-  // than twice the time.
-  TimeLadder(const SpaceTimeSystem& system, int channels, int cycles);
+  TimeLadder(const SpaceTimeSystem& system, int channels);
   // After the system's weights have changed.
   void update();
   // z ≈ A⁻¹ r; returns r·z by frame. Symmetric and positive definite.
   std::vector<RowSums> apply(const Frames& r, Frames* z);
 
  private:
-  // → solved_. residual: scratch, which may be b.
-  void solve_frame(size_t t, const Field& b, Field* residual);
   void carry_forth(int t, const Field& b, const Field& z, Field* next) const;
   void carry_back(int t, const Field& next, Field* b) const;
   void add_guess(int t, const Field& next, Field* z) const;
 
   const SpaceTimeSystem& system_;
-  std::vector<Multigrid> schur_;  // of B_t + K_t, B_t with what earlier frames leave
-  Field solved_;                  // of one frame
-  int cycles_;
+  std::vector<Multigrid> schur_;      // of B_t + K_t, B_t with what earlier frames leave
+  std::vector<WeightPlane> guesses_;  // Θ
+  Field solved_;                      // of one frame
 };
 
 }  // namespace gradus

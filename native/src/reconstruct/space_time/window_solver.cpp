@@ -16,8 +16,8 @@ namespace {
 constexpr CgGoal kExact{.residual = 1e-5f};
 constexpr int kMostSteps = 100;
 
-// As minimise_by_noise.cpp and minimise_l1.cpp have them, but for how far a system is solved: what is left here has 1e-4 of the error's
-// square, and takes a third of the time (docs/method.md, "Windows").
+// As minimise_by_noise.cpp and minimise_l1.cpp have them, but for how far a system is solved: what is left here has less than 1e-4 of the
+// error's square (docs/method.md, "Space-time reconstruction"). The solution's own noise has a row error of 1.
 constexpr CgGoal kWithinNoise{.row_error = 3e-2f};
 constexpr float kFirstFloor = 0.05f;
 constexpr float kLastFloor = 2e-3f;
@@ -48,7 +48,7 @@ float window_scale(const WindowSource& source) {
 }  // namespace
 
 WindowSolver::WindowSolver(const WindowSource& source, uint32_t reconstruction, float alpha, const CancelTest& cancel, SolveReport* report)
-    : system_(source), cycles_(reconstruction == GRADUS_RECONSTRUCTION_L2 ? 1 : 2) {
+    : system_(source) {
   alpha = chosen_alpha(reconstruction, alpha);
   const int channels = std::min(source.size().channels, 3);
   switch (reconstruction) {
@@ -81,7 +81,7 @@ Frames WindowSolver::apply(const WindowSource& planes, int first_channel, int ch
 
 Frames WindowSolver::solve(const WindowSource& planes, int first_channel, int channels, const CgGoal& goal, int most_steps,
                            const CancelTest& cancel, SolveReport* report) const {
-  TimeLadder ladder(system_, channels, cycles_);
+  TimeLadder ladder(system_, channels);
   ladder.update();
   Frames x = system_.make_fields(channels);
   WindowFields fields(x);
@@ -94,7 +94,7 @@ Frames WindowSolver::solve(const WindowSource& planes, int first_channel, int ch
 Frames WindowSolver::minimise_l1(const WindowSource& source, float alpha, const CancelTest& cancel, SolveReport* report) {
   const int channels = std::min(source.size().channels, 3);
   const float scale = window_scale(source);
-  TimeLadder ladder(system_, channels, cycles_);
+  TimeLadder ladder(system_, channels);
   Frames x = system_.make_fields(channels);
   WindowFields fields(x);
   const auto improve = [&](const CgGoal& goal, int most_steps) {

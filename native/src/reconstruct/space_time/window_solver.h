@@ -32,7 +32,6 @@ class WindowSolver {
   Frames minimise_l1(const WindowSource& source, float alpha, const CancelTest& cancel, SolveReport* report);
 
   SpaceTimeSystem system_;
-  int cycles_;                                    // of the preconditioner
   std::unique_ptr<const WindowTwicing> twicing_;  // of L1 and WEIGHTED
   Frames solution_;
 };

@@ -117,16 +117,12 @@ TEST(B2_SpaceTime, ProductIsSymmetric) {
   }
 }
 
-class B2_TimeLadder : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Cycles, B2_TimeLadder, ::testing::Values(1, 2));
-
-TEST_P(B2_TimeLadder, IsSymmetricAndPositive) {
-  const int cycles = GetParam();
+TEST(B2_TimeLadder, IsSymmetricAndPositive) {
   for (const Motion motion : kMotions) {
     const Window window = random_window(33, 17, 1, 5, motion);
     SpaceTimeSystem system(window);
     weigh_at_random(&system);
-    TimeLadder ladder(system, 1, cycles);
+    TimeLadder ladder(system, 1);
     ladder.update();
     const Frames a = random_frames(system, 1, 2), b = random_frames(system, 1, 3);
     Frames za = system.make_fields(1), zb = za;
@@ -145,7 +141,7 @@ struct Solved {
 };
 Solved solve(const Window& window, SpaceTimeSystem* system, float residual, int most_steps = 100) {
   const int channels = window.size_.channels;
-  TimeLadder ladder(*system, channels, 1);
+  TimeLadder ladder(*system, channels);
   ladder.update();
   Solved solved{system->make_fields(channels), {}};
   WindowFields fields(solved.x);
