@@ -116,6 +116,7 @@ class Job:
         self.session: Session | None = None
         self.shot: Shot | None = None
         self.animation: Animation | None = None
+        self.size = (0, 0)  # pixels of the frame that was exported last
         self.frame_by_frame = ""  # why a frame of an animation is rendered on its own
         self.buffer = pixels.PassBuffer()
 
@@ -156,14 +157,22 @@ class Job:
         return settings
 
     def export(self, view: str) -> None:
+        """The first view exports the frame, with the cameras of the others."""
+        with self.shot.clock.phase("export"):
+            if view == self.views[0]:
+                self._export_frame()
+            else:
+                self.session.show_view(view)
         if view:
             self.engine.active_view_set(view)
+        settings, (width, height) = self.shot.settings, self.size
+        settings.width, settings.height = width, height
+        settings.region[:] = region_of(self.scene.render, width, height)
+
+    def _export_frame(self) -> None:
         vectors = self.wants_vectors()
-        settings = self.shot.settings
-        with self.shot.clock.phase("export"):
-            report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop, vectors)
-        settings.width, settings.height = report.width, report.height
-        settings.region[:] = region_of(self.scene.render, report.width, report.height)
+        report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop, vectors, self.views)
+        self.size = report.width, report.height
         self.warn(report.warnings)
 
     def build(self) -> None:

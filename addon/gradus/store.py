@@ -53,6 +53,10 @@ class Session:
             baker.hand_over(self.library, self.device, compat.image_color_spaces())
         return self.exporter.sync(*arguments)
 
+    def show_view(self, view: str) -> None:
+        """Exporter.show_view."""
+        self.exporter.show_view(view)
+
     def commit(self, cancelled: Callable[[], bool]) -> None:
         """Builds the snapshot on another thread, asking `cancelled` meanwhile. Raises Cancelled or GradusError."""
         cancel, progress = ctypes.c_int32(0), ctypes.c_float(0.0)

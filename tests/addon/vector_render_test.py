@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import bpy
 import mathutils
 import numpy as np
 import pytest
-from support import animation, recording
+from support import animation, images, recording
 
 SETTINGS = {"samples": 2, "integrator": "PATH", "reconstruction": "NONE", "max_bounces": 0}
 PIXELS_PER_METRE = 16.0  # 64 px over 4 m
@@ -77,6 +78,25 @@ def test_c1_camera_pan(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene
     recording.add(recording.grid(1, 1.5))
     animation.key(scene.camera, "location", {1: (-0.25, 0, 5), 2: (0, 0, 5), 3: (0.25, 0, 5)})
     assert np.allclose(_covered(vectors()), (4.0, 0.0, 4.0, 0.0), atol=0.01)
+
+
+def test_c1_each_view_has_vectors_of_its_own_camera(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """The frame is exported once for all of them."""
+    recording.add(recording.grid(1, 1.5))
+    for name in ("Camera_R", "Camera_L"):
+        recording.add_camera(type="ORTHO", ortho_scale=4.0).name = name
+    animation.key(bpy.data.objects["Camera_R"], "location", {1: (-0.25, 0, 5), 2: (0, 0, 5), 3: (0.25, 0, 5)})
+    scene.render.use_multiview, scene.render.views_format = True, "MULTIVIEW"
+    scene.view_layers[0].use_pass_vector = True
+    for name, value in SETTINGS.items():
+        setattr(scene.gradus, name, value)
+    scene.frame_set(2)
+    images.use_exr(scene, tmp_path / "f.exr")
+    scene.render.image_settings.views_format = "INDIVIDUAL"
+    bpy.ops.render.render(write_still=True, scene=scene.name)
+    left, right = (images.read(tmp_path / f"f{suffix}.exr")["Vector"] for suffix in ("_L", "_R"))
+    assert not left.any(), "it rests"
+    assert np.allclose(_covered(right), (4.0, 0.0, 4.0, 0.0), atol=0.01)
 
 
 def test_c1_camera_zoom(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:

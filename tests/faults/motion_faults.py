@@ -210,8 +210,8 @@ MOTION = (
         VECTORS,
         "that of the camera, where blur is read, too",
         EXPORTER,
-        "around = [moments[time].camera for time in motion.AROUND]",
-        "around = [moments[time].camera for time in sorted(moments)[:2]]",
+        "around = [moments[time].cameras[view] for time in motion.AROUND]",
+        "around = [moments[time].cameras[view] for time in sorted(moments)[:2]]",
         OF_VECTORS,
     ),
     Fault(

@@ -1,11 +1,11 @@
 """One sync: everything of the rendered frame is read first, then (for vectors and motion blur) the moments around it, then instances and
-camera are set."""
+cameras are set."""
 
 from __future__ import annotations
 
 import time
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import bpy
@@ -18,9 +18,10 @@ from .material import Materials, Resources
 from .may_move import MayMove
 from .mesh import MeshArrays
 from .motion import Deforming, Shape
-from .report import ExportError, ExportReport, Poll, Warnings
+from .report import ExportReport, Poll, Warnings
 from .shutter import SHARP, blur_of, shutter_of
 from .target import Target
+from .views import States, cameras_of, states_of
 
 
 class Exporter:
@@ -32,6 +33,7 @@ class Exporter:
         self._images = KeyTable()
         self._materials = KeyTable()
         self._ids = KeyTable()
+        self._views: dict[str, tuple[native.Camera, Any]] = {}
 
     def sync(
         self,
@@ -41,18 +43,20 @@ class Exporter:
         is_preview: bool = False,
         cancelled: Callable[[], bool] | None = None,
         vectors: bool | None = None,
+        views: Sequence[str] = ("",),
     ) -> ExportReport:
         """Sets all that the depsgraph shows at its frame. Raises ExportError (text for the user) and Cancelled.
 
         view: the viewport's, in place of the camera; then and in previews there is no motion.
         vectors: whether the Vector pass is wanted; None: where the view layer has it.
+        views: of multi-view. The first is set; show_view sets another.
         """
         start = time.perf_counter()
         wants_vectors = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors
         wanted = motion.Wanted()
         if view is None and not is_preview:
             wanted = motion.Wanted(wants_vectors, shutter_of(depsgraph.scene_eval, depsgraph.view_layer_eval))
-        run = _Sync(self, depsgraph, engine, view, wanted, Poll(cancelled))
+        run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled))
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
             table.begin()
@@ -66,7 +70,14 @@ class Exporter:
         for kind, table in tables:
             for key in table.sweep():
                 self._target.remove(kind, key)
+        self._views = run.filled
+        self.show_view(views[0])
         return ExportReport(*run.size, run.warnings.texts, time.perf_counter() - start)
+
+    def show_view(self, view: str) -> None:
+        """Sets the camera of another view of the frame that was exported last: nothing else of it differs."""
+        struct, _keep = self._views[view]
+        self._target.set_camera(struct)
 
     def sync_camera(self, depsgraph: Any, view: camera.ViewOverride) -> None:
         """Sets the viewport's camera alone: for redraws in which nothing but the view changed."""
@@ -77,7 +88,14 @@ class _Sync:
     """The state of one call of Exporter.sync."""
 
     def __init__(
-        self, exporter: Exporter, depsgraph: Any, engine: Any, view: camera.ViewOverride | None, wanted: motion.Wanted, poll: Poll
+        self,
+        exporter: Exporter,
+        depsgraph: Any,
+        engine: Any,
+        view: camera.ViewOverride | None,
+        wanted: motion.Wanted,
+        views: Sequence[str],
+        poll: Poll,
     ) -> None:
         self._depsgraph = depsgraph
         self._engine = engine
@@ -92,7 +110,8 @@ class _Sync:
         self._wanted = wanted
         resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
-        self._camera_object: Any = None  # in the file; markers may bind another one to the scene at other moments
+        self._cameras = cameras_of(views, engine, self._scene) if view is None else {}
+        self.filled: dict[str, tuple[native.Camera, Any]] = {}  # the cameras, by view
         self._deforming: dict[InstanceKey, Deforming] = {}
 
     def _resolution(self) -> tuple[int, int]:
@@ -105,7 +124,7 @@ class _Sync:
         return max(render.resolution_x * percentage // 100, 1), max(render.resolution_y * percentage // 100, 1)
 
     def run(self) -> None:
-        now = self._camera()
+        now = self._view_states()
         # Where the moments around are read, they tell exactly what moves.
         collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove())
         for text in (
@@ -123,29 +142,25 @@ class _Sync:
             self._add_motion(found, moments)
             mesh_of[shape] = self._set_mesh(found.arrays)
         self._set_instances(collected, mesh_of, moments)
-        self._set_camera(now, moments)
+        for view, state in now.items():
+            self._fill_camera(view, state, moments)
 
-    def _camera(self) -> camera.CameraState:
+    def _view_states(self) -> States:
         if self._view is not None:
-            return camera.view_state(self._view)
-        found = getattr(self._engine, "camera_override", None) or self._scene.camera
-        if found is None:
-            raise ExportError(f"Scene '{self._scene.name}' has no camera")
-        self._camera_object = found.original
-        return camera.camera_state(found, self._scene, *self.size, self._engine)
+            return {"": camera.view_state(self._view)}
+        return states_of(self._cameras, self._depsgraph, self._engine, self.size)
 
-    def _set_camera(self, now: camera.CameraState, moments: motion.Moments) -> None:
-        around = [moments[time].camera for time in motion.AROUND] if self._wanted.vectors else [None, None]
+    def _fill_camera(self, view: str, now: camera.CameraState, moments: motion.Moments) -> None:
+        around = [moments[time].cameras[view] for time in motion.AROUND] if self._wanted.vectors else [None, None]
         shutter = self._wanted.shutter
-        keys = motion.camera_blur(self._camera_object, now, shutter, moments) if shutter is not None else []
-        struct, _keep = camera.fill_camera(now, *around, shutter, keys)
-        self._target.set_camera(struct)
+        keys = motion.camera_blur(view, self._cameras[view], now, shutter, moments) if shutter is not None else []
+        self.filled[view] = camera.fill_camera(now, *around, shutter, keys)
 
     def _moments(self, collected: Collected) -> motion.Moments:
         if not self._wanted.any():
             return {}
-        times = self._wanted.times({blur_of(self._camera_object), *(entry.blur for entry in collected.surfaces)})
-        return motion.read_moments(self._depsgraph, self._engine, times, self._deforming, self._camera_object, self.size, self._poll)
+        times = self._wanted.times({*map(blur_of, self._cameras.values()), *(entry.blur for entry in collected.surfaces)})
+        return motion.read_moments(self._depsgraph, self._engine, times, self._deforming, self._cameras, self.size, self._poll)
 
     def _add_motion(self, found: Deforming, moments: motion.Moments) -> None:
         arrays, shutter = found.arrays, self._wanted.shutter

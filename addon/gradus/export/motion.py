@@ -13,10 +13,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from .camera import CameraState, camera_state
+from .camera import CameraState
 from .collect import Entry, InstanceKey, collect
 from .mesh import MeshArrays, corner_vertices, read_positions
 from .shutter import Blur, Shutter, blur_of
+from .views import Cameras, States, states_of
 
 AROUND = (-1.0, 1.0)
 _BECOME_MESHES = frozenset({"CURVE", "SURFACE", "FONT", "META"})
@@ -42,7 +43,7 @@ class Moment:
     matrices: dict[InstanceKey, array] = field(default_factory=dict)
     positions: dict[Shape, array] = field(default_factory=dict)
     other_topology: set[Shape] = field(default_factory=set)
-    camera: CameraState | None = None
+    cameras: States = field(default_factory=dict)
 
 
 Moments = dict[float, Moment]
@@ -107,18 +108,18 @@ def read_moments(
     engine: Any,
     times: list[float],
     deforming: dict[InstanceKey, Deforming],
-    camera: Any,
+    cameras: Cameras,
     size: tuple[int, int],
     poll: Callable[[], None],
 ) -> Moments:
-    """Visits the times in order. deforming: by all instances. camera: the frame's, as it is in the file."""
+    """Visits the times in order. deforming: by all instances. cameras: the frame's."""
     moments: Moments = {}
     with other_frames(depsgraph.scene, engine) as step:
         for time in times:
             poll()
             step(time)
             moments[time] = _read_moment(depsgraph, deforming, poll)
-            moments[time].camera = camera_state(camera.evaluated_get(depsgraph), depsgraph.scene_eval, *size, engine)
+            moments[time].cameras = states_of(cameras, depsgraph, engine, size)
     return moments
 
 
@@ -241,12 +242,12 @@ def instance_blur(entries: list[Entry], matrices: array, shutter: Shutter, momen
     return result if result.matrices else None
 
 
-def camera_blur(camera: Any, now: CameraState, shutter: Shutter, moments: Moments) -> list[CameraState]:
-    """The camera at its keys; [] where it rests."""
+def camera_blur(view: str, camera: Any, now: CameraState, shutter: Shutter, moments: Moments) -> list[CameraState]:
+    """A view's camera at its keys; [] where it rests."""
     blur = blur_of(camera)
     if not blur.keys:
         return []
-    return _keys(shutter.times(blur.keys), now, lambda time: moments[time].camera) or []
+    return _keys(shutter.times(blur.keys), now, lambda time: moments[time].cameras[view]) or []
 
 
 def _joined(parts: list[array]) -> array:
