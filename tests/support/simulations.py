@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 from typing import Any
 
@@ -20,6 +21,14 @@ def _new(name: str, mesh: bpy.types.Mesh, at: tuple[float, float, float]) -> bpy
 
 def _grid(cuts: int) -> bpy.types.Mesh:
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=cuts, y_subdivisions=cuts, size=2.0)
+    obj = bpy.context.object
+    mesh = obj.data
+    bpy.data.objects.remove(obj)
+    return mesh
+
+
+def _ball(radius: float) -> bpy.types.Mesh:
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=radius)
     obj = bpy.context.object
     mesh = obj.data
     bpy.data.objects.remove(obj)
@@ -62,12 +71,27 @@ def simulation_zone() -> None:
     _new("Rising", _grid(1), (0.0, 0.0, 0.0)).modifiers.new("Nodes", "NODES").node_group = group
 
 
+def liquid() -> None:
+    """One drop, computed as it is played."""
+    domain = _new("Domain", _ball(2.0), (0.0, 0.0, 0.0)).modifiers.new("Fluid", "FLUID")
+    domain.fluid_type = "DOMAIN"
+    settings = domain.domain_settings
+    settings.domain_type, settings.resolution_max, settings.use_mesh, settings.cache_type = "LIQUID", 16, True, "REPLAY"
+    settings.cache_directory = tempfile.mkdtemp(dir=bpy.app.tempdir)
+    settings.cache_frame_start, settings.cache_frame_end = 1, 50
+    drop = _new("Drop", _ball(0.4), (0.0, 0.0, 0.4))
+    flow = drop.modifiers.new("Fluid", "FLUID")
+    flow.fluid_type = "FLOW"
+    flow.flow_settings.flow_type, flow.flow_settings.flow_behavior = "LIQUID", "GEOMETRY"
+
+
 KINDS: dict[str, Callable[[], None]] = {
     "rigid body": rigid_body,
     "cloth": cloth,
     "soft body": soft_body,
     "particles": particles,
     "simulation zone": simulation_zone,
+    "liquid": liquid,
 }
 
 
