@@ -20,9 +20,7 @@ SnapshotMotion::SnapshotMotion(const Snapshot& from, const Snapshot& to) : to_(t
 bool SnapshotMotion::position(const Hit& hit, Vec3* position) const {
   const uint32_t index = instance_[hit.instance];
   if (index == UINT32_MAX) return false;
-  Hit there = hit;
-  there.instance = index;
-  *position = to_.position_at(there, Moment::Now);
+  *position = interpolate(to_.corners(index, hit.triangle, to_.shutter.time_of_frame()), hit.barycentric);
   return true;
 }
 

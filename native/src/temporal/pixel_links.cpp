@@ -7,6 +7,7 @@
 
 #include "motion/snapshot_motion.h"
 #include "path/context.h"
+#include "temporal/centre_camera.h"
 
 namespace gradus {
 
@@ -37,13 +38,13 @@ class Tracker {
     const Hit& hit = from_.hits[pixel];
     if (!hit.valid()) {
       t.film = centre_of(from_.region, pixel);
-      t.found = shows_one_direction() || to_.camera->project_direction(from_.directions[pixel], Moment::Now, &t.film);
+      t.found = shows_one_direction() || to_.camera.project_direction(from_.directions[pixel], Moment::Now, &t.film);
       return t;
     }
     Vec3 position;
     if (!motion_.position(hit, &position)) return t;
-    t.found = to_.camera->project(position, Moment::Now, &t.film);
-    t.distance = glm::length(position - to_.camera->position(to_.snapshot->shutter.time_of_frame()));
+    t.found = to_.camera.project(position, Moment::Now, &t.film);
+    t.distance = glm::length(position - to_.camera.position(0.0f));
     return t;
   }
 
@@ -63,9 +64,9 @@ int32_t pixel_at(const Region& region, const Vec2& film) {
   return (int32_t(y) - region.y0) * region.width() + (int32_t(x) - region.x0);
 }
 
-bool returns(const Tracker& back, const Region& region, size_t pixel, int32_t next) {
+bool returns(const Tracker& back, const CentreView& from, size_t pixel, int32_t next) {
   const Target t = back.target(size_t(next));
-  const Vec2 away = glm::abs(t.film - centre_of(region, pixel));
+  const Vec2 away = glm::abs(from.camera.way(centre_of(from.region, pixel), t.film));
   return t.found && away.x <= kLargestReturn && away.y <= kLargestReturn;
 }
 
@@ -78,13 +79,13 @@ void for_each_pixel(size_t count, const Body& body) {
 
 }  // namespace
 
-CentreView view_centres(const Snapshot& snapshot, const Camera& camera, const Region& region, const CancelTest& is_cancelled) {
-  CentreView view{&snapshot, &camera, region, std::vector<Hit>(size_t(region.area())), std::vector<Vec3>(size_t(region.area()))};
+CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelTest& is_cancelled) {
+  const auto pixels = size_t(region.area());
+  CentreView view{&snapshot, centre_camera(snapshot, width, height), region, std::vector<Hit>(pixels), std::vector<Vec3>(pixels)};
   const float time = snapshot.shutter.time_of_frame();
-  const Camera pinhole = camera.without_lens();
   for_each_pixel(view.hits.size(), [&](size_t i) {
     if (is_cancelled()) return;
-    const Ray ray = pinhole.ray({centre_of(region, i), Vec2(0.0f), time});
+    const Ray ray = view.camera.ray({centre_of(region, i), Vec2(0.0f), time});
     view.directions[i] = ray.direction;
     snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &view.hits[i]);
   });
@@ -98,7 +99,7 @@ std::vector<int32_t> link_pixels(const CentreView& from, const CentreView& to) {
   for_each_pixel(links.size(), [&](size_t i) {
     const Target t = forward.target(i);
     const int32_t next = t.found ? pixel_at(to.region, t.film) : kNoLink;
-    if (next == kNoLink || !returns(back, from.region, i, next)) return;
+    if (next == kNoLink || !returns(back, from, i, next)) return;
     links[i] = next;
     distances[i] = t.distance;
   });

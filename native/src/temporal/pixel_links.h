@@ -15,14 +15,14 @@ namespace gradus {
 // A frame as its pixel centres see it, at the moment of the frame and through the middle of the lens.
 struct CentreView {
   const Snapshot* snapshot = nullptr;
-  const Camera* camera = nullptr;
+  Camera camera;  // of that moment
   Region region;
   std::vector<Hit> hits;         // by pixels of the region; not valid: the ray left the scene
   std::vector<Vec3> directions;  // of the rays
 };
-// Both live as long as the view. Cancelled: some of its pixels see nothing.
+// The snapshot lives as long as the view; the region is one of a film of width × height. Cancelled: some of its pixels see nothing.
 CentreView view_centres(
-    const Snapshot& snapshot, const Camera& camera, const Region& region, const CancelTest& is_cancelled = [] { return false; });
+    const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelTest& is_cancelled = [] { return false; });
 
 // By pixels of `from`: the pixel of `to`, or kNoLink. One-to-one. A link leads back to within a pixel of where it came from; of several
 // pixels that lead to one the nearest to the camera has it. Both views have the same region.

@@ -27,7 +27,7 @@ class LinkedFrames : public testing::Test {
   CentreView* view() {
     frames_.push_back(std::make_unique<IntegratorContext>(scene_.context(test_settings(kSize, kSize))));
     const IntegratorContext& c = *frames_.back();
-    views_.push_back(std::make_unique<CentreView>(view_centres(*c.snapshot, c.camera, Region{0, 0, kSize, kSize})));
+    views_.push_back(std::make_unique<CentreView>(view_centres(*c.snapshot, kSize, kSize, Region{0, 0, kSize, kSize})));
     return views_.back().get();
   }
   static std::vector<int32_t> links(const CentreView* from, const CentreView* to) {
@@ -53,7 +53,7 @@ class LinkedFrames : public testing::Test {
 TEST_F(LinkedFrames, ACancelledViewTracesNothing) {
   const IntegratorContext c = scene_.context(test_settings(kSize, kSize));
   int traced = 0;
-  const CentreView cancelled = view_centres(*c.snapshot, c.camera, Region{0, 0, kSize, kSize}, [] { return true; });
+  const CentreView cancelled = view_centres(*c.snapshot, kSize, kSize, Region{0, 0, kSize, kSize}, [] { return true; });
   for (const Hit& hit : cancelled.hits) traced += hit.valid() ? 1 : 0;
   EXPECT_EQ(traced, 0);
 }

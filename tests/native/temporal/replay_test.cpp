@@ -36,7 +36,7 @@ Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSo
 
 SampleSources sources_of(const IntegratorContext& before, const IntegratorContext& now, const Region& region = kWhole) {
   const std::vector<int32_t> links =
-      link_pixels(view_centres(*before.snapshot, before.camera, region), view_centres(*now.snapshot, now.camera, region));
+      link_pixels(view_centres(*before.snapshot, kSize, kSize, region), view_centres(*now.snapshot, kSize, kSize, region));
   return {before.settings.frame, inverse_links(links)};
 }
 

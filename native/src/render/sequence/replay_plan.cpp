@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "scene/camera.h"
 #include "temporal/pixel_links.h"
 
 namespace gradus {
@@ -16,9 +15,8 @@ bool follows(const FrameBefore* before, const Snapshot& now, const GradusSetting
 
 SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const GradusSettings& settings, const Region& region,
                            const CancelTest& cancel) {
-  const auto camera = [&](const Snapshot& snapshot) { return Camera(snapshot.camera, settings.width, settings.height); };
-  const Camera camera_before = camera(*before.snapshot), camera_now = camera(now);  // the views keep them
-  const auto from = view_centres(*before.snapshot, camera_before, region, cancel), to = view_centres(now, camera_now, region, cancel);
+  const auto view = [&](const Snapshot& snapshot) { return view_centres(snapshot, settings.width, settings.height, region, cancel); };
+  const CentreView from = view(*before.snapshot), to = view(now);
   if (cancel()) return {};
   return {before.stream_frame, inverse_links(link_pixels(from, to))};
 }
