@@ -8,7 +8,6 @@
 #include "memory/allocations.h"
 #include "render/fake_integrator.h"
 #include "render/sequence/sequence.h"
-#include "render/sequence/sequence_needs.h"
 
 namespace gradus::memory {
 namespace {
@@ -88,18 +87,6 @@ INSTANTIATE_TEST_SUITE_P(
                       Job{"Regularized", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED},
                       Job{"RegularizedPathTransparent", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED, true}),
     [](const ::testing::TestParamInfo<Job>& info) { return std::string(info.param.name); });
-
-// A job of nine hours ended at night, when the disk was full.
-TEST(PlannedDisks, ThoseThatAreTooSmallAreNamed) {
-  PlannedBytes bytes;
-  const std::string folder = fs::temp_directory_path();
-  EXPECT_TRUE(lacking_room(bytes, folder).empty());
-  bytes.frames = uint64_t{1} << 60;
-  const std::vector<std::string> lines = lacking_room(bytes, folder);
-  ASSERT_EQ(lines.size(), 1u);
-  EXPECT_NE(lines[0].find(folder), std::string::npos) << lines[0];
-  EXPECT_NE(lines[0].find("GiB"), std::string::npos) << lines[0];
-}
 
 }  // namespace
 }  // namespace gradus::memory

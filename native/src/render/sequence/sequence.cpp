@@ -74,7 +74,10 @@ PlannedBytes Sequence::plan_job(const Plan& plan, const GradusSettings& settings
   const SequenceMethod method{plan.reconstruction, settings.reconstruction_alpha, wants(settings.passes, GRADUS_PASS_ERROR)};
   const PlannedBytes bytes = planned_bytes(plan, method, settings_.windows, own_places().count(), !folder_.is_temporary());
   require_memory("the animation", bytes.memory, "render fewer pixels or passes, or smaller windows");
-  if (!room_is_checked_) *warnings = lacking_room(bytes, folder_.path());
+  const FolderBytes files = planned_files(bytes, folder_.path());
+  require_memory("the animation, with its files in folders that are memory,", bytes.memory + bytes_in_memory(files),
+                 "set TMPDIR, or the frame store, to a folder on a disk");
+  if (!room_is_checked_) *warnings = lacking_room(files);
   room_is_checked_ = true;
   return bytes;
 }

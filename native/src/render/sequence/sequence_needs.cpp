@@ -1,5 +1,9 @@
 #include "render/sequence/sequence_needs.h"
 
+#include <linux/magic.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -49,12 +53,33 @@ std::string gibibytes(uint64_t bytes) {
   return text;
 }
 
-// "": there is room, or nobody knows.
-std::string lacking(const std::string& what, uint64_t bytes, const std::string& folder) {
-  std::error_code unknown;
-  const fs::space_info space = fs::space(folder, unknown);
-  if (unknown || space.available >= bytes) return "";
-  return what + " take up to " + gibibytes(bytes) + ", and " + folder + " has room for " + gibibytes(space.available);
+// Folders on one disk.
+struct Disk {
+  std::string folders;
+  uint64_t bytes = 0, available = 0;
+};
+
+// Of those that can be looked at.
+std::vector<Disk> disks_of(const FolderBytes& files) {
+  std::map<dev_t, Disk> disks;
+  for (const auto& [folder, bytes] : files) {
+    std::error_code unknown;
+    const fs::space_info space = fs::space(folder, unknown);
+    struct stat status {};
+    if (unknown || stat(folder.c_str(), &status) != 0) continue;
+    Disk& disk = disks[status.st_dev];
+    disk.folders += (disk.folders.empty() ? "" : " and ") + folder;
+    disk.bytes += bytes;
+    disk.available = space.available;
+  }
+  std::vector<Disk> list;
+  for (const auto& [device, disk] : disks) list.push_back(disk);
+  return list;
+}
+
+bool is_memory(const std::string& folder) {
+  struct statfs status {};
+  return statfs(folder.c_str(), &status) == 0 && (status.f_type == TMPFS_MAGIC || status.f_type == RAMFS_MAGIC);
 }
 
 }  // namespace
@@ -64,7 +89,7 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   const uint64_t area = uint64_t(plan.sampled.area()), channels = uint64_t(plan.channels);
   const Sizes sizes{frame_bytes_per_pixel(1, plan.gradients, plan.passes), channels, uint64_t(regularized || reads_halves(method) ? 1 : 0),
                     uint64_t(plan.gradients && !regularized ? 3 : 1)};
-  const uint64_t all = uint64_t(count), in_window = std::min(all, uint64_t(windows.frames));
+  const uint64_t all = uint64_t(count), in_window = keeps ? uint64_t(windows.frames) : std::min(all, uint64_t(windows.frames));
   const uint64_t ahead = std::min(all, uint64_t(2 * windows.frames - windows.overlap));
 
   const uint64_t delivered = sizes.frame + 11 * kFloat, pictures = in_window * (channels + 1) * kFloat;
@@ -76,10 +101,25 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   return needs;
 }
 
-std::vector<std::string> lacking_room(const PlannedBytes& needs, const std::string& folder) {
-  std::vector<std::string> lines = {lacking("the frames of the animation", needs.frames, folder),
-                                    lacking("rows of a window", needs.temporary, temporary_place())};
-  std::erase(lines, "");
+FolderBytes planned_files(const PlannedBytes& needs, const std::string& frames) {
+  FolderBytes files = {{frames, needs.frames}};
+  files[temporary_place()] += needs.temporary;
+  return files;
+}
+
+uint64_t bytes_in_memory(const FolderBytes& files) {
+  uint64_t sum = 0;
+  for (const auto& [folder, bytes] : files) sum += is_memory(folder) ? bytes : 0;
+  return sum;
+}
+
+std::vector<std::string> lacking_room(const FolderBytes& files) {
+  std::vector<std::string> lines;
+  for (const Disk& disk : disks_of(files)) {
+    if (disk.available >= disk.bytes) continue;
+    lines.push_back("files of the animation in " + disk.folders + " take up to " + gibibytes(disk.bytes) + ", and there is room for " +
+                    gibibytes(disk.available));
+  }
   return lines;
 }
 

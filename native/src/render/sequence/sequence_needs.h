@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,19 @@
 
 namespace gradus {
 
-// plan: of a frame; count: how many there are; keeps: their files stay.
+// plan: of a frame; count: how many there are; keeps: their files stay, and windows take those beside them that other parts have left.
 PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps);
 
-// What the job lacks, a line each: room for the frames in their folder, for rows in that for temporary files. Both may be on one disk.
-std::vector<std::string> lacking_room(const PlannedBytes& needs, const std::string& folder);
+// Bytes of files by the folders that they lie in.
+using FolderBytes = std::map<std::string, uint64_t>;
+
+// frames: the folder of the frames; rows of a window lie in that for temporary files.
+FolderBytes planned_files(const PlannedBytes& needs, const std::string& frames);
+
+// Of those in folders that are memory themselves (tmpfs).
+uint64_t bytes_in_memory(const FolderBytes& files);
+
+// A line for each disk that has not the room for all that lies on it.
+std::vector<std::string> lacking_room(const FolderBytes& files);
 
 }  // namespace gradus
