@@ -3,8 +3,9 @@
 What was found in 3.4, 4.5 and 5.0, and is relied on here:
 - Rigid bodies and simulation zones are computed by the scene's own depsgraph alone (`scene.frame_set`), from the frame before; that of
   the engine (`engine.frame_set`) reads what is cached. An animated render never moves the scene's own depsgraph.
-- Cloth, soft bodies and particles are computed by both, into one cache. A visit to their first frame makes Blender forget that the cache
-  is exact, and the next read drops what lies behind; a cache that counts as baked is left alone. So it does, except while we step.
+- Cloth, soft bodies, particles and dynamic paint are computed by both, into one cache. A visit to their first frame makes Blender forget
+  that the cache is exact, and the next read drops what lies behind; a cache that counts as baked is left alone. So it does, except while
+  we step. That of dynamic paint is always on disk, beside the file: there is none before that is saved.
 - The depsgraph of a render that begins later has put its own guess into the cache of a cloth before we are asked: a tag drops it.
 - Blender reads what is not evaluated (the exposure of saved pictures, the file name) from the scene after the render: it must be at the
   frame again.
@@ -20,6 +21,9 @@ import bpy
 from .export import Cancelled
 
 _DEFORMING = frozenset({"CLOTH", "SOFT_BODY"})
+_GUESSED = _DEFORMING | {"DYNAMIC_PAINT"}
+_SHARED = _GUESSED | {"PARTICLE_SYSTEM"}
+"""Every depsgraph writes into their caches."""
 
 
 class Simulations:
@@ -47,11 +51,11 @@ class Simulations:
     def _find_in(self, obj: Any, modifier: Any) -> None:
         name = f"{obj.name}, {modifier.name}"
         for cache in _point_caches(modifier):
-            if not _is_kept(cache):
+            if not _is_kept(cache, is_always_on_disk=modifier.type == "DYNAMIC_PAINT"):
                 self._add(name, cache.frame_start)
-                if modifier.type in _DEFORMING or modifier.type == "PARTICLE_SYSTEM":
+                if modifier.type in _SHARED:
                     self._caches.append(cache)
-                if modifier.type in _DEFORMING:
+                if modifier.type in _GUESSED:
                     self._guessed.append(obj)
         if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" and modifier.domain_settings.cache_type == "REPLAY":
             self._add(name, modifier.domain_settings.cache_frame_start)
@@ -129,9 +133,9 @@ def _with_instances(objects: Iterable[Any]) -> list[Any]:
     return list(found)
 
 
-def _is_kept(cache: Any) -> bool:
-    """Whether it is read from somewhere, whatever the depsgraph."""
-    return cache.is_baked or cache.use_disk_cache or cache.use_external
+def _is_kept(cache: Any, is_always_on_disk: bool = False) -> bool:
+    """Whether it is read from somewhere, whatever the depsgraph. What is on disk for want of another place need not be complete."""
+    return cache.is_baked or cache.use_external or (cache.use_disk_cache and not is_always_on_disk)
 
 
 def _point_caches(modifier: Any) -> Iterator[Any]:

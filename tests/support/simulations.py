@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import bpy
+
+from .animation import key
 
 Places = dict[str, tuple[float, ...]]
 
@@ -71,6 +74,18 @@ def simulation_zone() -> None:
     _new("Rising", _grid(1), (0.0, 0.0, 0.0)).modifiers.new("Nodes", "NODES").node_group = group
 
 
+def dynamic_paint() -> None:
+    """Its cache is on disk, beside the file: there is none before that is saved."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(Path(tempfile.mkdtemp(dir=bpy.app.tempdir)) / "paint.blend"))
+    canvas = _new("Canvas", _grid(8), (0.0, 0.0, 0.0)).modifiers.new("Dynamic Paint", "DYNAMIC_PAINT")
+    bpy.ops.dpaint.type_toggle(type="CANVAS")
+    canvas.canvas_settings.canvas_surfaces[0].surface_type = "DISPLACE"
+    brush = _new("Brush", _ball(0.4), (0.0, 0.0, 0.0))
+    brush.modifiers.new("Dynamic Paint", "DYNAMIC_PAINT").ui_type = "BRUSH"
+    bpy.ops.dpaint.type_toggle(type="BRUSH")
+    key(brush, "location", {1: (-1.0, 0.0, 0.0), 9: (1.0, 0.0, 0.0)})
+
+
 def liquid() -> None:
     """One drop, computed as it is played."""
     domain = _new("Domain", _ball(2.0), (0.0, 0.0, 0.0)).modifiers.new("Fluid", "FLUID")
@@ -91,6 +106,7 @@ KINDS: dict[str, Callable[[], None]] = {
     "soft body": soft_body,
     "particles": particles,
     "simulation zone": simulation_zone,
+    "dynamic paint": dynamic_paint,
     "liquid": liquid,
 }
 
