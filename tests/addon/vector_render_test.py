@@ -204,6 +204,16 @@ def test_c1_topology_change_does_not_crash(vectors: Callable[[], np.ndarray]) ->
     assert np.isfinite(vectors()).all()
 
 
+def test_c1_velocities_are_motion(vectors: Callable[[], np.ndarray]) -> None:
+    """Of fluids and caches, whose topology changes: they moved by their matrices alone."""
+    mesh = recording.grid(1, 1.5)
+    velocity = mesh.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
+    for item in velocity.data:
+        item.vector = (6.0, -3.0, 0.0)  # metres per second, at 24 frames per second
+    recording.add(mesh)
+    assert np.allclose(_covered(vectors()), (-4.0, 2.0, -4.0, 2.0), atol=0.01)
+
+
 def test_c1_without_motion_blur_or_vector_the_pass_is_absent(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
     recording.add_camera()
     assert "Vector" not in render(scene, **SETTINGS)

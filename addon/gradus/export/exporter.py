@@ -164,7 +164,7 @@ class _Sync:
 
     def _add_motion(self, found: Deforming, moments: motion.Moments) -> None:
         arrays, shutter = found.arrays, self._wanted.shutter
-        if self._wanted.vectors:
+        if self._wanted.vectors and arrays.motion is None:
             arrays.motion = motion.mesh_motion(found, moments)
         if shutter is None or arrays.blur is not None:
             return
@@ -206,9 +206,11 @@ class _Sync:
         if len(entry.data.polygons) == 0:
             return None
         arrays = mesh.read_mesh(entry.data, wanted, undeformed)
+        frames_per_second = self._scene.render.fps / self._scene.render.fps_base
+        if self._wanted.vectors:
+            arrays.motion = motion.velocity_motion(entry.data, arrays, frames_per_second)
         if self._wanted.shutter is not None:
-            render = self._scene.render
-            arrays.blur = motion.velocity_blur(entry.data, arrays, entry.blur, self._wanted.shutter, render.fps / render.fps_base)
+            arrays.blur = motion.velocity_blur(entry.data, arrays, entry.blur, self._wanted.shutter, frames_per_second)
         return arrays
 
     def _set_mesh(self, arrays: MeshArrays) -> int:

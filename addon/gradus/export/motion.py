@@ -150,6 +150,22 @@ def _same_topology_positions(entry: Entry, arrays: MeshArrays) -> array | None:
     return read_positions(mesh)
 
 
+def _moved_by_velocity(mesh: Any, arrays: MeshArrays, seconds: list[float]) -> list[array] | None:
+    """Positions some seconds on, by the attribute `velocity` (metres per second) of baked simulations and caches, whose topology may change
+    from frame to frame; None without one."""
+    velocity = mesh.attributes.get("velocity")
+    if velocity is None or velocity.domain != "POINT" or velocity.data_type != "FLOAT_VECTOR":
+        return None
+    import numpy as np  # Blender's own; its import takes a while, and few scenes have velocities
+
+    values = np.zeros(len(velocity.data) * 3, dtype=np.float32)
+    velocity.data.foreach_get("vector", values)
+    if not values.any():
+        return None
+    now = np.frombuffer(arrays.positions, dtype=np.float32)
+    return [array("f", (now + values * np.float32(time)).tobytes()) for time in seconds]
+
+
 # ------------------------------------------------------------------------------------------------ for vectors
 
 
@@ -164,6 +180,12 @@ def mesh_motion(deforming: Deforming, moments: Moments) -> tuple[array, array] |
         return None
     previous, following = (values if values is not None else arrays.positions for values in found)
     return previous, following
+
+
+def velocity_motion(mesh: Any, arrays: MeshArrays, frames_per_second: float) -> tuple[array, array] | None:
+    """Positions before and after by the mesh's velocity, as Cycles has them in pass Vector; None without one."""
+    moved = _moved_by_velocity(mesh, arrays, [time / frames_per_second for time in AROUND])
+    return None if moved is None else (moved[0], moved[1])
 
 
 def instance_motion(entries: list[Entry], matrices: array, moment: Moment) -> array:
@@ -202,20 +224,11 @@ def changes_topology(deforming: Deforming, shutter: Shutter, moments: Moments) -
 
 
 def velocity_blur(mesh: Any, arrays: MeshArrays, blur: Blur, shutter: Shutter, frames_per_second: float) -> array | None:
-    """Positions at opening and closing by the attribute `velocity` (metres per second) of baked simulations and caches, whose topology
-    may change from frame to frame; None without one."""
-    velocity = mesh.attributes.get("velocity")
-    if velocity is None or not blur.keys or not blur.deform or velocity.domain != "POINT" or velocity.data_type != "FLOAT_VECTOR":
+    """Positions at opening and closing by the mesh's velocity; None without one."""
+    if not blur.keys or not blur.deform:
         return None
-    import numpy as np  # Blender's own; its import takes a while, and few scenes have velocities
-
-    values = np.zeros(len(velocity.data) * 3, dtype=np.float32)
-    velocity.data.foreach_get("vector", values)
-    if not values.any():
-        return None
-    now = np.frombuffer(arrays.positions, dtype=np.float32)
-    moved = [now + values * np.float32(time / frames_per_second) for time in (shutter.open, shutter.close)]
-    return array("f", np.concatenate(moved).tobytes())
+    moved = _moved_by_velocity(mesh, arrays, [time / frames_per_second for time in (shutter.open, shutter.close)])
+    return None if moved is None else _joined(moved)
 
 
 @dataclass
