@@ -41,18 +41,29 @@ Field square(Field field) {
   return field;
 }
 
-// Pixels without a link are taken to be like those around them: 0 would tell their neighbours that nothing changes. linked: 0 or 1.
-void fill_holes(const Field& linked, HalvedImage* image) {
-  const Field around = box_mean(linked, kHoleRadius), mean = box_mean(image->mean, kHoleRadius),
-              squares = box_mean(square(image->half_difference), kHoleRadius);
-  const auto fill = [&](Field* field, const auto& of_linked) {
+// Pixels without a link are taken to be like those around them: 0 would tell their neighbours that nothing changes.
+class HoleFiller {
+ public:
+  // linked: 0 or 1.
+  explicit HoleFiller(Field linked) : linked_(std::move(linked)), around_(box_mean(linked_, kHoleRadius)) {}
+
+  // Of fields that are 0 in holes.
+  void fill_with_mean(Field* field) const { fill(field, box_mean(*field, kHoleRadius), identity); }
+  void fill_with_rms(Field* field) const { fill(field, box_mean(square(*field), kHoleRadius), root); }
+
+ private:
+  static float identity(float value) { return value; }
+  static float root(float value) { return std::sqrt(value); }
+
+  void fill(Field* field, const Field& means, float (*function)(float)) const {
     for_values(field, [&](float& value, int x, int y, int c) {
-      if (linked.row(y)[x] == 0.0f) value = around.row(y)[x] > 0.0f ? of_linked(x, y, c) : 0.0f;
+      const float around = around_.row(y)[x];
+      if (linked_.row(y)[x] == 0.0f) value = around > 0.0f ? function(means.row(y, c)[x] / around) : 0.0f;
     });
-  };
-  fill(&image->mean, [&](int x, int y, int c) { return mean.row(y, c)[x] / around.row(y)[x]; });
-  fill(&image->half_difference, [&](int x, int y, int c) { return std::sqrt(squares.row(y, c)[x] / around.row(y)[x]); });
-}
+  }
+
+  Field linked_, around_;
+};
 
 Field linked_pixels(const Links& links) {
   return make_field(links.width(), links.height(), [&](int x, int y) { return links.row(y)[x] == Links::kNone ? 0.0f : 1.0f; });
@@ -67,9 +78,16 @@ Change regress_change(const HalvedWindowSource& source, int t, const Features& f
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
   HalvedImage image{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves), false};
   normalise(scale, &image);
-  fill_holes(linked_pixels(change.links), &image);
+  const HoleFiller holes(linked_pixels(change.links));
+  holes.fill_with_mean(&image.mean);
+  holes.fill_with_rms(&image.half_difference);
   const FeatureRegression regression(features, image, cancel);
-  const Field alpha = size.channels > 3 ? regression.apply(read_channels(size, 3, 1, values), cancel) : Field();
+  Field alpha;
+  if (size.channels > 3) {
+    alpha = read_channels(size, 3, 1, values);
+    holes.fill_with_mean(&alpha);
+    alpha = regression.apply(alpha, cancel);
+  }
   for_values(&change.difference,
              [&](float& value, int x, int y, int c) { value = c < 3 ? scale * regression.image().row(y, c)[x] : alpha.row(y)[x]; });
   for_values(&change.weight, [&](float& value, int x, int y, int) {

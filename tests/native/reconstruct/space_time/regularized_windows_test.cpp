@@ -252,6 +252,18 @@ TEST(B2_RegularizedWindow, AlphaGoesThroughTheSameWeights) {
   }
 }
 
+// Holes of the colours were filled, those of alpha were 0: nothing changed beside them.
+TEST(B2_RegularizedWindow, AlphaBesideHolesGoesThroughTheSameWeights) {
+  Shot shot;
+  shot.channels = 4;
+  shot.frames = 3;
+  shot.light = [](int t) { return 1.0f + 0.2f * float(t); };
+  shot.linked = [](int pixel) { return pixel % kWidth % 4 == 0; };
+  for (const Reconstructed& picture : solve(shot)) {
+    for (size_t i = 0; i < picture.image.size(); i += 4) ASSERT_NEAR(8.0f * picture.image[i + 3], picture.image[i], 4e-3f) << i / 4;
+  }
+}
+
 // Lamps of any strength.
 TEST(B2_RegularizedWindow, ScalesWithTheLight) {
   Shot shot;
