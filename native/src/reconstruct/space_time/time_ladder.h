@@ -23,7 +23,7 @@ class TimeLadder {
   TimeLadder(const SpaceTimeSystem& system, int channels);
   // After the system's weights have changed.
   void update();
-  // z ≈ A⁻¹ r; returns r·z by frame. Symmetric and positive definite.
+  // z ≈ A⁻¹ r; returns r·z by frame, from the last to the first. Symmetric and positive definite.
   std::vector<RowSums> apply(const Frames& r, Frames* z);
 
  private:

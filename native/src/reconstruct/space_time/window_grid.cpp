@@ -10,32 +10,32 @@ namespace gradus {
 
 WindowGrid::WindowGrid(const FrameRange& range, const WindowShape& shape) : range_(range), shape_(shape) {
   if (range.last < range.first) throw invalid_argument("a range of frames ends before it begins");
-  if (shape.frames < 1 || shape.overlap < 0 || 2 * shape.overlap > shape.frames)
+  if (shape.frames < 1 || shape.overlap < 0 || shape.overlap > shape.frames / 2)
     throw invalid_argument("windows overlap by half of their frames at most");
   first_ = window_that_begins_before(range.first);
   // One that holds no more than those that the window before shares with it is left out.
-  last_ = std::max(first_, window_that_begins_before(range.last - shape.overlap));
+  last_ = std::max(first_, window_that_begins_before(int64_t{range.last} - shape.overlap));
 }
 
-int WindowGrid::window_that_begins_before(int frame) const {
-  const int step = shape_.step();
-  return frame >= 0 ? frame / step : -((step - 1 - frame) / step);
+int WindowGrid::window_that_begins_before(int64_t frame) const {
+  const int64_t step = shape_.step();
+  return int(frame >= 0 ? frame / step : -((step - 1 - frame) / step));
 }
 
 FrameRange WindowGrid::frames(int window) const {
-  const int begin = window * shape_.step();
-  return {std::max(begin, range_.first), std::min(begin + shape_.frames - 1, range_.last)};
+  const int64_t begin = int64_t{window} * shape_.step(), last = begin + shape_.frames - 1;
+  return {int(std::max<int64_t>(begin, range_.first)), int(std::min<int64_t>(last, range_.last))};
 }
 
-int WindowGrid::first_with(int frame) const { return std::max(first_, window_that_begins_before(frame - shape_.overlap)); }
+int WindowGrid::first_with(int frame) const { return std::max(first_, window_that_begins_before(int64_t{frame} - shape_.overlap)); }
 int WindowGrid::last_with(int frame) const { return std::min(last_, window_that_begins_before(frame)); }
 
 float WindowGrid::share(int window, int frame) const {
-  const int place = frame - window * shape_.step();
+  const int64_t place = frame - int64_t{window} * shape_.step();
   if (place < 0 || place >= shape_.frames) return 0.0f;
   const bool begins = place < shape_.overlap && window > first_, ends = place >= shape_.step() && window < last_;
   if (!begins && !ends) return 1.0f;
-  const int along = begins ? place : place - shape_.step();
+  const int64_t along = begins ? place : place - shape_.step();
   const float s = std::sin(0.5f * kPi * (float(along) + 0.5f) / float(shape_.overlap));
   return begins ? s * s : 1.0f - s * s;
 }

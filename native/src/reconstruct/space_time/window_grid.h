@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 namespace gradus {
 
@@ -39,7 +40,7 @@ class WindowGrid {
   void end_at(int frame) { range_.last = std::min(range_.last, frame); }
 
  private:
-  int window_that_begins_before(int frame) const;
+  int window_that_begins_before(int64_t frame) const;
 
   FrameRange range_;
   WindowShape shape_;

@@ -1,8 +1,9 @@
 // Sequences of any length, window by window.
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include <limits>
 
+#include "base/error.h"
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "reconstruct/space_time/sequences.h"
 #include "reconstruct/space_time/window_solver.h"
@@ -120,6 +121,17 @@ TEST(B2_Windows, HaveTheGridOfTheirSettings) {
     }
   }
   EXPECT_THROW(WindowGrid({0, 9}, {4, 3}), Error);
+}
+
+// Twice the overlap was beyond the integers, and so was the end of the last window.
+TEST(B2_Windows, OfAnySizeAreRefusedOrRight) {
+  constexpr int most = std::numeric_limits<int>::max();
+  EXPECT_THROW(WindowGrid({0, 9}, {10, 1 << 30}), Error);
+  EXPECT_THROW(WindowGrid({0, 9}, {most, 1 << 30}), Error);
+  const WindowGrid wide({-5, 9}, {most, most / 2});
+  EXPECT_EQ(wide.frames(wide.last()).last, 9);
+  const WindowGrid late({most - 7, most});
+  EXPECT_EQ(late.frames(late.last()).last, most);
 }
 
 // A frame in the middle of its window and of the next: half of each.
