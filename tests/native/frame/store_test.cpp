@@ -11,10 +11,7 @@
 #include <ImfOutputPart.h>
 #include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <sys/mount.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -33,6 +30,7 @@
 #include "frame/part_file.h"
 #include "render/combine.h"
 #include "render/fake_integrator.h"
+#include "support/failing_disk.h"
 
 namespace gradus {
 namespace {
@@ -393,33 +391,6 @@ TEST_F(F6_Store, WritersOfOneFrameDoNotMeet) {
   EXPECT_EQ(files(), 1u);
 }
 
-// Runs `write` in a process of its own, which has prepared itself: what went wrong, "" for nothing. No answer where it could not prepare.
-std::optional<std::string> failure_of(const std::function<bool()>& prepare, const std::function<void()>& write) {
-  int ends[2];
-  EXPECT_EQ(pipe(ends), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    if (!prepare()) _exit(1);
-    std::string what;
-    try {
-      write();
-    } catch (const std::exception& e) {
-      what = e.what();
-    }
-    const ssize_t written = ::write(ends[1], what.data(), what.size());
-    _exit(written == ssize_t(what.size()) ? 0 : 2);
-  }
-  close(ends[1]);
-  std::string what;
-  char text[256];
-  for (ssize_t n = 0; (n = ::read(ends[0], text, sizeof(text))) > 0;) what.append(text, size_t(n));
-  close(ends[0]);
-  int status = -1;
-  waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) < 2) << status;
-  return status == 0 ? std::optional(what) : std::nullopt;
-}
-
 bool limit_files_to(rlim_t bytes) {
   signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{bytes, bytes};
@@ -440,18 +411,15 @@ TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
 // A disk of 100 kB: for those who may mount one in a name space of their own.
 TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
   const auto frame = rendered(all_passes(96, 64, 2));
-  const auto mount_disk = [&] {
-    return (unshare(CLONE_NEWNS) == 0 || unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) &&
-           mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 && mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=100k") == 0;
-  };
-  const auto what = failure_of(mount_disk, [&] {
-    try {
-      save_frame(*frame, path());
-    } catch (...) {
-      if (files() > 0) throw std::runtime_error("something is left");
-      throw;
-    }
-  });
+  const auto what = failure_of([&] { return mount_disk(folder, "100k"); },
+                               [&] {
+                                 try {
+                                   save_frame(*frame, path());
+                                 } catch (...) {
+                                   if (files() > 0) throw std::runtime_error("something is left");
+                                   throw;
+                                 }
+                               });
   if (!what) GTEST_SKIP() << "no disk can be mounted here";
   EXPECT_NE(what->find("cannot write " + path() + ": No space left on device"), std::string::npos) << *what;
 }

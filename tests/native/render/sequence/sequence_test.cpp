@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "sequence_fixture.h"
+#include "support/failing_disk.h"
 
 namespace gradus::test {
 namespace {
@@ -695,7 +696,7 @@ TEST(E_Sequence, RegularizedDeliversItsErrorWhereItIsAskedFor) {
   EXPECT_NEAR(second / first, 100.0, 50.0);
 }
 
-// A full disk, a folder that went: the render ends, and its code is not that of one that goes on (I2).
+// A folder that went: the render ends, and its code is not that of one that goes on (I2).
 TEST(I2_Sequence, AFolderThatCannotBeWrittenEndsTheRenderWithItsName) {
   Pan pan(1.3f);
   const Folder folder;
@@ -739,6 +740,54 @@ TEST(I2_Sequence, FramesBeforeAFaultAreDelivered) {
   EXPECT_EQ(sequence->needs(1).last, 4);
   const std::vector<Delivered> alone = render(&pan, make_sequence(1, 4).get(), 1, 4);
   for (int32_t t = 1; t <= 4; ++t) EXPECT_EQ(deliver(sequence.get(), t).combined, alone[size_t(t - 1)].combined) << t;
+}
+
+// What went wrong, and what is left in the folder.
+std::string outcome_of(RenderTask* task, const std::string& folder) {
+  task->run();
+  std::string text;
+  const GradusError code = task->outcome(&text);
+  if (code == GRADUS_OK) return "";
+  for (const auto& entry : fs::directory_iterator(folder)) text += ", left: " + entry.path().filename().string();
+  return std::to_string(int(code)) + ": " + text;
+}
+
+// A disk that fills while the halves of a frame are saved: at the first, or at the second.
+TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
+  Pan pan(1.3f);
+  const Folder folder, whole;
+  sample(make_sequence(1, 1, whole.path()).get(), pan.at(1), settings_of(1));
+  const auto size_of = [&](FramePart part) { return fs::file_size(SequenceFolder(whole.path()).path(1, part)); };
+  for (const FramePart part : {FramePart::kOffset, FramePart::kBase}) {
+    const std::string size =
+        std::to_string(part == FramePart::kOffset ? size_of(part) / 2 : size_of(FramePart::kOffset) + size_of(part) / 2);
+    const auto what = failure_of([&] { return mount_disk(folder.path(), size.c_str()); },
+                                 [&] {
+                                   const auto sequence = make_sequence(1, 4, folder.path());
+                                   const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
+                                   throw std::runtime_error(outcome_of(task.get(), folder.path()));
+                                 });
+    if (!what) GTEST_SKIP() << "no disk can be mounted here";
+    const std::string name = SequenceFolder(folder.path()).path(1, part);
+    EXPECT_NE(what->find("cannot write " + name + ": No space left on device"), std::string::npos) << *what;
+    EXPECT_EQ(what->find("base.exr, left"), std::string::npos) << *what;
+    EXPECT_EQ(what->find(".part"), std::string::npos) << *what << ": half a file";
+    EXPECT_EQ(what->find("left: ") != std::string::npos, part == FramePart::kBase) << *what << ": a whole offset alone";
+  }
+}
+
+// A disk for temporary files that fills while the rows of a window are spooled.
+TEST(I2_Sequence, ADiskThatFillsWhileRowsAreSpooledIsNamed) {
+  Pan pan(1.3f);
+  const Folder folder, temporary;
+  const auto sequence = make_sequence(1, 4, folder.path());
+  for (int32_t t = 1; t <= 4; ++t) sample(sequence.get(), pan.at(t), settings_of(t));
+  const auto what = failure_of([&] { return mount_disk(temporary.path(), "100k") && setenv("TMPDIR", temporary.path().c_str(), 1) == 0; },
+                               [&] { throw std::runtime_error(outcome_of(sequence->deliver(1, nullptr).get(), temporary.path())); });
+  if (!what) GTEST_SKIP() << "no disk can be mounted here";
+  EXPECT_NE(what->find("cannot write a temporary file in " + temporary.path() + ": No space left on device"), std::string::npos) << *what;
+  EXPECT_EQ(what->find("left: "), std::string::npos) << *what;
+  EXPECT_EQ(deliver(sequence.get(), 1).combined.size(), size_t{4} * kSide * kSide) << "where there is room";
 }
 
 }  // namespace
