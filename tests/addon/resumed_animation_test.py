@@ -198,6 +198,22 @@ def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: P
     assert not np.array_equal(pictures(found)[5], pictures(tmp_path / "old")[4])
 
 
+def test_c7_a_still_stretch_of_an_older_scene_is_not_mixed_in(square: Scene, tmp_path: Path) -> None:
+    """The new frames were taken to be like the old ones beside them, whose files have the same number."""
+    store = tmp_path / "store"
+    square.gradus.frame_store = str(store)
+    animate(square, tmp_path / "old", 1, 6)
+    square.world.color = (0.9, 0.2, 0.1)
+    for frame in range(1, 4):
+        for stored in list(store.rglob(f"f+{frame:07d}.*")):
+            stored.unlink()
+    found, expected = tmp_path / "found", tmp_path / "expected"
+    animate(square, found, 1, 3)
+    square.gradus.frame_store = str(tmp_path / "another store")
+    animate(square, expected, 1, 3)
+    require_equal(pictures(found), pictures(expected), range(1, 4))
+
+
 def test_c7_a_store_without_the_features_of_the_reconstruction_is_refused_by_name(square: Scene, tmp_path: Path) -> None:
     """It was taken, and failed when its frames were to be delivered, with neither a name nor a way out."""
     square.gradus.frame_store = str(tmp_path / "store")

@@ -11,6 +11,7 @@ namespace gradus {
 struct SampleSources {
   int32_t stream_frame = 0;    // number of the frame that is replayed
   std::vector<int32_t> pixel;  // by pixels of the region: the pixel of the same region; kNoLink: a stream of its own, tagged as a hole
+  uint64_t scene_key = 0;      // of the scene that the replayed frame shows; 0: not known
 };
 
 }  // namespace gradus

@@ -38,6 +38,8 @@ json counters_to_json(const Counters& counters) {
   return values;
 }
 
+uint64_t key_from_json(const json& j) { return std::stoull(j.get<std::string>(), nullptr, 16); }
+
 Counters counters_from_json(const json& j) {
   const auto values = j.get<std::vector<uint64_t>>();
   Counters counters;
@@ -87,7 +89,9 @@ json describe_samples(const Frame& frame) {
 json describe(const Frame& frame) {
   json j = describe_samples(frame);
   if (!frame.shared.rays.empty()) j["shared"] = shared_to_json(frame.shared);
-  if (!frame.replayed.pixel.empty()) j["replayed_frame"] = frame.replayed.stream_frame;
+  if (frame.replayed.pixel.empty()) return j;
+  j["replayed_frame"] = frame.replayed.stream_frame;
+  j["replayed_scene_key"] = hex(frame.replayed.scene_key);
   return j;
 }
 
@@ -152,7 +156,8 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.settings = settings_from_json(description.at("settings"));
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
-  frame.scene_key = std::stoull(description.at("scene_key").get<std::string>(), nullptr, 16);
+  if (description.contains("replayed_scene_key")) frame.replayed_key = key_from_json(description.at("replayed_scene_key"));
+  frame.scene_key = key_from_json(description.at("scene_key"));
   frame.frame_number = description.at("frame");
   return frame;
 }
@@ -191,7 +196,7 @@ Frame make_frame(const Imf::Header& header, StoredContent content) {
   if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), known.region);
   frame.passes = make_pass_planes(passes, pixels);
   if (has_fallback) frame.fallback.assign(pixels, 0.0f);
-  if (description.contains("replayed_frame")) frame.replayed = {description.at("replayed_frame"), std::vector<int32_t>(pixels)};
+  if (description.contains("replayed_frame")) frame.replayed = {known.replayed_frame, std::vector<int32_t>(pixels), known.replayed_key};
   check_regions(frame);
   return frame;
 }

@@ -67,6 +67,7 @@ class SpooledFrames::SpooledBase {
   static TemporalFrame shape_of(const TemporalFrame& frame) {
     TemporalFrame shape;
     shape.stream = frame.stream;
+    shape.scene_key = frame.scene_key;
     const GradientImages& images = frame.base.values;
     for (GradientImages* to : {&shape.base.values, &shape.base.half_differences}) {
       to->width = images.width;

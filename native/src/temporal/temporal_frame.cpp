@@ -30,6 +30,7 @@ TemporalFrame make_base(const Frame& base, TemporalContent content) {
   TemporalFrame frame;
   frame.base = read_halved(base, content);
   frame.stream = base.frame_number;
+  frame.scene_key = base.scene_key;
   return frame;
 }
 
@@ -37,6 +38,7 @@ TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent c
   TemporalFrame frame;
   frame.replay = read_halved(replay, content);
   frame.stream = stream;
+  frame.scene_key = replay.scene_key;
   frame.replayed = replay.replayed;
   return frame;
 }

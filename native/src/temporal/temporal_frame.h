@@ -24,6 +24,7 @@ struct TemporalFrame {
   HalvedImages replay;              // of the random numbers of the frame before
   std::vector<float> replay_share;  // of the samples of each pixel
   int32_t stream = 0;               // whose random numbers the base has taken
+  uint64_t scene_key = 0;           // of the scene that both show
   SampleSources replayed;           // and whose the replay has
 };
 
@@ -36,8 +37,10 @@ TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent c
 // Throws invalid_argument where the images differ in size or kinds: whatever a folder may hold under the names of frames.
 void check_alike(const GradientImages& images, const GradientImages& other, int32_t frame);
 
-// The next frame has the samples of this one, for nothing has changed.
-inline bool is_repeated(const TemporalFrame& frame, const TemporalFrame& next) { return next.stream == frame.stream; }
+// The next frame has the samples of this one, for nothing has changed. Of one that was stored of an older scene it has none.
+inline bool is_repeated(const TemporalFrame& frame, const TemporalFrame& next) {
+  return next.stream == frame.stream && next.scene_key == frame.scene_key;
+}
 // By pixels of the frame: that of the next one, as y·width + x, or kNoLink: those that the replay of the next has followed.
 std::vector<int32_t> links_between(const TemporalFrame& frame, const TemporalFrame& next);
 

@@ -15,11 +15,20 @@ uint64_t key_without_frame(GradusSettings settings) {
 
 }  // namespace
 
-FrameForm form_of(const FrameHeader& frame) { return {frame.region, frame.channels, frame.gradients, has_features(frame), frame.settings}; }
+FrameForm form_of(const FrameHeader& base, const FrameHeader& offset) {
+  return {base.region,       base.channels,         base.gradients, has_features(base), base.settings,
+          base.frame_number, offset.replayed_frame, base.scene_key, offset.replayed_key};
+}
 
-bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstruction) {
-  const bool features = a.features == b.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
-  return a.region == b.region && a.channels == b.channels && a.gradients == b.gradients && features;
+bool follows_another_scene(const FrameForm& before, const FrameForm& frame) {
+  if (frame.stream == before.stream) return frame.scene_key != before.scene_key;
+  return frame.replayed_stream == before.stream && frame.replayed_scene != 0 && frame.replayed_scene != before.scene_key;
+}
+
+bool share_windows(const FrameForm& before, const FrameForm& frame, uint32_t reconstruction) {
+  const bool features = before.features == frame.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
+  return before.region == frame.region && before.channels == frame.channels && before.gradients == frame.gradients && features &&
+         !follows_another_scene(before, frame);
 }
 
 std::unique_ptr<FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
@@ -28,7 +37,7 @@ std::unique_ptr<FrameBefore> make_before(std::shared_ptr<const Snapshot> snapsho
   before->snapshot = std::move(snapshot);
   before->settings = settings;
   before->stream_frame = base != nullptr ? base->frame_number : settings.frame;
-  if (base != nullptr) before->form = form_of(*base);
+  if (base != nullptr) before->sampled = base->region;
   return before;
 }
 

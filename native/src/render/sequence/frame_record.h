@@ -13,16 +13,21 @@
 
 namespace gradus {
 
-// What frames must have in common to share a window.
+// What frames must have in common to share a window, and whom a frame follows.
 struct FrameForm {
   Region region;  // with its guard ring
   int channels = 0;
   bool gradients = false, features = false;
   GradusSettings settings{};
+  int32_t stream = 0, replayed_stream = 0;     // whose random numbers its own half has taken, and whose the other has
+  uint64_t scene_key = 0, replayed_scene = 0;  // 0: not known
 };
-FrameForm form_of(const FrameHeader& frame);
-// Whether one window can hold both: they have all that it reads of its frames.
-bool share_windows(const FrameForm& a, const FrameForm& b, uint32_t reconstruction);
+// base, offset: its own half, and the one that replays the frame before.
+FrameForm form_of(const FrameHeader& base, const FrameHeader& offset);
+// Whether `frame` follows another scene than `before` shows: one of the two was stored before the scene was changed.
+bool follows_another_scene(const FrameForm& before, const FrameForm& frame);
+// Whether one window can hold both: they have all that it reads of its frames, and are of one animation.
+bool share_windows(const FrameForm& before, const FrameForm& frame, uint32_t reconstruction);
 
 // The frame before the next one that is sampled.
 struct FrameBefore {
@@ -30,7 +35,7 @@ struct FrameBefore {
   GradusSettings settings{};
   int32_t stream_frame = 0;       // whose random numbers it has taken: its own, or those of the first of several that are alike
   std::vector<uint32_t> counts;   // samples of each pixel; empty: as many as the settings say, or not known
-  std::optional<FrameForm> form;  // of its own half; nothing: it was not sampled
+  std::optional<Region> sampled;  // region of its own half; nothing: it was not sampled
 };
 // base: its own half; nullptr where it was not sampled.
 std::unique_ptr<FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings, const FrameHeader* base);

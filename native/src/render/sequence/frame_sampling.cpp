@@ -112,13 +112,13 @@ std::shared_ptr<Frame> FrameSampling::load(FramePart part, StoredContent content
 bool FrameSampling::repeats_before() const {
   const FrameBefore* before = sequence_->before_.get();
   const GradusSettings& now = input_.settings;
-  return before && before->form && before->snapshot->content_key == input_.snapshot->content_key && are_alike(before->settings, now) &&
+  return before && before->sampled && before->snapshot->content_key == input_.snapshot->content_key && are_alike(before->settings, now) &&
          before->settings.samples >= now.samples && before->settings.noise_threshold <= now.noise_threshold;
 }
 
 bool FrameSampling::differs_from_before() const {
   const FrameBefore* before = sequence_->before_.get();
-  return before && before->form && !repeats_before();
+  return before && before->sampled && !repeats_before();
 }
 
 void FrameSampling::run(RenderLoop* loop) {
@@ -197,13 +197,16 @@ void FrameSampling::sample_offset(const FrameHeader& base, const std::vector<uin
 bool FrameSampling::follows_before() const { return follows(sequence_->before_.get(), *input_.snapshot, input_.settings); }
 
 bool FrameSampling::replays_before(const FrameHeader& offset) const {
-  if (!sequence_->before_) return true;
-  return offset.replayed_frame == (follows_before() ? sequence_->before_->stream_frame : input_.settings.frame);
+  const FrameBefore* before = sequence_->before_.get();
+  if (!before) return true;
+  if (!follows_before()) return offset.replayed_frame == input_.settings.frame;
+  const bool shows_it = offset.replayed_key == 0 || offset.replayed_key == before->snapshot->content_key;
+  return offset.replayed_frame == before->stream_frame && shows_it;
 }
 
 std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, const std::vector<uint32_t>& counts) {
   auto replay = std::make_shared<Replay>();
-  replay->sources = {input_.settings.frame, std::vector<int32_t>(size_t(base.region.area()), kNoLink)};
+  replay->sources = {input_.settings.frame, std::vector<int32_t>(size_t(base.region.area()), kNoLink), base.scene_key};
   const FrameBefore* before = sequence_->before_.get();
   if (follows_before()) {
     const Bill bill(&record_.stats.seconds.links, &record_.stats.cpu_seconds.links);
@@ -214,7 +217,7 @@ std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, con
   }
   if (!has_counts(input_.settings)) return replay;
   const double mean = mean_of(counts);
-  const bool is_counted = before && before->form && before->form->region == base.region;
+  const bool is_counted = before && before->sampled && *before->sampled == base.region;
   replay->counts = replayed_counts(replay->sources, is_counted ? before : nullptr, mean);
   const double seconds = base_.what_it_took().seconds.sample;
   if (input_.settings.time_limit > 0.0f && seconds > 0.0) {
@@ -230,7 +233,7 @@ void FrameSampling::finish(const FrameHeader& base, std::vector<uint32_t> counts
   record_.stats.total_seconds = seconds();
   record_.stats.process_cpu = process_cpu_seconds();
   sequence_->records_[input_.settings.frame] = record_;
-  sequence_->forms_[input_.settings.frame] = form_of(base);
+  sequence_->forms_[input_.settings.frame] = form_of(base, sequence_->folder_.header(input_.settings.frame, FramePart::kOffset));
   GradusSettings delivered = input_.settings;
   delivered.reconstruction = record_.plan.reconstruction;
   delivered.denoiser = record_.plan.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;

@@ -18,7 +18,7 @@ SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const
   const auto view = [&](const Snapshot& snapshot) { return view_centres(snapshot, settings.width, settings.height, region, cancel); };
   const CentreView from = view(*before.snapshot), to = view(now);
   if (cancel()) return {};
-  return {before.stream_frame, inverse_links(link_pixels(from, to))};
+  return {before.stream_frame, inverse_links(link_pixels(from, to)), before.snapshot->content_key};
 }
 
 double mean_of(const std::vector<uint32_t>& counts) {

@@ -95,7 +95,8 @@ const FrameForm& Sequence::form_at(int place) {
   const int32_t frame = frame_at(place);
   const auto known = forms_.find(frame);
   if (known != forms_.end()) return known->second;
-  return forms_[frame] = form_of(read_or_name_the_way_out([&] { return folder_.header(frame, FramePart::kBase); }));
+  return forms_[frame] = read_or_name_the_way_out(
+             [&] { return form_of(folder_.header(frame, FramePart::kBase), folder_.header(frame, FramePart::kOffset)); });
 }
 
 bool Sequence::goes_on_at(int place, uint32_t reconstruction) {

@@ -205,5 +205,72 @@ TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsRepeatedOnlyIfItIsOfTheJob) {
   EXPECT_EQ(base_of(other.at(4), of_seed(4, 1, 8)), 5) << "another scene";
 }
 
+void sample_frames(Sequence* sequence, Pan* pan, int32_t first, int32_t last) {
+  for (int32_t t = first; t <= last; ++t) sample(sequence, pan->at(t), settings_of(t));
+}
+
+// Frames 2 to 4 were the files of frame 1, and of those of another scene since then the new frames 1 and 2 were taken for repetitions.
+TEST(C7_StoredFrames, AStillStretchOfAnOlderSceneIsNotMixedIn) {
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+    Pan old(0.0f), edited(0.0f, Scenario::GlossyFloor);
+    const Folder both, fresh;
+    const auto sample_all = [&](const Folder& folder, Pan* pan, int32_t last) {
+      const auto sequence = make_sequence(1, last, folder.path());
+      for (int32_t t = 1; t <= last; ++t) {
+        GradusSettings settings = settings_of(t);
+        settings.reconstruction = reconstruction;
+        sample(sequence.get(), pan->at(t), settings);
+      }
+      return sequence;
+    };
+    sample_all(both, &old, 4);
+    for (const int32_t frame : {1, 2}) both.remove(frame);
+    const auto beside = sample_all(both, &edited, 2), alone = sample_all(fresh, &edited, 2);
+    for (int32_t t = 1; t <= 2; ++t) {
+      const Delivered found = deliver(beside.get(), t), expected = deliver(alone.get(), t);
+      EXPECT_EQ(found.combined, expected.combined) << t << ", reconstruction " << reconstruction;
+      EXPECT_EQ(found.link, expected.link) << t;
+    }
+    // All that is stored, as `gradus reconstruct` delivers it.
+    const auto stored = make_sequence(1, 4, both.path());
+    for (int32_t t = 1; t <= 2; ++t) EXPECT_EQ(deliver(stored.get(), t).combined, deliver(alone.get(), t).combined) << t;
+  }
+}
+
+// Replays of what a frame was before its scene was changed: at the end of a part, and where one begins.
+TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
+  Pan old(1.3f), edited(1.3f, Scenario::GlossyFloor);
+  const Folder both, fresh;
+  sample_frames(make_sequence(1, 5, both.path()).get(), &old, 1, 5);
+  for (const int32_t frame : {2, 3}) both.remove(frame);
+  const auto beside = make_sequence(2, 3, both.path()), alone = make_sequence(2, 3, fresh.path());
+  for (Sequence* sequence : {beside.get(), alone.get()}) {
+    sequence->pass_by(edited.at(1), with_passes(settings_of(1)));
+    sample_frames(sequence, &edited, 2, 3);
+  }
+  for (int32_t t = 2; t <= 3; ++t) {
+    const Delivered found = deliver(beside.get(), t), expected = deliver(alone.get(), t);
+    EXPECT_EQ(found.combined, expected.combined) << t;
+    EXPECT_EQ(found.link, expected.link) << t;
+  }
+}
+
+// Frame 2 is as it was, frame 1 is not: the replay of the one that was there followed links that lead elsewhere now.
+TEST(C7_StoredFrames, ReplaysOfAnOlderSceneAreSampledAnew) {
+  Pan pan(1.3f);
+  const auto sample_both = [&](const std::string& folder, int32_t shown_first) {
+    const auto sequence = make_sequence(1, 2, folder);
+    sample(sequence.get(), pan.at(shown_first), settings_of(1));
+    sample(sequence.get(), pan.at(2), settings_of(2));
+    return deliver(sequence.get(), 2);
+  };
+  const Folder folder, fresh;
+  sample_both(folder.path(), 1);
+  folder.remove(1);
+  const Delivered found = sample_both(folder.path(), 3), expected = sample_both(fresh.path(), 3);
+  EXPECT_EQ(found.noisy, expected.noisy);
+  EXPECT_EQ(found.combined, expected.combined);
+}
+
 }  // namespace
 }  // namespace gradus::test
