@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -55,7 +56,7 @@ void check_usage(const ReconstructArguments& args) {
     throw CLI::ValidationError("--reconstruction", "none is for single frames; --passes noisy_image writes it");
   check_apart("--output", args.output, args.input);
   const WindowShape windows = windows_of(args);
-  if (2 * windows.overlap > windows.frames) throw CLI::ValidationError("--window-overlap", "windows share at most half of their frames");
+  if (windows.overlap > windows.frames / 2) throw CLI::ValidationError("--window-overlap", "windows share at most half of their frames");
   if (fs::exists(args.output) && !fs::is_directory(args.output)) {
     throw CLI::ValidationError("--output", args.output + " is no folder, which the pictures of " + args.input + " need");
   }
@@ -94,12 +95,15 @@ uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
 }
 
 // Of their files. Those of another size are of another animation.
-std::vector<GradusSettings> settings_of_files(const StoredSequence& stored, const std::vector<int32_t>& frames) {
-  std::vector<GradusSettings> all;
-  for (const int32_t frame : frames) {
-    all.push_back(load_header(stored.path(frame)).settings);
-    if (all.back().width == all.front().width && all.back().height == all.front().height) continue;
-    throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, stored.path(frame) + " has another size than " + stored.path(frames.front()));
+std::map<int32_t, GradusSettings> settings_of_files(const StoredSequence& stored, const std::vector<std::vector<int32_t>>& chains) {
+  const int32_t first = chains.front().front();
+  std::map<int32_t, GradusSettings> all{{first, load_header(stored.path(first)).settings}};
+  for (const std::vector<int32_t>& chain : chains) {
+    for (const int32_t frame : chain) {
+      const GradusSettings& settings = all[frame] = load_header(stored.path(frame)).settings;
+      if (settings.width == all[first].width && settings.height == all[first].height) continue;
+      throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, stored.path(frame) + " has another size than " + stored.path(first));
+    }
   }
   return all;
 }
@@ -115,38 +119,52 @@ void write_picture(const client::Render& render, uint64_t passes, const std::str
   save_image(path, int(width), int(height), layers);
 }
 
+// What all frames of a folder have in common.
+struct Job {
+  const ReconstructArguments& args;
+  const StoredSequence& stored;
+  const client::Device& device;
+  const std::map<int32_t, GradusSettings>& of_files;
+  uint64_t passes;
+};
+
+// Pictures of frames that follow one another.
+void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<std::string>* warnings) {
+  const client::Sequence sequence = open(job.device, job.args, job.stored, {frames.front(), frames.back()});
+  const SequenceFolder folder(job.args.input);
+  for (const int32_t frame : frames) {
+    // Exposure and the like may change from frame to frame, of frames that share their files, too.
+    const GradusSettings settings = settings_of(job.args, folder.settings(frame).value_or(job.of_files.at(frame)));
+    const client::Render render = sequence.deliver(frame, settings);
+    render.wait();
+    for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings")) warnings->insert(text.get<std::string>());
+    const std::string path = picture_path(job.args.output, frame);
+    write_picture(render, job.passes, path);
+    std::printf("%s\n", path.c_str());
+    std::fflush(stdout);
+  }
+}
+
 }  // namespace
 
 int reconstruct_sequence(const ReconstructArguments& args) {
   check_usage(args);
   const StoredSequence stored(args.input);
   const Range asked = range_of(args.frames, stored);
-  const std::vector<int32_t> frames = stored.expected(asked.first, asked.last);
-  const std::string missing = stored.missing(asked.first, asked.last);
-  if (frames.empty()) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, args.input + " holds none of the frames " + args.frames);
+  const std::vector<std::vector<int32_t>> chains = stored.chains(asked.first, asked.last);
+  const std::string missing = stored.missing(asked.first, asked.last), unlinked = stored.unlinked(asked.first, asked.last);
+  if (chains.empty()) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, args.input + " holds none of the frames " + args.frames);
   if (!missing.empty()) {
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
                         args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
   }
-  const std::vector<GradusSettings> of_files = settings_of_files(stored, frames);
-  const uint64_t passes = passes_of(args, stored.path(frames.front()));
+  const std::map<int32_t, GradusSettings> of_files = settings_of_files(stored, chains);
+  const uint64_t passes = passes_of(args, stored.path(chains.front().front()));
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
-  const client::Sequence sequence = open(device, args, stored, {frames.front(), frames.back()});
   fs::create_directories(args.output);
-  const SequenceFolder folder(args.input);
   std::set<std::string> warnings;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const int32_t frame = frames[i];
-    // Exposure and the like may change from frame to frame, of frames that share their files, too.
-    const GradusSettings settings = settings_of(args, folder.settings(frame).value_or(of_files[i]));
-    const client::Render render = sequence.deliver(frame, settings);
-    render.wait();
-    for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings")) warnings.insert(text.get<std::string>());
-    const std::string path = picture_path(args.output, frame);
-    write_picture(render, passes, path);
-    std::printf("%s\n", path.c_str());
-    std::fflush(stdout);
-  }
+  if (!unlinked.empty()) warnings.insert("frames " + unlinked + " replay others than those before them, to which nothing links them");
+  for (const std::vector<int32_t>& chain : chains) write_chain({args, stored, device, of_files, passes}, chain, &warnings);
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
   print_warnings(device);
   return 0;

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "frame/frame_name.h"
+#include "frame/store.h"
 
 namespace gradus::tool {
 namespace {
@@ -41,8 +42,56 @@ std::string advice(const std::string& folder) {
   return list.empty() ? "" : ": try " + list;
 }
 
+// Gaps between frames and those that they replay, or repeat; 0: none does.
+int32_t step_of_replays(const std::map<int32_t, FrameForm>& forms) {
+  int32_t step = 0;
+  std::map<int32_t, int32_t> last_with;  // frames by their stream: it may be that of an earlier one
+  for (const auto& [frame, form] : forms) {
+    const bool repeats = form.stream != frame, replays = !repeats && form.replayed_stream != frame;
+    const auto before = last_with.find(repeats ? form.stream : form.replayed_stream);
+    if ((repeats || replays) && before != last_with.end()) {
+      step = std::gcd(step, frame - before->second);
+    } else if (replays) {
+      step = std::gcd(step, frame - form.replayed_stream);  // which is missing
+    }
+    last_with[form.stream] = frame;
+  }
+  return step;
+}
+
+int32_t step_of_gaps(const std::vector<int32_t>& frames) {
+  int32_t step = 0;
+  for (size_t i = 1; i < frames.size(); ++i) step = std::gcd(step, frames[i] - frames[i - 1]);
+  return step;
+}
+
 std::string text_of(int32_t first, int32_t last) {
   return first == last ? std::to_string(first) : std::to_string(first) + " to " + std::to_string(last);
+}
+
+// "4, 7 to 9": those of a list that are meant.
+template <class IsMeant>
+std::string name_runs(const std::vector<int32_t>& frames, const IsMeant& is_meant) {
+  std::string text;
+  const auto add = [&](int32_t from, int32_t to) { add_item(&text, text_of(from, to)); };
+  int32_t from = 0, to = 0;
+  bool open = false;
+  for (const int32_t frame : frames) {
+    const bool meant = is_meant(frame);
+    if (!meant && open) add(from, to);
+    if (meant && !open) from = frame;
+    if (meant) to = frame;
+    open = meant;
+  }
+  if (open) add(from, to);
+  return text;
+}
+
+std::vector<int32_t> joined(const std::vector<std::vector<int32_t>>& chains) {
+  std::vector<int32_t> frames;
+  for (const std::vector<int32_t>& chain : chains) frames.insert(frames.end(), chain.begin(), chain.end());
+  std::sort(frames.begin(), frames.end());
+  return frames;
 }
 
 }  // namespace
@@ -55,36 +104,44 @@ StoredSequence::StoredSequence(const std::string& folder) : folder_(folder) {
     throw invalid_argument(folder + (has_none ? " holds no stored frames" + advice(folder)
                                               : " holds stored frames, but none of a sequence: reconstruct them one by one"));
   }
-  int32_t step = 0;
-  for (size_t i = 1; i < frames_.size(); ++i) step = std::gcd(step, frames_[i] - frames_[i - 1]);
+  for (const int32_t frame : frames_) {
+    const FrameHeader header = load_header((fs::path(folder_) / frame_name(frame, "offset.exr")).string());
+    forms_[frame] = form_of(header, header);
+  }
+  const int32_t of_replays = step_of_replays(forms_), step = of_replays > 0 ? of_replays : step_of_gaps(frames_);
   if (step > 0) step_ = step;
 }
 
 std::string StoredSequence::path(int32_t frame) const { return (fs::path(folder_) / frame_name(frame, "base.exr")).string(); }
 
-std::vector<int32_t> StoredSequence::expected(int32_t first, int32_t last) const {
-  std::vector<int32_t> frames;
-  const int64_t beyond = (int64_t(first) - frames_.front()) % step_;
-  for (int64_t frame = int64_t(first) + (beyond == 0 ? 0 : beyond > 0 ? step_ - beyond : -beyond); frame <= last; frame += step_) {
-    frames.push_back(int32_t(frame));
+std::vector<std::vector<int32_t>> StoredSequence::chains(int32_t first, int32_t last) const {
+  const auto beyond = [&](int64_t frame) { return ((frame - first) % step_ + step_) % step_; };
+  std::set<int64_t> begins;
+  for (const int32_t frame : frames_) begins.insert(first + beyond(frame));
+  std::vector<std::vector<int32_t>> chains;
+  for (const int64_t begin : begins) {
+    std::vector<int32_t> chain;
+    for (int64_t frame = begin; frame <= last; frame += step_) chain.push_back(int32_t(frame));
+    if (!chain.empty()) chains.push_back(std::move(chain));
   }
-  return frames;
+  return chains;
 }
 
 std::string StoredSequence::missing(int32_t first, int32_t last) const {
-  std::string text;
-  const auto add = [&](int32_t from, int32_t to) { add_item(&text, text_of(from, to)); };
-  int32_t from = 0, to = 0;
-  bool open = false;
-  for (const int32_t frame : expected(first, last)) {
-    const bool there = std::binary_search(frames_.begin(), frames_.end(), frame);
-    if (there && open) add(from, to);
-    if (!there && !open) from = frame;
-    if (!there) to = frame;
-    open = !there;
-  }
-  if (open) add(from, to);
-  return text;
+  return name_runs(joined(chains(first, last)), [&](int32_t frame) { return forms_.count(frame) == 0; });
+}
+
+bool StoredSequence::is_unlinked(int32_t frame) const {
+  const auto here = forms_.find(frame), before = forms_.find(frame - step_);
+  if (here == forms_.end() || before == forms_.end()) return false;
+  const FrameForm& form = here->second;
+  if (form.stream == frame && form.replayed_stream == frame) return false;  // a cut, or the first of a job
+  const bool follows = form.stream == before->second.stream || form.replayed_stream == before->second.stream;
+  return !follows || follows_another_scene(before->second, form);
+}
+
+std::string StoredSequence::unlinked(int32_t first, int32_t last) const {
+  return name_runs(joined(chains(first, last)), [&](int32_t frame) { return frame > first && is_unlinked(frame); });
 }
 
 }  // namespace gradus::tool

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "render/sequence/frame_record.h"
 
 namespace gradus::tool {
 
@@ -16,16 +19,21 @@ class StoredSequence {
   std::string path(int32_t frame) const;
   // In order; those of which base and offset are there.
   const std::vector<int32_t>& frames() const { return frames_; }
-  // The largest that meets all frames.
+  // From a frame to the one that replays it.
   int32_t step() const { return step_; }
-  // Those of [first, last] that the steps meet.
-  std::vector<int32_t> expected(int32_t first, int32_t last) const;
+  // Those of [first, last] that the steps meet, in as many lists as jobs have shared the folder: two of a step of 2, say.
+  std::vector<std::vector<int32_t>> chains(int32_t first, int32_t last) const;
   // "4, 7 to 9": the expected ones that are not there.
   std::string missing(int32_t first, int32_t last) const;
+  // Those that replay another frame than is stored before them: nothing links the two.
+  std::string unlinked(int32_t first, int32_t last) const;
 
  private:
+  bool is_unlinked(int32_t frame) const;
+
   std::string folder_;
   std::vector<int32_t> frames_;
+  std::map<int32_t, FrameForm> forms_;
   int32_t step_ = 1;
 };
 

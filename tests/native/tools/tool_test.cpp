@@ -311,35 +311,46 @@ class ToolSequence : public Tool {
   }
   void render(uint32_t reconstruction, uint32_t samples = 4, bool stands_still = false) {
     fs::remove_all(folder / kFolder);
-    delivered.clear();
+    render({reconstruction, samples, stands_still ? 0.0f : 0.02f, stands_still});
+  }
+  struct Job {
+    uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2, samples = 4;
+    float speed = 0.02f;  // of the camera
+    bool brightens = false;
+    int32_t first = 1, last = 6;
+    uint32_t step = 1;
+  };
+  void render(const Job& job) {
+    delivered.resize(6);
     const GradusDevice device = make_device();
     const GradusScene scene = make_scene(device);
     auto settings = sized<GradusSequenceSettings>();
     const std::string store = (folder / kFolder).string();
-    settings.first = 1;
-    settings.last = 6;
-    settings.step = 1;
+    settings.first = job.first;
+    settings.last = job.last;
+    settings.step = job.step;
     settings.folder = store.c_str();
     GradusSequence sequence = 0;
     ASSERT_OK(gradus_sequence_create(device, &settings, &sequence));
-    for (int32_t frame = 1; frame <= 6; ++frame) {
-      ASSERT_OK(set_camera_at(scene, stands_still ? 0.0f : 0.02f * float(frame)));
+    for (int32_t frame = job.first; frame <= job.last; frame += int32_t(job.step)) {
+      ASSERT_OK(set_camera_at(scene, job.speed * float(frame)));
       ASSERT_OK(gradus_scene_commit(scene, nullptr, nullptr));
-      GradusSettings render_settings = small_render(24, 16, samples);
-      render_settings.reconstruction = reconstruction;
-      if (stands_still) render_settings.film_exposure = float(frame);
+      GradusSettings render_settings = small_render(24, 16, job.samples);
+      render_settings.reconstruction = job.reconstruction;
+      if (job.brightens) render_settings.film_exposure = float(frame);
       render_settings.frame = frame;
       GradusRender render = 0;
       ASSERT_OK(gradus_sequence_sample(sequence, scene, &render_settings, &render));
       ASSERT_OK(gradus_render_wait(render, -1.0));
       ASSERT_OK(gradus_render_release(render));
     }
-    for (int32_t frame = 1; frame <= 6; ++frame) {
+    for (int32_t frame = job.first; frame <= job.last; frame += int32_t(job.step)) {
       GradusRender render = 0;
       ASSERT_OK(gradus_sequence_deliver(sequence, frame, nullptr, &render));
       ASSERT_OK(gradus_render_wait(render, -1.0));
-      delivered.emplace_back(24 * 16 * 4);
-      ASSERT_OK(gradus_render_read_pass(render, GRADUS_PASS_COMBINED, delivered.back().data(), delivered.back().size()));
+      std::vector<float>& pixels = delivered[size_t(frame) - 1];
+      pixels.resize(24 * 16 * 4);
+      ASSERT_OK(gradus_render_read_pass(render, GRADUS_PASS_COMBINED, pixels.data(), pixels.size()));
       ASSERT_OK(gradus_render_release(render));
     }
     ASSERT_OK(gradus_sequence_release(sequence));
@@ -419,6 +430,47 @@ TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllOfThem) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("lacks frames 2 to 3, 5"), std::string::npos) << outcome.err;
   EXPECT_EQ(run("reconstruct store/anim/layer -o pictures --frames 4").code, 0);
+}
+
+// Of frames 1, 3 and 5 the step was 2, whatever they replay: 2 and 4 were not missing.
+TEST_F(ToolSequence, FramesThatReplayThoseBetweenMissThem) {
+  for (const int frame : {2, 4, 6}) {
+    for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
+  }
+  const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("lacks frames 2, 4:"), std::string::npos) << outcome.err;
+}
+
+// Two workers with a step of 2: their step was 1, no frame had links to the next, and nothing said so.
+TEST_F(ToolSequence, JobsOfAStepThatShareAFolderHaveThePicturesThatTheyDelivered) {
+  fs::remove_all(folder / kFolder);
+  for (const int32_t first : {1, 2}) {
+    Job job;
+    job.first = first;
+    job.step = 2;
+    render(job);
+  }
+  const Outcome made = run("reconstruct store/anim/layer -o pictures");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(made.err, "");
+  for (int frame = 1; frame <= 6; ++frame) {
+    const LoadedImage picture = load_rgb((folder / ("pictures/000" + std::to_string(frame) + ".exr")).string(), "");
+    for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[size_t(frame) - 1][4 * i]) << frame;
+  }
+  const Outcome info = run("info --json store/anim/layer");
+  EXPECT_NE(info.out.find("\"step\":2,"), std::string::npos) << info.out;
+}
+
+TEST_F(ToolSequence, FramesThatReplayOthersThanThoseBeforeThemAreNamed) {
+  for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / (std::string("f+0000003") + part));
+  Job changed;
+  changed.speed = 0.03f;
+  changed.first = changed.last = 3;
+  render(changed);
+  const Outcome made = run("reconstruct store/anim/layer -o pictures");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.err.find("warning: frames 4 replay others than those before them"), std::string::npos) << made.err;
 }
 
 // It did nothing for frames that were sampled without one.
