@@ -138,8 +138,8 @@ MOTION = (
         KEYS,
         "velocities are metres per frame",
         EXPORTED_MOTION,
-        "np.float32(time / frames_per_second)",
-        "np.float32(time)",
+        "[time / frames_per_second for time in (shutter.open, shutter.close)]",
+        "[time for time in (shutter.open, shutter.close)]",
         (blur("velocities_blur"),),
     ),
     Fault(

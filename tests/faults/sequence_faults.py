@@ -123,8 +123,8 @@ SEQUENCES = (
         LINK,
         "they need not lead back",
         LINKS,
-        "if (next == kNoLink || !returns(back, from.region, i, next)) return;",
-        "if (next == kNoLink || (i > links.size() && !returns(back, from.region, i, next))) return;",
+        "if (next == kNoLink || !returns(back, from, i, next)) return;",
+        "if (next == kNoLink || (i > links.size() && !returns(back, from, i, next))) return;",
         (native("LinkedFrames.WhatAppearsHasNoPartner"),),
     ),
     Fault(
@@ -177,8 +177,8 @@ SEQUENCES = (
         CUT,
         "frames with and without alpha share windows",
         RECORD,
-        "return a.region == b.region && a.channels == b.channels",
-        "return a.region == b.region",
+        "return before.region == frame.region && before.channels == frame.channels",
+        "return before.region == frame.region",
         (native("C8_Sequence.FramesWithAnotherNumberOfChannelsAreACut"),),
     ),
     Fault(
@@ -222,8 +222,8 @@ SEQUENCES = (
         DIFFERENCE,
         "there is none between frames that are alike",
         REPEATED,
-        "return next.stream == frame.stream;",
-        "return next.stream == frame.stream + 1;",
+        "return next.stream == frame.stream && next.scene_key",
+        "return next.stream == frame.stream + 1 && next.scene_key",
         (native("FiveFrames.LinksAreThoseThatTheNextFrameHasFollowed"),),
     ),
     Fault(
