@@ -29,9 +29,6 @@ constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
 // it stands out, and where noise is above a tenth of the light: there both halves may have met the same firefly, if the pixel is not darker
 // than what is around it. kLeastVariance: of what shows none.
 constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kLeastVariance = 1e-10f;
-// Noise goes with the root of the light, as of photons, down to this share of what noise leaves unknown of the light: below it pixels may
-// be dark by chance.
-constexpr float kDarkByChance = 0.5f;
 // Light around a pixel, by which residuals are measured.
 constexpr int kLightRadius = 3;
 // Around a pixel, where small and large windows are compared, by their share of the light close to it.
@@ -53,10 +50,9 @@ constexpr float kNotDark = std::numeric_limits<float>::max();
 // Of a pixel's own value: 1/variance. Light is its share of the light around; noise, that of the pixels around, in the same unit.
 float weigh_own(float light, float around, float noise, float own_noise) {
   const float unit = 1.0f / (around + kLeastVariance), brightness = std::min(1.0f, light * unit), relative = noise * unit;
-  const float dark = std::max(brightness, std::min(1.0f, kDarkByChance * relative)), usual = noise * std::sqrt(dark);
   const float excess = noise > 0.0f ? std::max(1.0f, own_noise / noise) : 1.0f, firefly = brightness * relative / kVisible;
   const float doubt = excess * excess * (1.0f + firefly * firefly);
-  return kOwnTrust / (usual * usual * doubt * doubt + kLeastVariance);
+  return kOwnTrust / (noise * noise * doubt * doubt + kLeastVariance);
 }
 
 PixelWeights weigh_pixels(const HalvedImage& image) {
