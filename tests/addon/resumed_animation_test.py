@@ -203,7 +203,7 @@ def test_c7_a_still_stretch_of_an_older_scene_is_not_mixed_in(square: Scene, tmp
     store = tmp_path / "store"
     square.gradus.frame_store = str(store)
     animate(square, tmp_path / "old", 1, 6)
-    square.world.color = (0.9, 0.2, 0.1)
+    square.camera.location.x += 0.3
     for frame in range(1, 4):
         for stored in list(store.rglob(f"f+{frame:07d}.*")):
             stored.unlink()
