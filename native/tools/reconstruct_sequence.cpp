@@ -97,7 +97,7 @@ uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
 // Of their files. Those of another size are of another animation.
 std::map<int32_t, GradusSettings> settings_of_files(const StoredSequence& stored, const std::vector<std::vector<int32_t>>& chains) {
   const int32_t first = chains.front().front();
-  std::map<int32_t, GradusSettings> all{{first, load_header(stored.path(first)).settings}};
+  std::map<int32_t, GradusSettings> all;
   for (const std::vector<int32_t>& chain : chains) {
     for (const int32_t frame : chain) {
       const GradusSettings& settings = all[frame] = load_header(stored.path(frame)).settings;

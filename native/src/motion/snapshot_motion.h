@@ -12,8 +12,8 @@ class SnapshotMotion {
   // Both live as long as it.
   SnapshotMotion(const Snapshot& from, const Snapshot& to);
 
-  // Where a surface point of `from` is at the moment of the frame of `to`, in the internal space of `to`. False: it is not there, or its mesh has another
-  // topology.
+  // Where a surface point of `from` is at the moment of the frame of `to`, in the internal space of `to`. False: it is not there, or its
+  // mesh has another topology.
   bool position(const Hit& hit, Vec3* position) const;
 
  private:

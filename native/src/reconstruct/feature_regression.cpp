@@ -47,7 +47,7 @@ struct PixelWeights {
 // Changes of light may be 0 between greater ones by chance.
 constexpr float kNotDark = std::numeric_limits<float>::max();
 
-// Of a pixel's own value: 1/variance. Light is its share of the light around; noise, that of the pixels around, in the same unit.
+// Of a pixel's own value: 1/variance. light, own_noise: the pixel's; around, noise: means around it.
 float weigh_own(float light, float around, float noise, float own_noise) {
   const float unit = 1.0f / (around + kLeastVariance), brightness = std::min(1.0f, light * unit), relative = noise * unit;
   const float excess = noise > 0.0f ? std::max(1.0f, own_noise / noise) : 1.0f, firefly = brightness * relative / kVisible;

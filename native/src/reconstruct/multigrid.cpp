@@ -13,7 +13,7 @@ constexpr int kCoarsestSweeps = 8;
 // Rows at a time: the passes below make some rows around each piece once more.
 constexpr int kGrain = 64;
 
-// to = x + S(b - A x), make(y, &rows) making row y of x.
+// to = x + S(b - A x), make(y, scratch, &rows) making row y of x. scratch: as long as a row, and one more.
 template <class Make>
 void sweep(const Stencil& a, const Field& b, const Make& make, Field* to) {
   const int w = a.width(), h = a.height(), channels = b.channels();
@@ -21,18 +21,18 @@ void sweep(const Stencil& a, const Field& b, const Make& make, Field* to) {
       h,
       [&](int begin, int end) {
         RollingRows x(w, channels);
-        std::vector<float> smoothing(static_cast<size_t>(w));
+        std::vector<float> scratch(size_t(w) + 1);
         const auto make_or_clear = [&](int y) {
-          if (y >= 0 && y < h) return make(y, &x);
+          if (y >= 0 && y < h) return make(y, scratch.data(), &x);
           for (int c = 0; c < channels; ++c) std::fill_n(x.row(y, c), w, 0.0f);
         };
         make_or_clear(begin - 1);
         make_or_clear(begin);
         for (int y = begin; y < end; ++y) {
           make_or_clear(y + 1);
-          read_smoothing(a, y, smoothing.data());
+          read_smoothing(a, y, scratch.data());
           for (int c = 0; c < channels; ++c) {
-            const float *s = smoothing.data(), *from = b.row(y, c), *here = x.row(y, c);
+            const float *s = scratch.data(), *from = b.row(y, c), *here = x.row(y, c);
             float* out = to->row(y, c);
             apply_row(a, y, x.row(y - 1, c), here, x.row(y + 1, c), out);
             for (int i = 0; i < w; ++i) out[i] = here[i] + s[i] * (from[i] - out[i]);
@@ -44,11 +44,10 @@ void sweep(const Stencil& a, const Field& b, const Make& make, Field* to) {
 
 // Two sweeps from 0.
 void sweep_twice(const Stencil& a, const Field& b, Field* to) {
-  const auto sweep_zero = [&](int y, RollingRows* x) {
-    std::vector<float> smoothing(static_cast<size_t>(a.width()));
-    read_smoothing(a, y, smoothing.data());
+  const auto sweep_zero = [&](int y, float* s, RollingRows* x) {
+    read_smoothing(a, y, s);
     for (int c = 0; c < b.channels(); ++c) {
-      const float *s = smoothing.data(), *from = b.row(y, c);
+      const float* from = b.row(y, c);
       float* out = x->row(y, c);
       for (int i = 0; i < a.width(); ++i) out[i] = s[i] * from[i];
     }
@@ -58,16 +57,15 @@ void sweep_twice(const Stencil& a, const Field& b, Field* to) {
 
 // Two sweeps from x + P coarse, which overwrite x.
 void sweep_interpolated_twice(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* x, Field* to) {
-  const auto interpolate = [&](int y, RollingRows* rows) {
-    std::vector<float> correction(size_t(a.width()) + 1);
+  const auto interpolate = [&](int y, float* more, RollingRows* rows) {
     for (int c = 0; c < b.channels(); ++c) {
-      p.interpolate_row(y, coarse.row(y / 2, c), coarse.row(y / 2 + 1, c), correction.data());
-      const float *from = x->row(y, c), *more = correction.data();
+      p.interpolate_row(y, coarse.row(y / 2, c), coarse.row(y / 2 + 1, c), more);
+      const float* from = x->row(y, c);
       float* out = rows->row(y, c);
       for (int i = 0; i < a.width(); ++i) out[i] = from[i] + more[i];
     }
   };
-  const auto copy = [&](int y, RollingRows* rows) {
+  const auto copy = [&](int y, float* /*scratch*/, RollingRows* rows) {
     for (int c = 0; c < b.channels(); ++c) std::copy_n(to->row(y, c), a.width(), rows->row(y, c));
   };
   sweep(a, b, interpolate, to);

@@ -88,6 +88,17 @@ Camera Camera::without_lens() const {
   return pinhole;
 }
 
+Camera Camera::at_rest(float time) const {
+  Camera resting = *this;
+  if (!moves()) return resting;
+  Pose& now = resting.poses_[int(Moment::Now)];
+  pose_at(time, &now);
+  now.inverse = Mat3(glm::inverse(glm::dmat3(now.axes)));  // as of any camera at rest
+  resting.keys_ = {};
+  resting.windows_.clear();
+  return resting;
+}
+
 Vec2 Camera::lens_point(const Vec2& u) const {
   if (!has_lens()) return Vec2(0.0f);
   Vec2 p = desc_.blades < 3 ? concentric_disk(u) : regular_polygon(desc_.blades, desc_.blade_rotation, u);

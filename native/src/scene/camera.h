@@ -41,6 +41,8 @@ class Camera {
   bool has_lens() const { return desc_.aperture_radius > 0.0f; }
   // The same, with a point for a lens.
   Camera without_lens() const;
+  // The same, held where it is at a time of the shutter.
+  Camera at_rest(float time) const;
   bool is_panorama() const { return desc_.type == GRADUS_CAMERA_PANORAMA; }
   // It moves while the shutter is open.
   bool moves() const { return !keys_.empty(); }

@@ -7,7 +7,6 @@
 
 #include "motion/snapshot_motion.h"
 #include "path/context.h"
-#include "temporal/centre_camera.h"
 
 namespace gradus {
 
@@ -81,8 +80,9 @@ void for_each_pixel(size_t count, const Body& body) {
 
 CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelTest& is_cancelled) {
   const auto pixels = size_t(region.area());
-  CentreView view{&snapshot, centre_camera(snapshot, width, height), region, std::vector<Hit>(pixels), std::vector<Vec3>(pixels)};
   const float time = snapshot.shutter.time_of_frame();
+  const Camera camera = Camera(snapshot.camera, width, height).at_rest(time).without_lens();
+  CentreView view{&snapshot, camera, region, std::vector<Hit>(pixels), std::vector<Vec3>(pixels)};
   for_each_pixel(view.hits.size(), [&](size_t i) {
     if (is_cancelled()) return;
     const Ray ray = view.camera.ray({centre_of(region, i), Vec2(0.0f), time});

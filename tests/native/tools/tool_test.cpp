@@ -309,6 +309,10 @@ class ToolSequence : public Tool {
     Tool::SetUp();
     render(GRADUS_RECONSTRUCTION_L2);
   }
+  // Both files of a frame.
+  void remove(int frame) const {
+    for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
+  }
   void render(uint32_t reconstruction, uint32_t samples = 4, bool stands_still = false) {
     fs::remove_all(folder / kFolder);
     render({reconstruction, samples, stands_still ? 0.0f : 0.02f, stands_still});
@@ -423,9 +427,7 @@ TEST_F(ToolSequence, WindowsHaveTheOverlapThatIsAskedFor) {
 
 // Of frames 1, 4 and 6 the step was 2: frame 4 was none of them.
 TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllOfThem) {
-  for (const int frame : {2, 3, 5}) {
-    for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
-  }
+  for (const int frame : {2, 3, 5}) remove(frame);
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("lacks frames 2 to 3, 5"), std::string::npos) << outcome.err;
@@ -434,9 +436,7 @@ TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllOfThem) {
 
 // Of frames 1, 3 and 5 the step was 2, whatever they replay: 2 and 4 were not missing.
 TEST_F(ToolSequence, FramesThatReplayThoseBetweenMissThem) {
-  for (const int frame : {2, 4, 6}) {
-    for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
-  }
+  for (const int frame : {2, 4, 6}) remove(frame);
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("lacks frames 2, 4:"), std::string::npos) << outcome.err;
@@ -463,7 +463,7 @@ TEST_F(ToolSequence, JobsOfAStepThatShareAFolderHaveThePicturesThatTheyDelivered
 }
 
 TEST_F(ToolSequence, FramesThatReplayOthersThanThoseBeforeThemAreNamed) {
-  for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / (std::string("f+0000003") + part));
+  remove(3);
   Job changed;
   changed.speed = 0.03f;
   changed.first = changed.last = 3;

@@ -42,8 +42,8 @@ class FrameSampling final : public RenderTask {
   void run(RenderLoop* loop);
   void save(const Frame& frame, FramePart part);
   bool follows_before() const;
-  // Whether a stored offset is of what the frame follows now: other steps, parts or scenes of a job have other frames before it. Where nobody has
-  // told what comes before, it is.
+  // Whether a stored offset is of what the frame follows now: other steps, parts or scenes of a job have other frames before it. Where
+  // nobody has told what comes before, it is.
   bool replays_before(const FrameHeader& offset) const;
   std::shared_ptr<const Replay> follow(const FrameHeader& base, const std::vector<uint32_t>& counts);
   LoopInput base_input() const;
