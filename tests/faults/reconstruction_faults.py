@@ -158,8 +158,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "four times, of a pixel's own value",
         FEATURE_REGRESSION,
-        "kOwnTrust / (noise * noise * doubt * doubt + kLeastVariance)",
-        "kOwnTrust / (4.0f * noise * noise * doubt * doubt + kLeastVariance)",
+        "kOwnTrust / (expected * expected * doubt * doubt + kLeastVariance)",
+        "kOwnTrust / (4.0f * expected * expected * doubt * doubt + kLeastVariance)",
         OF_PIXELS,
     ),
     Fault(
@@ -167,8 +167,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "a quarter, of a pixel's own value",
         FEATURE_REGRESSION,
-        "kOwnTrust / (noise * noise * doubt * doubt + kLeastVariance)",
-        "kOwnTrust / (0.25f * noise * noise * doubt * doubt + kLeastVariance)",
+        "kOwnTrust / (expected * expected * doubt * doubt + kLeastVariance)",
+        "kOwnTrust / (0.25f * expected * expected * doubt * doubt + kLeastVariance)",
         OF_PIXELS,
     ),
     Fault(

@@ -94,7 +94,7 @@ struct Kind {
 constexpr Kind kKinds[] = {{GRADUS_RECONSTRUCTION_NONE},
                            {GRADUS_RECONSTRUCTION_L2},
                            {GRADUS_RECONSTRUCTION_WEIGHTED},
-                           {GRADUS_RECONSTRUCTION_REGULARIZED, false, 2.0, 0.4}};
+                           {GRADUS_RECONSTRUCTION_REGULARIZED, false, 2.2, 0.4}};
 
 class A8_Error : public testing::TestWithParam<Scenario> {};
 

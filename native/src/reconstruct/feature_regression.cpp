@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
@@ -29,6 +28,8 @@ constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
 // it stands out, and where noise is above a tenth of the light: there both halves may have met the same firefly, if the pixel is not darker
 // than what is around it. kLeastVariance: of what shows none.
 constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kLeastVariance = 1e-10f;
+// Noise goes with the root of the light, as of photons, down to this share of the noise around: below it pixels may be dark by chance.
+constexpr float kDarkByChance = 0.5f;
 // Light around a pixel, by which residuals are measured.
 constexpr int kLightRadius = 3;
 // Around a pixel, where small and large windows are compared, by their share of the light close to it.
@@ -39,36 +40,55 @@ constexpr int kSquare = 16;
 // Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
 constexpr float kMost = 1e12f;
 
-// Of pixels: their weights in windows, and 1/variance.
-struct PixelWeights {
-  Field in_windows, own;
+// Of all pixels: noise and light, their own and around them.
+struct Surroundings {
+  Field own_noise, own_light, noise, light;
 };
 
-// Changes of light may be 0 between greater ones by chance.
-constexpr float kNotDark = std::numeric_limits<float>::max();
-
-// Of a pixel's own value: 1/variance. light, own_noise: the pixel's; around, noise: means around it.
-float weigh_own(float light, float around, float noise, float own_noise) {
-  const float unit = 1.0f / (around + kLeastVariance), brightness = std::min(1.0f, light * unit), relative = noise * unit;
-  const float excess = noise > 0.0f ? std::max(1.0f, own_noise / noise) : 1.0f, firefly = brightness * relative / kVisible;
-  const float doubt = excess * excess * (1.0f + firefly * firefly);
-  return kOwnTrust / (noise * noise * doubt * doubt + kLeastVariance);
+Surroundings look_around(const HalvedImage& image) {
+  const int w = image.mean.width(), h = image.mean.height();
+  Field noise = make_field(w, h, [&](int x, int y) { return std::sqrt(mean_of_squares(image.half_difference, x, y)); });
+  Field light = make_field(w, h, [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); });
+  return {noise, light, box_mean(noise, kNoiseRadius), box_mean(light, kNoiseRadius)};
 }
 
-PixelWeights weigh_pixels(const HalvedImage& image) {
-  const int w = image.mean.width(), h = image.mean.height();
-  const Field own = make_field(w, h, [&](int x, int y) { return std::sqrt(mean_of_squares(image.half_difference, x, y)); });
-  const Field own_light = make_field(w, h, [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); });
-  const Field noise = box_mean(own, kNoiseRadius), light = box_mean(own_light, kNoiseRadius);
-  return {make_field(w, h,
-                     [&](int x, int y) {
-                       const float around = noise.row(y)[x] + kShareOfLight * light.row(y)[x];
-                       const float deviation = std::max(around, kOwnShare * own.row(y)[x]) + kShareOfMedian;
-                       return 1.0f / (deviation * deviation);
-                     }),
-          make_field(w, h, [&](int x, int y) {
-            return weigh_own(image.is_light ? own_light.row(y)[x] : kNotDark, light.row(y)[x], noise.row(y)[x], own.row(y)[x]);
-          })};
+Field weigh_in_windows(const Surroundings& of) {
+  return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
+    const float around = of.noise.row(y)[x] + kShareOfLight * of.light.row(y)[x];
+    const float deviation = std::max(around, kOwnShare * of.own_noise.row(y)[x]) + kShareOfMedian;
+    return 1.0f / (deviation * deviation);
+  });
+}
+
+// What is to be expected of each pixel by its light, and no more than is around it. Noise is averaged over the root of the light, not light
+// and noise by themselves: a lamp, which has light and no noise, says nothing of the wall beside it.
+Field expected_noise(const Surroundings& of) {
+  const auto root = [&](int x, int y) { return std::sqrt(std::max(of.own_light.row(y)[x], kDarkByChance * of.noise.row(y)[x])); };
+  const Field relative = box_mean(make_field(of.noise.width(), of.noise.height(),
+                                             [&](int x, int y) {
+                                               const float noise = of.own_noise.row(y)[x];
+                                               return noise > 0.0f ? noise / root(x, y) : 0.0f;
+                                             }),
+                                  kNoiseRadius);
+  return make_field(of.noise.width(), of.noise.height(),
+                    [&](int x, int y) { return std::min(of.noise.row(y)[x], relative.row(y)[x] * root(x, y)); });
+}
+
+// Of a pixel's own value: 1/variance. firefly: whether both halves may have met one, 1 where that is as likely as not.
+float weigh_own(float expected, float excess, float firefly) {
+  const float doubt = excess * excess * (1.0f + firefly * firefly);
+  return kOwnTrust / (expected * expected * doubt * doubt + kLeastVariance);
+}
+
+// Changes of light may be 0 between greater ones by chance: those are not called dark.
+Field weigh_own(const Surroundings& of, bool is_light) {
+  const Field expected = is_light ? expected_noise(of) : of.noise;
+  return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
+    const float noise = of.noise.row(y)[x], unit = 1.0f / (of.light.row(y)[x] + kLeastVariance);
+    const float excess = noise > 0.0f ? std::max(1.0f, of.own_noise.row(y)[x] / noise) : 1.0f;
+    const float brightness = is_light ? std::min(1.0f, of.own_light.row(y)[x] * unit) : 1.0f;
+    return weigh_own(expected.row(y)[x], excess, brightness * noise * unit / kVisible);
+  });
 }
 
 // Median of the depths that are there; 1 without any.
@@ -185,9 +205,12 @@ void normalise(float scale, HalvedImage* image) {
 }
 
 FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel) {
-  PixelWeights weights = weigh_pixels(image);
-  const auto predictors = std::make_shared<const Predictors>(Predictors{basis_of(features), std::move(weights.in_windows)});
-  fine_ = LocalRegression(predictors, std::move(weights.own), kFine);
+  std::shared_ptr<const Predictors> predictors;
+  {
+    const Surroundings surroundings = look_around(image);
+    predictors = std::make_shared<const Predictors>(Predictors{basis_of(features), weigh_in_windows(surroundings)});
+    fine_ = LocalRegression(predictors, weigh_own(surroundings, image.is_light), kFine);
+  }
   coarse_ = LocalRegression(predictors, {}, kCoarse);
   RegressionResult first = fine_.estimate(image.mean, image.half_difference, cancel);
   {

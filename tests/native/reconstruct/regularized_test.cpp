@@ -193,8 +193,8 @@ TEST(B2_Regularized, BelievesPixelsByTheirVariance) {
   EXPECT_LT(share, 0.5);
 }
 
-// Gaps between small balls were doubted as if they were fireflies, though darker than all around them, and got most of the balls' light:
-// 0.86 in place of 0.05.
+// Gaps between small balls, darker than all around them and with less noise: they were taken to be as noisy as the balls, and got their
+// light, with 128 samples more than twice the error of the samples alone.
 TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
   const auto is_gap = [](int x, int y) { return x % 3 == 0 && y % 3 == 0; };
   FeatureFrame description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
@@ -207,7 +207,7 @@ TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
     for (int x = 0; x < kWidth; x += 3, ++count) gaps += image[3 * (size_t(y) * kWidth + size_t(x))];
   }
   std::printf("  gaps have %.3f of 0.05\n", gaps / count);
-  EXPECT_LT(gaps / count, 0.7);
+  EXPECT_LT(gaps / count, 0.3);
 }
 
 // One sample in sixteen carries all light: windows take it for outliers, and the first step loses nearly all of it. The second gives
