@@ -198,6 +198,18 @@ def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: P
     assert not np.array_equal(pictures(found)[5], pictures(tmp_path / "old")[4])
 
 
+def test_c7_a_still_stretch_that_noise_ended_is_found_again(
+    square: Scene, lines: Callable[[], list[dict[str, Any]]], tmp_path: Path
+) -> None:
+    """Cells that were quiet early had fewer samples than were asked for: the rerun ended with "do not belong together"."""
+    square.gradus.samples, square.gradus.noise_threshold = 256, 0.1
+    square.gradus.frame_store = str(tmp_path / "store")
+    for run in ("once", "again"):
+        animate(square, tmp_path / run, 1, 4)
+    require_equal(pictures(tmp_path / "again"), pictures(tmp_path / "once"), range(1, 5))
+    assert [stats["stopped"] for stats in lines()] == ["noise", *["unchanged"] * 3, *["stored"] * 4]
+
+
 def test_c7_a_still_stretch_of_an_older_scene_is_not_mixed_in(square: Scene, tmp_path: Path) -> None:
     """The new frames were taken to be like the old ones beside them, whose files have the same number."""
     store = tmp_path / "store"

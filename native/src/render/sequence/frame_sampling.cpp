@@ -12,7 +12,7 @@
 namespace gradus {
 
 FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input)
-    : sequence_(std::move(sequence)), input_(std::move(input)), stored_base_(stored(FramePart::kBase)), base_(base_input()) {
+    : sequence_(std::move(sequence)), input_(std::move(input)), stored_base_(stored_base()), base_(base_input()) {
   record_.plan = base_.plan();
   if (stored_base_ && record_.plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     require_features(*stored_base_, sequence_->folder_.path(input_.settings.frame, FramePart::kBase));
@@ -82,13 +82,26 @@ void FrameSampling::render() {
   sample_parts();
 }
 
+std::optional<FrameHeader> FrameSampling::stored_base() const {
+  std::optional<FrameHeader> base = stored(FramePart::kBase);
+  const bool is_of_earlier = base && base->frame_number != input_.settings.frame;
+  if (is_of_earlier && !stored(FramePart::kOffset)) return std::nullopt;  // of an earlier frame come both halves, or none
+  return base;
+}
+
+bool FrameSampling::has_enough(const FrameHeader& half, FramePart part) const {
+  // Counted offsets have what they have by their base.
+  const bool follows_base = part == FramePart::kOffset && has_counts(half.settings);
+  return follows_base || has_as_many(half, part, input_.settings);
+}
+
 std::optional<FrameHeader> FrameSampling::stored(FramePart part) const {
   const SequenceFolder& folder = sequence_->folder_;
   const int32_t number = input_.settings.frame;
   if (!folder.holds(number)) return std::nullopt;
   std::optional<FrameHeader> frame = read_or_name_the_way_out([&] { return folder.header(number, part); });
   // The file of an earlier frame that was as this one, and is no longer, or has too few samples: taken anew, or from that frame again.
-  if (frame->frame_number != number && (!has_as_many(*frame, part, input_.settings) || differs_from_before())) return std::nullopt;
+  if (frame->frame_number != number && (!has_enough(*frame, part) || differs_from_before())) return std::nullopt;
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // that of the first of several frames that are alike
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = frame->settings.integrator;  // what it came to
@@ -162,7 +175,7 @@ void FrameSampling::sample_parts() {
   if (has_counts(input_.settings)) counts = samples_of_pixels(sampled ? *sampled : *load(FramePart::kBase, StoredContent::kSamples));
   sample_offset(base, counts, samples_base);
   if (sampled) save(*sampled, FramePart::kBase);
-  if (!sampled) record_.stats.stopped = "stored";
+  if (!sampled && !offset_) record_.stats.stopped = "stored";
   finish(base, std::move(counts));
   const std::lock_guard lock(mutex_);
   frame_ = sampled;
@@ -173,6 +186,7 @@ void FrameSampling::sample_offset(const FrameHeader& base, const std::vector<uin
   input.whole_samples = input.settings.samples;
   input.settings.samples = samples_of(FramePart::kOffset, input.settings.samples);
   std::optional<FrameHeader> found = stored(FramePart::kOffset);
+  if (found && found->frame_number != base.frame_number) found.reset();
   if (found && base.frame_number != input_.settings.frame) return;  // both are those of the earlier frame
   if (found && !replays_before(*found)) found.reset();
   const bool counted = has_counts(input_.settings);

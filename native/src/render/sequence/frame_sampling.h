@@ -28,6 +28,9 @@ class FrameSampling final : public RenderTask {
 
   // What the folder has of the frame, if it fits.
   std::optional<FrameHeader> stored(FramePart part) const;
+  std::optional<FrameHeader> stored_base() const;
+  // Of a half of an earlier frame, which gets no more samples.
+  bool has_enough(const FrameHeader& half, FramePart part) const;
   // The frame that is sampled or was stored. With the lock.
   std::shared_ptr<const Frame> own_half(const char* what) const;
   std::shared_ptr<Frame> read(FramePart part, StoredContent content) const;

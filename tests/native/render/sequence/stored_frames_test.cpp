@@ -88,6 +88,68 @@ TEST(C7_StoredFrames, StillAdaptiveFramesAreFoundAgain) {
   }
 }
 
+// Of frames 1 to 3, all alike, twice: all of what a folder has, or from a frame on.
+struct StillJob {
+  uint32_t samples;
+  float threshold = 0.0f;
+  int32_t first = 1;
+};
+
+std::vector<Delivered> run_still(const StillJob& job, const std::string& folder) {
+  Pan pan(0.0f);
+  const auto sequence = make_sequence(job.first, 3, folder);
+  for (int32_t t = job.first; t <= 3; ++t) {
+    GradusSettings settings = settings_of(t, job.samples);
+    settings.noise_threshold = job.threshold;
+    sample(sequence.get(), pan.at(t), settings);
+  }
+  std::vector<Delivered> frames;
+  for (int32_t t = job.first; t <= 3; ++t) frames.push_back(deliver(sequence.get(), t));
+  return frames;
+}
+
+// Cells that were quiet early had fewer samples than were asked for: offsets were taken for unfinished and sampled anew under the number
+// of their own frame, beside the base of the first: "do not belong together".
+TEST(C7_StoredFrames, StillFramesWhoseCellsStopAreFoundAgain) {
+  const Folder folder;
+  const auto once = run_still({256, 0.1f}, folder.path());
+  const Frame offset = *SequenceFolder(folder.path()).load(1, FramePart::kOffset);
+  ASSERT_LT(mean_samples(offset), 100.0);
+  const auto again = run_still({256, 0.1f}, folder.path());
+  expect_same(again, once);
+  for (const Delivered& frame : again) EXPECT_EQ(frame.stats["stopped"], "stored");
+  expect_same(run_still({256, 0.1f, 2}, folder.path()), {once.begin() + 1, once.end()});
+}
+
+// One half of theirs had enough samples, the other had not.
+TEST(C7_StoredFrames, StillFramesGetASampleMoreInBothHalves) {
+  for (const uint32_t samples : {4u, 5u}) {
+    const Folder folder, fresh;
+    run_still({samples}, folder.path());
+    expect_same(run_still({samples + 1}, folder.path()), run_still({samples + 1}, fresh.path()));
+  }
+}
+
+TEST(C7_StoredFrames, AJobThatBeginsInAStillStretchGetsASampleMoreInBothHalves) {
+  for (const uint32_t samples : {4u, 5u}) {
+    const Folder folder;
+    run_still({samples}, folder.path());
+    const auto frames = run_still({samples + 1, 0.0f, 2}, folder.path());
+    EXPECT_EQ(frames.front().noisy, frames.back().noisy) << samples;
+  }
+}
+
+// A farm could not tell what was sampled.
+TEST(C7_StoredFrames, FramesThatSampledTheirOffsetAnewAreNotSaidToBeStored) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto second = make_steps(1, 3, 2, folder.path());
+  for (const int32_t frame : {1, 3}) sample(second.get(), pan.at(frame), settings_of(frame));
+  const auto frames = render(&pan, make_sequence(1, 3, folder.path()).get(), 1, 3);
+  EXPECT_EQ(frames[0].stats["stopped"], "stored");
+  EXPECT_EQ(frames[2].stats["stopped"], "samples") << "it follows frame 2 now";
+}
+
 // The pace of a base that went on was that of all its samples, in the time of those that this run took.
 TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesThatItsRunTook) {
   Pan pan(1.3f);
