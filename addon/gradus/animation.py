@@ -233,7 +233,7 @@ class Animation:
 def _stepping(job: Any, last: int) -> Iterator[Callable[[int], None]]:
     """Gives a function that shows the engine's depsgraph at a frame up to `last`. In the end, whatever happens, it is at the job's own."""
     own = job.scene.frame_current
-    simulations = simulation.of_scene(job.depsgraph.scene)
+    simulations = simulation.of_job(job.depsgraph)
     shown = own if simulations is None else None
     if simulations is not None:
         simulations.compute(last + job.frames_beyond(), job.stop)
@@ -279,7 +279,7 @@ def of_job(job: Any) -> Animation | None:
 
 def _why_not(job: Any) -> str:
     """What is against differences over time; "" nothing."""
-    if not bpy.app.background and simulation.of_scene(job.depsgraph.scene) is not None:
+    if not bpy.app.background and simulation.of_job(job.depsgraph) is not None:
         return "simulations are not baked"  # see simulation.py
     return _why_not_over_time(job)
 

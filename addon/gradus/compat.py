@@ -70,3 +70,12 @@ def view_names(render: Any) -> list[str]:
     if render.views_format == "STEREO_3D":
         views = [name for name in views if name in ("left", "right")]
     return views or [""]
+
+
+def action_curves(action: Any) -> list[Any]:
+    """F-curves of an action, whoever it moves; none of none. From 4.4 on they lie in channel bags."""
+    if action is None:
+        return []
+    if not hasattr(action, "layers"):
+        return list(action.fcurves)
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]

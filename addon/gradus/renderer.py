@@ -199,7 +199,7 @@ class Job:
     def simulations(self) -> simulation.Simulations | None:
         if self.is_preview or not self.engine.is_animation:
             return None
-        return simulation.of_scene(self.depsgraph.scene)
+        return simulation.of_job(self.depsgraph)
 
     def warn_of_simulations(self) -> None:
         """The interface draws what the scene's own depsgraph has: it must not be stepped under it."""

@@ -19,6 +19,7 @@ from typing import Any
 import bpy
 
 from .export import Cancelled
+from .may_be_seen import MayBeSeen, is_keyed
 
 _DEFORMING = frozenset({"CLOTH", "SOFT_BODY"})
 _GUESSED = _DEFORMING | {"DYNAMIC_PAINT"}
@@ -27,10 +28,12 @@ _SHARED = _GUESSED | {"PARTICLE_SYSTEM"}
 
 
 class Simulations:
-    """The simulations of a scene, which this steps; several view layers and views share it."""
+    """The simulations of a scene that its pictures may show, which this steps; several view layers and views share it. layer: one that is
+    rendered, even where it is switched off."""
 
-    def __init__(self, scene: Any) -> None:
+    def __init__(self, scene: Any, layer: str = "") -> None:
         self.scene = scene
+        self._may_be_seen = MayBeSeen(_with_backgrounds(scene), layer)
         self.names: list[str] = []
         self._first = scene.frame_start
         self._caches: list[Any] = []  # those that count as baked between steps
@@ -41,12 +44,18 @@ class Simulations:
     def _find(self) -> None:
         for scene in _with_backgrounds(self.scene):
             world = scene.rigidbody_world
-            if world is not None and world.enabled and world.collection is not None and not _is_kept(world.point_cache):
+            if world is not None and world.enabled and not _is_kept(world.point_cache) and self._shows_bodies(world):
                 self._add("Rigid Body World", world.point_cache.frame_start)
         for obj in _with_instances(obj for scene in _with_backgrounds(self.scene) for obj in scene.objects):
-            for modifier in obj.modifiers:
-                if modifier.show_render:
+            modifiers = [modifier for modifier in obj.modifiers if modifier.show_render or is_keyed(obj, "show_render")]
+            # What deforms a body may push others.
+            if modifiers and (obj.rigid_body is not None or self._may_be_seen(obj)):
+                for modifier in modifiers:
                     self._find_in(obj, modifier)
+
+    def _shows_bodies(self, world: Any) -> bool:
+        """A world stays behind, empty, where its bodies were deleted."""
+        return world.collection is not None and any(self._may_be_seen(obj) for obj in world.collection.all_objects)
 
     def _find_in(self, obj: Any, modifier: Any) -> None:
         name = f"{obj.name}, {modifier.name}"
@@ -165,10 +174,12 @@ def _has_zone(group: Any, seen: set[int]) -> bool:
 _found: dict[str, Simulations] = {}
 
 
-def of_scene(scene: Any) -> Simulations | None:
-    """The simulations of a scene that are not baked, looked for once in a job; None if there are none."""
+def of_job(depsgraph: Any) -> Simulations | None:
+    """The simulations of a scene that are not baked, looked for once in a job; None if there are none. A view layer that is switched off is
+    rendered alone."""
+    scene = depsgraph.scene
     if scene.name_full not in _found:
-        _found[scene.name_full] = Simulations(scene)
+        _found[scene.name_full] = Simulations(scene, depsgraph.view_layer.name)
     found = _found[scene.name_full]
     return found if found.names else None
 

@@ -11,7 +11,7 @@ import bpy
 import pytest
 from gradus import simulation
 from gradus.export import Cancelled, motion
-from support import images, recording, simulations
+from support import animation, images, recording, simulations
 from support.exports import Exports
 
 LAST = 8
@@ -190,6 +190,236 @@ def test_a_cancel_on_the_way_leaves_the_scene_at_its_frame() -> None:
     with pytest.raises(Cancelled):
         simulation.Simulations(scene).compute(LAST, lambda: scene.frame_current == 2)
     assert scene.frame_current == 4
+
+
+# ------------------------------------------------------------------------------------------------ simulations that nothing shows
+
+
+def hide(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    obj.hide_render = True
+
+
+def collect(scene: bpy.types.Scene, obj: bpy.types.Object, *names: str) -> list[bpy.types.LayerCollection]:
+    """Into collections, each inside the one before; their places in the first view layer."""
+    scene.collection.objects.unlink(obj)
+    places = [scene.view_layers[0].layer_collection]
+    for name in names:
+        collection = bpy.data.collections.new(name)
+        places[-1].collection.children.link(collection)
+        places.append(places[-1].children[name])
+    places[-1].collection.objects.link(obj)
+    return places[1:]
+
+
+def exclude(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    collect(scene, obj, "Excluded")[0].exclude = True
+
+
+def hide_the_collection_around(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    collect(scene, obj, "Outer", "Inner")[0].collection.hide_render = True
+
+
+def leave_to_a_layer_that_is_off(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    scene.view_layers.new("Off").use = False
+    exclude(scene, obj)
+
+
+WAYS_TO_HIDE = [hide, exclude, hide_the_collection_around, leave_to_a_layer_that_is_off]
+
+
+def simulated_object(kind: str) -> bpy.types.Object:
+    return bpy.data.objects[{"rigid body": "Falling", "cloth": "Cloth", "soft body": "Soft", "particles": "Emitter"}[kind]]
+
+
+@pytest.mark.parametrize("kind", ["rigid body", "cloth", "soft body", "particles"])
+@pytest.mark.parametrize("put_away", WAYS_TO_HIDE)
+def test_a_simulation_that_no_picture_shows_is_none(put_away: Callable, kind: str) -> None:
+    """It took time from what is shown: in a window frames were rendered one by one, else the scene was stepped from its start."""
+    scene = new_scene(kind)
+    assert len(simulation.Simulations(scene).names) == 1
+    put_away(scene, simulated_object(kind))
+    assert simulation.Simulations(scene).names == []
+
+
+def test_a_rigid_body_world_without_bodies_is_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """It stays where its bodies are deleted, and the scene was stepped from its first frame."""
+    scene = new_scene("rigid body", temporal=True)
+    bpy.data.objects.remove(bpy.data.objects["Falling"])
+    assert scene.rigidbody_world is not None
+    assert simulation.Simulations(scene).names == []
+    monkeypatch.setattr(simulation.Simulations, "compute", lambda *_: pytest.fail("nothing moves"))
+    render(scene, tmp_path)
+
+
+# ------------------------------------------------------------------------------------------------ and those that something shows
+
+
+def show_in_another_layer(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    scene.view_layers.new("Second")
+    exclude(scene, obj)
+
+
+def show_inside_what_is_excluded(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    outer, inner = collect(scene, obj, "Outer", "Inner")
+    outer.exclude, inner.exclude = True, False
+
+
+def show_in_another_collection(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    exclude(scene, obj)
+    scene.collection.objects.link(obj)
+
+
+def show_at_times(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    animation.key(obj, "hide_render", {1: True, LAST: False})
+    obj.hide_render = True
+
+
+def show_by_a_driver(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    obj.driver_add("hide_render").driver.expression = "frame < 4"
+    obj.hide_render = True
+
+
+def show_by_an_instance(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    outer, inner = collect(scene, obj, "Outer", "Inner")
+    outer.exclude = inner.exclude = True
+    instance = bpy.data.objects.new("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", outer.collection
+    scene.collection.objects.link(instance)
+
+
+def show_by_nodes(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    group = bpy.data.node_groups.new("Instancing", "GeometryNodeTree")
+    group.nodes.new("GeometryNodeObjectInfo").inputs["Object"].default_value = obj
+    add_mesh(scene).modifiers.new("Nodes", "NODES").node_group = group
+    obj.hide_render = True
+
+
+def carry(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    child = add_mesh(scene)
+    child.parent, child.parent_type = obj, "VERTEX"
+    obj.hide_render = True
+
+
+def cut(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    add_mesh(scene).modifiers.new("Boolean", "BOOLEAN").object = obj
+    obj.hide_render = True
+
+
+def be_instanced_by_particles(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    emitter = add_mesh(scene)
+    settings = emitter.modifiers.new("Hair", "PARTICLE_SYSTEM").particle_system.settings
+    settings.type, settings.render_type, settings.instance_object = "HAIR", "OBJECT", obj
+    obj.hide_render = True
+
+
+def be_hit(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    obj.modifiers.new("Collision", "COLLISION")
+    obj.hide_render = True
+
+
+def pull(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    bpy.ops.object.forcefield_toggle()
+    assert obj.field.type != "NONE"
+    obj.hide_render = True
+
+
+def paint(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    obj.modifiers.new("Dynamic Paint", "DYNAMIC_PAINT").ui_type = "BRUSH"
+    bpy.ops.dpaint.type_toggle(type="BRUSH")
+    obj.hide_render = True
+
+
+def flow(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    obj.modifiers.new("Fluid", "FLUID").fluid_type = "FLOW"
+    obj.hide_render = True
+
+
+def push_other_bodies(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    bpy.ops.rigidbody.object_add(type="PASSIVE")
+    obj.hide_render = True
+
+
+def add_mesh(scene: bpy.types.Scene) -> bpy.types.Object:
+    mesh = bpy.data.meshes.new("Shown")
+    mesh.from_pydata([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [], [(0, 1, 2)])
+    obj = bpy.data.objects.new("Shown", mesh)
+    scene.collection.objects.link(obj)
+    return obj
+
+
+WAYS_TO_BE_SEEN = [
+    show_in_another_layer,
+    show_inside_what_is_excluded,
+    show_in_another_collection,
+    show_at_times,
+    show_by_a_driver,
+    show_by_an_instance,
+    show_by_nodes,
+    carry,
+    cut,
+    be_instanced_by_particles,
+    be_hit,
+    pull,
+    paint,
+    flow,
+    push_other_bodies,
+]
+
+
+@pytest.mark.parametrize("use", WAYS_TO_BE_SEEN)
+def test_a_hidden_simulation_that_pictures_may_show_is_one(use: Callable) -> None:
+    scene = new_scene("cloth")
+    use(scene, bpy.data.objects["Cloth"])
+    assert "Cloth, Cloth" in simulation.Simulations(scene).names
+
+
+def test_the_force_of_hidden_particles_makes_them_seen() -> None:
+    scene = new_scene("particles")
+    emitter = bpy.data.objects["Emitter"]
+    emitter.hide_render = True
+    assert simulation.Simulations(scene).names == []
+    emitter.particle_systems[0].settings.force_field_1.type = "FORCE"
+    assert simulation.Simulations(scene).names == ["Emitter, Particles"]
+
+
+def test_a_hidden_body_counts_where_another_of_its_world_is_shown() -> None:
+    scene = new_scene("rigid body")
+    bpy.data.objects["Falling"].hide_render = True
+    bpy.context.view_layer.objects.active = add_mesh(scene)
+    bpy.ops.rigidbody.object_add()
+    assert simulation.Simulations(scene).names == ["Rigid Body World"]
+
+
+def test_a_layer_that_is_off_counts_where_it_is_rendered_alone() -> None:
+    scene = new_scene("cloth")
+    leave_to_a_layer_that_is_off(scene, bpy.data.objects["Cloth"])
+    assert simulation.Simulations(scene, "Off").names == ["Cloth, Cloth"]
+
+
+def test_a_modifier_that_is_keyed_counts_while_it_is_off() -> None:
+    """It stood still from the frame on where it was switched on."""
+    scene = new_scene("cloth")
+    cloth = bpy.data.objects["Cloth"]
+    animation.step(cloth, 'modifiers["Cloth"].show_render', {1: False, LAST: True})
+    cloth.modifiers[0].show_render = False
+    assert simulation.Simulations(scene).names == ["Cloth, Cloth"]
+
+
+def carry_something_unseen(scene: bpy.types.Scene) -> None:
+    """Also in the viewport, whose depsgraph is the one that is stepped."""
+    cloth = bpy.data.objects["Cloth"]
+    carry(scene, cloth)
+    bpy.data.objects["Shown"].parent_vertices = [48, 48, 48]
+    cloth.hide_viewport = True
+
+
+def test_c6_what_hangs_on_a_hidden_simulation_moves_with_it(temporal: bool, exports: Exports, tmp_path: Path) -> None:
+    scene = new_scene("cloth", temporal=temporal)
+    carry_something_unseen(scene)
+    render(scene, tmp_path)
+    truth = new_scene("cloth")
+    carry_something_unseen(truth)
+    compare(simulations.in_order(truth, 1, LAST), exports.of["ViewLayer"], range(1, LAST + 1))
 
 
 # ------------------------------------------------------------------------------------------------ what is left behind

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import bpy
+from gradus import compat
 
 
 def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
@@ -34,16 +35,8 @@ def make_linear(block: bpy.types.ID) -> None:
 
 
 def _interpolate(block: bpy.types.ID, interpolation: str, path: str = "") -> None:
-    for curve in _curves(block):
+    for curve in compat.action_curves(block.animation_data.action):
         if path in ("", curve.data_path):
             for point in curve.keyframe_points:
                 point.interpolation = interpolation
     block.animation_data.action.update_tag()
-
-
-def _curves(block: bpy.types.ID) -> list:
-    """An object and its data may share an action from 4.4 on, whose `fcurves` are then those of one of them."""
-    action = block.animation_data.action
-    if not hasattr(action, "layers"):
-        return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
