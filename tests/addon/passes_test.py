@@ -1,4 +1,4 @@
-"""The pass table: names per version, channels, switches (blender.md 4.2, contract 6)."""
+"""The pass table: names per version as Blender has them, channels, switches (contract 6)."""
 
 from __future__ import annotations
 

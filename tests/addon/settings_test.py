@@ -1,4 +1,4 @@
-"""One table of settings: Blender's properties, the library's options and the documentation agree (architecture 3, contract 5)."""
+"""One table of settings: Blender's properties, the library's options and the documentation agree (contract 5)."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ namespace {
 
 using test::PathScene;
 
-// At least 1,400 blocks of 5×5 pixels, or the sign ratio says nothing (tests.md 4); 2e6 samples in full.
+// At least 1,400 blocks of 5×5 pixels, or the sign ratio of noise alone, 1.25/√blocks, comes too near its bound; 2e6 samples in full.
 constexpr uint32_t kWidth = 224, kHeight = 160;
 constexpr int kPixels = int(kWidth * kHeight);
 int samples() { return test::full_run() ? 56 : 6; }

@@ -21,7 +21,7 @@ void check_tbb() {
     throw unsupported("the TBB in this process is older than the one that Gradus was built with");
 }
 
-// A foreign Embree that took over our symbols answers with another version, or its rays miss (blender.md 13.2).
+// A foreign Embree that took over our symbols answers with another version, or its rays miss: Blender has one, too.
 void check_embree(RTCDevice device) {
   const auto version = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
   if (version != RTC_VERSION)

@@ -120,7 +120,7 @@ bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint
 
 namespace {
 
-// Share of a spot's strength along a direction that leaves it (blender.md 7.1: smoothstep over the blend).
+// Share of a spot's strength along a direction that leaves it (Cycles' kernel/light/spot.h: smoothstep over the blend).
 float spot_falloff(const Lamp& lamp, const Vec3& leaving) {
   if (!lamp.is_spot) return 1.0f;
   const float cosine = glm::dot(leaving, lamp.shine);

@@ -1,4 +1,4 @@
-// D3, D7, and what happens to broken instances and meshes (contract: broken data costs the broken object).
+// D3, D7, and what happens to broken instances and meshes: broken data costs the broken object, not the frame.
 #include <chrono>
 #include <cstring>
 #include <limits>

@@ -1,4 +1,4 @@
-// Camera against the projection of blender.md 7.3; depth of field; A3 for the lens.
+// Camera against the projection of Blender's Object.calc_matrix_camera(); depth of field; A3 for the lens.
 #include "scene/camera.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct BlenderCamera {
   float shift_x = 0.0f, shift_y = 0.0f, aspect_x = 1.0f, aspect_y = 1.0f;
 };
 
-// What calc_matrix_camera() gives (blender.md 7.3): m00, m11 and where the axis appears in NDC.
+// What calc_matrix_camera() gives in Blender 3.4 to 5.0: m00, m11 and where the axis appears in NDC.
 struct Projection {
   double m00, m11, axis_x, axis_y;
 };

@@ -1,4 +1,4 @@
-// Chi-square test of a sampler against its density (tests.md §4): pbrt's 80×160 grid over the sphere and its tolerance.
+// Chi-square test of a sampler against its density as pbrt has it (bsdfs_test.cpp): its 80×160 grid over the sphere and its tolerance.
 #pragma once
 
 #include <cmath>
