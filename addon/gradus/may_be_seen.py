@@ -43,9 +43,9 @@ class MayBeSeen:
         return False
 
 
-def is_keyed(obj: Any, switch: str) -> bool:
-    """Whether a switch of an object, or of one of its modifiers, may change from frame to frame."""
-    animation = obj.animation_data
+def is_keyed(owner: Any, switch: str) -> bool:
+    """Whether a switch of an object, of one of its modifiers or of a scene's layers may change from frame to frame."""
+    animation = owner.animation_data
     if animation is None:
         return False
     curves = [*animation.drivers, *compat.action_curves(animation.action)]
@@ -53,7 +53,8 @@ def is_keyed(obj: Any, switch: str) -> bool:
 
 
 def _rendered_layers(scene: Any, layer: str) -> list[Any]:
-    return [each for each in scene.view_layers if each.use or each.name == layer] or list(scene.view_layers)
+    layers = list(scene.view_layers)
+    return layers if is_keyed(scene, '"].use') else [each for each in layers if each.use or each.name == layer] or layers
 
 
 def _shown_by(layer: Any) -> Iterator[Any]:

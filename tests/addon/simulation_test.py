@@ -396,6 +396,14 @@ def test_a_layer_that_is_off_counts_where_it_is_rendered_alone() -> None:
     assert simulation.Simulations(scene, "Off").names == ["Cloth, Cloth"]
 
 
+def test_a_layer_that_is_keyed_counts_while_it_is_off() -> None:
+    scene = new_scene("cloth")
+    leave_to_a_layer_that_is_off(scene, bpy.data.objects["Cloth"])
+    animation.step(scene, 'view_layers["Off"].use', {1: False, LAST: True})
+    scene.view_layers["Off"].use = False
+    assert simulation.Simulations(scene).names == ["Cloth, Cloth"]
+
+
 def test_a_modifier_that_is_keyed_counts_while_it_is_off() -> None:
     """It stood still from the frame on where it was switched on."""
     scene = new_scene("cloth")
