@@ -13,8 +13,8 @@ import bpy
 
 from . import compat
 
-_HOLDERS = (bpy.types.Collection, bpy.types.Scene, bpy.types.Screen, bpy.types.WindowManager, bpy.types.WorkSpace)
-"""They list objects, and show nothing that the view layers do not tell."""
+_HOLDERS = (bpy.types.Collection, bpy.types.Scene)
+"""They list objects, and show nothing that the view layers do not tell. Editors are not among Blender's users."""
 
 
 class MayBeSeen:

@@ -139,3 +139,19 @@ def test_simulations_that_are_not_baked_are_named_and_keep_frames_on_their_own(t
     warnings = [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]
     assert len(warnings) == 1
     assert "Rigid Body World" in warnings[0]
+
+
+def test_simulations_that_no_picture_shows_leave_temporal_on(tmp_path: Path) -> None:
+    """An empty rigid-body world, or a cloth hidden for render, made stills of all frames."""
+    hidden = """
+bpy.ops.rigidbody.world_add()
+bpy.ops.mesh.primitive_grid_add()
+cloth = bpy.context.object
+cloth.modifiers.new("Cloth", "CLOTH")
+cloth.hide_render = True
+scene.frame_end = 3
+"""
+    with window.blender(script(tmp_path, 2, hidden)) as blender:
+        blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
+    assert [line["spp_offset"] for line in lines(tmp_path)] == [1, 1, 1]
+    assert not [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]
