@@ -58,6 +58,13 @@ def frames_of_job(scene: Any, has_store: bool) -> Frames | None:
     return Frames(first, last, step) if first < last else None
 
 
+def last_of_job(scene: Any) -> int:
+    """The last frame that Blender asks for, as far as that can be told."""
+    frame = scene.frame_current
+    is_single = _asks_for_single_frames(sys.argv) or not scene.frame_start <= frame <= scene.frame_end
+    return frame if is_single else scene.frame_end
+
+
 def _asks_for_single_frames(arguments: list[str]) -> bool:
     own = arguments[: arguments.index("--")] if "--" in arguments else arguments
     return any(name in own for name in ("-f", "--render-frame")) and not any(name in own for name in ("-a", "--render-anim"))
@@ -236,7 +243,7 @@ def _stepping(job: Any, last: int) -> Iterator[Callable[[int], None]]:
     simulations = simulation.of_job(job.depsgraph)
     shown = own if simulations is None else None
     if simulations is not None:
-        simulations.compute(last + job.frames_beyond(), job.stop)
+        simulations.compute(last + job.frames_beyond(), last_of_job(job.scene) + job.frames_beyond(), job.stop)
 
     def show(frame: int) -> None:
         nonlocal shown

@@ -192,7 +192,8 @@ class Job:
         if simulations is not None:
             frame = self.scene.frame_current
             with self.shot.clock.phase("export"):
-                simulations.compute(frame + self.frames_beyond(), self.stop)
+                beyond = self.frames_beyond()
+                simulations.compute(frame + beyond, animation.last_of_job(self.scene) + beyond, self.stop)
                 simulations.show(frame)
                 self.engine.frame_set(frame, subframe=0.0)
 

@@ -6,6 +6,9 @@ What was found in 3.4, 4.5 and 5.0, and is relied on here:
 - Cloth, soft bodies, particles and dynamic paint are computed by both, into one cache. A visit to their first frame makes Blender forget
   that the cache is exact, and the next read drops what lies behind; a cache that counts as baked is left alone. So it does, except while
   we step. That of dynamic paint is always on disk, beside the file: there is none before that is saved.
+- The engine's depsgraph keeps what it knew of a cache when it was last evaluated for Blender's own frame: of particles that are computed
+  later it shows none, or dead ones. So those of all frames are computed before the first one is shown. (Liquids that are computed as they
+  are played are right only where the scene has not been far beyond the frame.)
 - The depsgraph of a render that begins later has put its own guess into the cache of a cloth before we are asked: a tag drops it.
 - Blender reads what is not evaluated (the exposure of saved pictures, the file name) from the scene after the render: it must be at the
   frame again.
@@ -38,6 +41,7 @@ class Simulations:
         self._first = scene.frame_start
         self._caches: list[Any] = []  # those that count as baked between steps
         self._guessed: list[Any] = []  # objects whose caches may hold a guess
+        self._has_particles = False
         self._computed: int | None = None  # last frame up to which all are computed
         self._find()
 
@@ -64,6 +68,8 @@ class Simulations:
                 self._add(name, cache.frame_start)
                 if modifier.type in _SHARED:
                     self._caches.append(cache)
+                if modifier.type == "PARTICLE_SYSTEM":
+                    self._has_particles = True
                 if modifier.type in _GUESSED:
                     self._guessed.append(obj)
         if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" and modifier.domain_settings.cache_type == "REPLAY":
@@ -81,9 +87,11 @@ class Simulations:
         if self.scene.frame_current != frame:
             self.scene.frame_set(frame)
 
-    def compute(self, last: int, stop: Callable[[], bool]) -> None:
-        """Up to the frame `last`, and one more: a simulation's second frame is what puts the first into the cache. Raises Cancelled, with
-        the scene at the frame where it was."""
+    def compute(self, last: int, last_of_job: int, stop: Callable[[], bool]) -> None:
+        """Up to the frame `last`, where there are particles to that of the job, and one more: a simulation's second frame is what puts the
+        first into the cache. Raises Cancelled, with the scene at the frame where it was."""
+        if self._has_particles:
+            last = max(last, last_of_job)
         if self._computed is not None and last < self._computed:
             return
         own = self.scene.frame_current

@@ -99,6 +99,14 @@ def test_c6_layers_and_frames_around_for_vectors_change_nothing(kind: str, tempo
         check(kind, found[name], range(1, LAST + 1))
 
 
+def test_c6_windows_that_are_looked_for_one_after_the_other_show_it(kind: str, exports: Exports, tmp_path: Path) -> None:
+    """Particles were gone in all frames of the second window but its last."""
+    scene = new_scene(kind, temporal=True)
+    scene.gradus.window_size, scene.gradus.window_overlap = 4, 2
+    render(scene, tmp_path)
+    check(kind, exports.of["ViewLayer"], range(1, LAST + 1))
+
+
 # ------------------------------------------------------------------------------------------------ motion blur
 
 
@@ -188,7 +196,7 @@ def test_a_cancel_on_the_way_leaves_the_scene_at_its_frame() -> None:
     scene = new_scene("cloth", first=4)
     scene.frame_set(4)
     with pytest.raises(Cancelled):
-        simulation.Simulations(scene).compute(LAST, lambda: scene.frame_current == 2)
+        simulation.Simulations(scene).compute(LAST, LAST, lambda: scene.frame_current == 2)
     assert scene.frame_current == 4
 
 

@@ -61,6 +61,13 @@ def particles() -> None:
     settings.instance_object = _new("Particle", _grid(1), (50.0, 0.0, 0.0))
 
 
+def stream() -> None:
+    """Particles that come and go."""
+    particles()
+    settings = bpy.data.particles[0]
+    settings.count, settings.frame_end, settings.lifetime = 16, 6.0, 20.0
+
+
 def simulation_zone() -> None:
     group = bpy.data.node_groups.new("Rising", "GeometryNodeTree")
     for kind in ("INPUT", "OUTPUT"):
@@ -105,6 +112,7 @@ KINDS: dict[str, Callable[[], None]] = {
     "cloth": cloth,
     "soft body": soft_body,
     "particles": particles,
+    "stream of particles": stream,
     "simulation zone": simulation_zone,
     "dynamic paint": dynamic_paint,
     "liquid": liquid,
