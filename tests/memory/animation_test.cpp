@@ -1,6 +1,7 @@
 // What an animation is planned to take of memory and disks, against what it takes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -54,6 +55,7 @@ TEST_P(PlannedAnimation, TakesWhatIsPlanned) {
   const std::string folder = fs::temp_directory_path() / "gradus-planned-animation";
   fs::remove_all(folder);
   const int64_t before = live_bytes();
+  int64_t most_kept = 0;
   forget_peak();
   nlohmann::json stats;
   {
@@ -65,15 +67,18 @@ TEST_P(PlannedAnimation, TakesWhatIsPlanned) {
       }
       const GradusSettings settings = settings_of(GetParam(), frame);
       finish(sequence->deliver(frame, &settings), &stats);
+      most_kept = std::max(most_kept, live_bytes() - before);
     }
   }
   const double taken = double(peak_bytes() - before), pixels = kWidth * kHeight, files = double(bytes_in(folder));
   fs::remove_all(folder);
-  const double memory = stats["planned_bytes"]["memory"], frames = stats["planned_bytes"]["frames"];
-  std::printf("  %.0f bytes of memory per pixel, planned %.0f; files %.0f, planned %.0f\n", taken / pixels, memory / pixels, files / pixels,
-              frames / pixels);
+  const double memory = stats["planned_bytes"]["memory"], kept = stats["planned_bytes"]["kept"], frames = stats["planned_bytes"]["frames"];
+  std::printf("  %.0f bytes of memory per pixel, planned %.0f; between frames %.0f, planned %.0f; files %.0f, planned %.0f\n",
+              taken / pixels, memory / pixels, double(most_kept) / pixels, kept / pixels, files / pixels, frames / pixels);
   EXPECT_GE(memory, 0.97 * taken);
   EXPECT_LE(memory, 1.4 * taken);
+  EXPECT_GE(kept, 0.97 * double(most_kept));
+  EXPECT_LE(kept, 1.6 * double(most_kept));
   EXPECT_GE(frames, files);
 }
 

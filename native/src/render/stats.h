@@ -31,6 +31,7 @@ struct PhaseTimes {
 // What an animation takes at most, as planned before it begins; 0: not planned.
 struct PlannedBytes {
   uint64_t memory = 0;     // at a time, without the scenes
+  uint64_t kept = 0;       // of that, while another layer or view is rendered
   uint64_t frames = 0;     // files of frames: noisy sums hardly pack
   uint64_t temporary = 0;  // rows in the folder for temporary files
 };

@@ -52,6 +52,10 @@ Sequence::Sequence(std::shared_ptr<Device> device, const SequenceSettings& setti
   WindowGrid(own_places(), settings.windows);  // which looks at them
 }
 
+Sequence::~Sequence() {
+  if (device_) device_->claims().drop(this);
+}
+
 int Sequence::place_of(int32_t frame) const {
   const int64_t from_first = int64_t(frame) - settings_.first, step = settings_.step;
   if (from_first % step != 0) throw invalid_argument("frame " + std::to_string(frame) + " is none of the sequence");
@@ -73,11 +77,15 @@ FrameRange Sequence::own_places() const {
 PlannedBytes Sequence::plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings) {
   const SequenceMethod method{plan.reconstruction, settings.reconstruction_alpha, wants(settings.passes, GRADUS_PASS_ERROR)};
   const PlannedBytes bytes = planned_bytes(plan, method, settings_.windows, own_places().count(), !folder_.is_temporary());
-  require_memory("the animation", bytes.memory, "render fewer pixels or passes, or smaller windows");
-  const FolderBytes files = planned_files(bytes, folder_.path());
-  require_memory("the animation, with its files in folders that are memory,", bytes.memory + bytes_in_memory(files),
+  Claim all = claim_of(bytes, folder_.path());
+  if (device_) {
+    device_->claims().set(this, std::move(all));
+    all = device_->claims().sum();
+  }
+  require_memory("the animation", all.memory, "render fewer pixels, passes, layers or views, or smaller windows");
+  require_memory("the animation, with its files in folders that are memory,", all.memory + bytes_in_memory(all.files),
                  "set TMPDIR, or the frame store, to a folder on a disk");
-  if (!room_is_checked_) *warnings = lacking_room(files);
+  if (!room_is_checked_) *warnings = lacking_room(all.files);
   room_is_checked_ = true;
   return bytes;
 }

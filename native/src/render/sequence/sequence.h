@@ -33,6 +33,9 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
  public:
   // Throws invalid_argument for settings that make no sense, invalid_operation where the folder cannot be made.
   Sequence(std::shared_ptr<Device> device, const SequenceSettings& settings, IntegratorFactory factory = make_integrator);
+  ~Sequence();
+  Sequence(const Sequence&) = delete;
+  Sequence& operator=(const Sequence&) = delete;
 
   // Frames of the range that must have been sampled before `frame` can be delivered.
   FrameRange needs(int32_t frame) const;
@@ -58,7 +61,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   FrameRange own_places() const;
-  // What the job takes. Throws OUT_OF_MEMORY where the machine has less; warns once of disks that are too small.
+  // What the job takes. Throws OUT_OF_MEMORY where the machine has less than it takes with those beside it; warns once of disks that are
+  // too small for all.
   PlannedBytes plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings);
   // The frames that are rendered, and those beside them that the folder holds.
   FrameRange places_with_neighbours() const;

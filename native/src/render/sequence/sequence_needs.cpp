@@ -96,15 +96,16 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * sizeof(int32_t);
   PlannedBytes needs;
   needs.memory = area * std::max(sampling, delivered + pictures + delivery_bytes(sizes, method, in_window));
+  needs.kept = area * (pictures + (regularized ? temporal_frame_bytes(sizes) + in_window * estimate_bytes(sizes) : 0));
   needs.frames = area * (keeps ? all : ahead) * 2 * (sizes.frame + sizeof(int32_t));
   if (!regularized) needs.temporary = area * in_window * (2 * sizes.kinds * (1 + sizes.halves) * channels * kFloat + sizeof(int32_t));
   return needs;
 }
 
-FolderBytes planned_files(const PlannedBytes& needs, const std::string& frames) {
-  FolderBytes files = {{frames, needs.frames}};
-  files[temporary_place()] += needs.temporary;
-  return files;
+Claim claim_of(const PlannedBytes& needs, const std::string& frames) {
+  Claim claim{needs.memory, needs.kept, {{frames, needs.frames}}};
+  claim.files[temporary_place()] += needs.temporary;
+  return claim;
 }
 
 uint64_t bytes_in_memory(const FolderBytes& files) {

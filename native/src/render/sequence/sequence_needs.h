@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "base/claims.h"
 #include "plan/plan.h"
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "render/stats.h"
@@ -16,10 +16,10 @@ namespace gradus {
 PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps);
 
 // Bytes of files by the folders that they lie in.
-using FolderBytes = std::map<std::string, uint64_t>;
+using FolderBytes = decltype(Claim::files);
 
 // frames: the folder of the frames; rows of a window lie in that for temporary files.
-FolderBytes planned_files(const PlannedBytes& needs, const std::string& frames);
+Claim claim_of(const PlannedBytes& needs, const std::string& frames);
 
 // Of those in folders that are memory themselves (tmpfs).
 uint64_t bytes_in_memory(const FolderBytes& files);

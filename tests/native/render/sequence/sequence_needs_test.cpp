@@ -42,8 +42,8 @@ TEST(PlannedDisks, FramesWithoutAStoreAndRowsAreWhereTemporaryFilesAre) {
   PlannedBytes bytes;
   bytes.frames = 5;
   bytes.temporary = 7;
-  EXPECT_EQ(planned_files(bytes, "/store"), (FolderBytes{{"/store", 5}, {temporary, 7}}));
-  EXPECT_EQ(planned_files(bytes, temporary), (FolderBytes{{temporary, 12}}));
+  EXPECT_EQ(claim_of(bytes, "/store").files, (FolderBytes{{"/store", 5}, {temporary, 7}}));
+  EXPECT_EQ(claim_of(bytes, temporary).files, (FolderBytes{{temporary, 12}}));
 }
 
 // Where /tmp is memory, frames of an animation filled it, and nothing had counted them.
@@ -71,6 +71,28 @@ TEST(PlannedMemory, APartOfAStoreHasWholeWindows) {
     EXPECT_EQ(part.temporary, whole.temporary);
     EXPECT_LT(part.frames, whole.frames) << "it writes its own";
   }
+}
+
+// Layers and views of an animation go on side by side, and each was planned as if alone.
+TEST(PlannedMemory, SequencesOfOneHostAreAddedUp) {
+  Pan pan(1.0f);
+  const auto device = two_threads();
+  const auto begin = [&](const std::string& folder) {
+    const auto sequence = std::make_shared<Sequence>(device, SequenceSettings{1, 5, 1, {}, folder});
+    sample(sequence.get(), pan.at(1), settings_of(1));
+    return sequence;
+  };
+  const Folder a, b;
+  auto layer = begin(a.path());
+  const Claim one = device->claims().sum();
+  const auto other = begin(b.path());
+  const Claim both = device->claims().sum();
+  EXPECT_GT(one.kept, 0u);
+  EXPECT_EQ(both.memory, one.memory + one.kept) << "one is at work at a time";
+  EXPECT_EQ(both.files.at(a.path()), one.files.at(a.path()));
+  EXPECT_EQ(both.files.at(b.path()), one.files.at(a.path()));
+  layer.reset();
+  EXPECT_EQ(device->claims().sum().memory, one.memory);
 }
 
 }  // namespace
