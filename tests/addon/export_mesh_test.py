@@ -91,7 +91,22 @@ def test_normal_domains(scene: bpy.types.Scene) -> None:
     mesh.polygons[0].use_smooth = False
     mesh.update()
     mixed = _only_mesh(recording.export(scene)[0])
-    assert mixed.normal_domain == CORNER and np.allclose(mixed.normals, (0, 0, 1))
+    is_none = ~mixed.normals.any(axis=1)  # left to the native side
+    assert mixed.normal_domain == CORNER and np.allclose(mixed.normals[~is_none], (0, 0, 1))
+
+
+@pytest.mark.skipif(bpy.app.version >= (4, 1, 0), reason="normals have the same bits in every process")
+def test_normals_that_blender_sums_in_any_order_are_left_to_the_native_side(scene: bpy.types.Scene) -> None:
+    """Smooth faces beside flat ones: the last bits of their normals differed from process to process, and a frame store was refused."""
+    recording.add_camera()
+    mesh = recording.grid(2)
+    mesh.vertices[4].co.z = 1.0
+    mesh.polygons.foreach_set("use_smooth", [False, True, True, True])
+    mesh.update()
+    recording.add(mesh)
+    normals = _only_mesh(recording.export(scene)[0]).normals.reshape(4, 4, 3)
+    assert not normals[1:].any()
+    assert normals[0].any(axis=1).sum() == 3, "but where the flat face is alone"
 
 
 def test_custom_split_normals(scene: bpy.types.Scene) -> None:

@@ -106,7 +106,19 @@ def _normals_by_flags(mesh: Any) -> tuple[int, array | None]:
             # The native side makes them: Blender before 4.0 sums them in any order, so that their last bits differ between evaluations.
             return POINT, None
     mesh.calc_normals_split()
-    return CORNER, read(mesh.loops, "normal", "f", 3)
+    return CORNER, _without_those_of_vertices(mesh, read(mesh.loops, "normal", "f", 3))
+
+
+def _without_those_of_vertices(mesh: Any, normals: array) -> array:
+    """Normals of corners, 0 where they are their vertex's own: the native side makes those, for the same reason. With them the bits of a
+    mesh, and so the key of its scene, differed from process to process."""
+    size, none = 3 * normals.itemsize, bytes(3 * normals.itemsize)
+    of_vertices, corners = read(mesh.vertices, "normal", "f", 3).tobytes(), bytearray(normals)
+    for corner, vertex in enumerate(corner_vertices(mesh)):
+        place = slice(corner * size, (corner + 1) * size)
+        if corners[place] == of_vertices[vertex * size : (vertex + 1) * size]:
+            corners[place] = none
+    return array("f", corners)
 
 
 def _face_materials(mesh: Any) -> array | None:

@@ -121,7 +121,7 @@ typedef struct GradusMesh {
   const int32_t* face_materials;    /* material slot of each face; NULL = slot 0 */
   uint32_t normal_domain;           /* GradusDomain of `normals`; NULL normals: FACE = flat, POINT = smooth */
   uint32_t attribute_count;
-  const float* normals;             /* 3 per element of normal_domain */
+  const float* normals;             /* 3 per element of normal_domain; CORNER: 0 for the smooth normal of its vertex */
   const GradusAttribute* attributes;
   const char* default_uv;           /* name of the UV map that unnamed look-ups take; may be NULL */
   float generated_location[3];      /* texture space: generated = (p - location) / (2 size) + 1/2 */

@@ -139,6 +139,15 @@ std::vector<float> copy_finite(const float* data, size_t count) {
   return values;
 }
 
+void fill_smooth_corners(const GradusMesh& m, MeshData* out) {
+  const auto first = std::find(out->normals.begin(), out->normals.end(), Vec3(0.0f));
+  if (first == out->normals.end()) return;
+  const std::vector<Vec3> smooth = smooth_normals(*out, out->rest_positions());
+  for (size_t corner = size_t(first - out->normals.begin()); corner < out->normals.size(); ++corner) {
+    if (out->normals[corner] == Vec3(0.0f)) out->normals[corner] = smooth[size_t(m.corner_vertices[corner])];
+  }
+}
+
 void copy_normals(const GradusMesh& m, MeshData* out) {
   out->normal_domain = GradusDomain(m.normal_domain);
   if (!m.normals && m.normal_domain == GRADUS_DOMAIN_POINT) out->normals = smooth_normals(*out, out->rest_positions());
@@ -147,6 +156,7 @@ void copy_normals(const GradusMesh& m, MeshData* out) {
   const std::vector<float> values = copy_finite(m.normals, count * 3);
   out->normals.resize(count);
   if (count) std::memcpy(out->normals.data(), values.data(), count * sizeof(Vec3));
+  if (m.normal_domain == GRADUS_DOMAIN_CORNER) fill_smooth_corners(m, out);
 }
 
 void copy_attributes(const GradusMesh& m, const Check& check, MeshData* out) {

@@ -152,6 +152,17 @@ TEST(SurfacePoint, NormalsByCornerAreInterpolatedAndBrokenOnesReplaced) {
   EXPECT_TRUE(is_finite(snapshot->surface_point(hit_at(Vec2(0.9f, 0))).shading_normal));
 }
 
+TEST(SurfacePoint, CornersWithoutANormalHaveThatOfTheirVertex) {
+  const float some[12] = {0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1};
+  Quad quad;
+  quad.desc.normal_domain = GRADUS_DOMAIN_CORNER;
+  quad.desc.normals = some;
+  Scene scene(test_device());
+  const auto snapshot = commit_quad(&scene, quad.make(), Mat4(1.0f), Mat4(1.0f), Mat4(1.0f));
+  EXPECT_LT(glm::length(snapshot->surface_point(hit_at(Vec2(0.5f, 0.0f))).shading_normal - Vec3(0, 0, 1)), 1e-6f);
+  EXPECT_GT(snapshot->surface_point(hit_at(Vec2(0, 0.9f))).shading_normal.y, 0.5f);
+}
+
 TEST(Materials, SlotsBeyondTheLastShowTheLast) {
   Quad quad;
   quad.face_materials = {7};
