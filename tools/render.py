@@ -28,9 +28,9 @@ class RenderError(Exception):
 def frame_ranges(text: str) -> list[tuple[int, int]]:
     ranges = []
     for part in text.replace("..", "-").split(","):
-        match = re.fullmatch(r"\s*(-?\d+)(?:-(-?\d+))?\s*", part)
-        if not match:
-            raise RenderError(f"FRAMES={text}: expected numbers and ranges like 1-24 or 1,5,9-12")
+        match = re.fullmatch(r"\s*(\d+)(?:-(\d+))?\s*", part)
+        if not match:  # Blender's -s and -e count negative numbers from the ends of the scene's range
+            raise RenderError(f"FRAMES={text}: expected numbers from 0 on and ranges like 1-24 or 1,5,9-12")
         first = int(match.group(1))
         ranges.append((first, int(match.group(2) or first)))
         if ranges[-1][1] < first:
@@ -39,7 +39,7 @@ def frame_ranges(text: str) -> list[tuple[int, int]]:
 
 
 def frame_name(frame: int) -> str:
-    """As Blender writes it: at least four characters, the sign among them."""
+    """As Blender writes it."""
     return f"{frame:04d}"
 
 

@@ -23,6 +23,12 @@ def test_a_mistake_is_told_before_anything_is_built(name: str) -> None:
     refused(name, value, message, "--animation")
 
 
+def test_negative_frames_are_refused() -> None:
+    """Blender counts them from the ends of the scene's range: -3 to -1 were rendered as -2 to 23, at full size, and then the strip failed."""
+    refused("FRAMES", "-3--1", "numbers from 0 on")
+    refused("FRAMES", "-3--1", "numbers from 0 on", "--animation")
+
+
 def test_an_animation_is_one_range() -> None:
     refused("FRAMES", "1-3,7", "expected one range", "--animation")
 
