@@ -13,6 +13,7 @@ ENDINGS = {".py", ".h", ".hpp", ".cpp", ".c", ".sh", ".md"}
 NUMBER = r"\d+(?:\.\d+)?"
 CONTRACT = re.compile(rf"\b[Cc]ontract(?:\.md)? ({NUMBER}(?:,[\s/#*]*{NUMBER})*)")
 """Several numbers may go on in the next line of a comment."""
+PAGE = re.compile(r"[\w/-]+\.md\b")
 
 
 def texts() -> Iterator[tuple[Path, str]]:
@@ -46,3 +47,14 @@ def test_every_number_of_the_contract_is_cited() -> None:
     """What no code refers to is not held up by it."""
     numbers = {number for number in defined() if "." in number}
     assert not numbers - {number for path, text in texts() if path.parts[0] != "docs" or path.name == "method.md" for number in cited(text)}
+
+
+def test_every_page_that_is_named_exists() -> None:
+    folders = (ROOT, ROOT / "docs", ROOT / "docs/benchmark")
+    missing = {
+        (str(path), name)
+        for path, text in texts()
+        for name in PAGE.findall(text)
+        if not any((folder / name.lstrip("/")).is_file() for folder in folders)
+    }
+    assert not missing

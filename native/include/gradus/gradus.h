@@ -432,7 +432,7 @@ typedef struct GradusSettings {
   uint32_t threads;                /* 0 = those of the device */
   float alpha_threshold;           /* surfaces with less alpha are skipped by data passes */
   uint32_t use_sky;                /* the world is seen by the camera */
-  uint32_t independent_sampler;    /* test switch: independent random numbers in place of the Sobol net (contract 1.2) */
+  uint32_t independent_sampler;    /* test switch: independent random numbers in place of the Sobol net (docs/contract.md 1.2) */
   uint64_t passes;                 /* bit i = GradusPass i is wanted; Combined always is */
   uint32_t first_sample;           /* samples are numbered first_sample … first_sample + samples - 1, for frames to merge */
   uint32_t denoiser;               /* GradusDenoiser */
@@ -470,7 +470,7 @@ typedef enum GradusPass {
   GRADUS_PASS_VARIANCE,
   GRADUS_PASS_FALLBACK,            /* share of samples that met a replaced node; for tests and the bench */
   GRADUS_PASS_ERROR,               /* estimated squared error of Combined, mean over RGB */
-  GRADUS_PASS_GRADIENT_T,          /* difference to the next frame along Gradient T Link; 0 outside of sequences (contract 4.3) */
+  GRADUS_PASS_GRADIENT_T,          /* difference to the next frame along Gradient T Link; 0 outside of sequences (docs/contract.md 4.3) */
   GRADUS_PASS_GRADIENT_T_LINK,     /* pixels to where the next frame shows the same, x and y; 1 if it does */
   GRADUS_PASS_COUNT
 } GradusPass;
@@ -496,7 +496,7 @@ GRADUS_API GradusError gradus_settings_default(GradusSettings* settings);
 GRADUS_API GradusError gradus_settings_parse(GradusSettings* settings, const char* name, const char* value);
 GRADUS_API GradusError gradus_pass_info(uint32_t pass, const char** name, uint32_t* channels);
 
-/* Saves what was set since recording began as a .gradus file, images packed (contract 7.3). INVALID_OPERATION without recording.
+/* Saves what was set since recording began as a .gradus file, images packed (docs/contract.md 7.3). INVALID_OPERATION without recording.
  * `settings` are saved with it for the tool; may be NULL. */
 GRADUS_API GradusError gradus_scene_save(GradusScene scene, const GradusSettings* settings, const char* path);
 /* The scene is created and committed; gradus_scene_warning has what was left out. *settings (may be NULL) receives the saved settings, or defaults. */
@@ -538,7 +538,7 @@ GRADUS_API GradusError gradus_render_release(GradusRender render);
 /* Copies a pass of the region, width·height·channels floats (`count` must match exactly); never waits for samples. While sampling: Noisy Image so
  * far, and Combined, which whoever reads it once then sees reconstructed, first at a quarter of the size; others INVALID_OPERATION until later. */
 GRADUS_API GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* pixels, size_t count);
-/* The stats object of the finished frame as JSON (contract 7.1) without the fields that only the host knows. Valid until release. */
+/* The stats object of the finished frame as JSON (docs/contract.md 7.1) without the fields that only the host knows. Valid until release. */
 GRADUS_API GradusError gradus_render_stats(GradusRender render, const char** json);
 /* The frame of a finished render: planes with half-buffers. */
 GRADUS_API GradusError gradus_render_frame(GradusRender render, GradusFrame* frame);

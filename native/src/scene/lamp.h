@@ -1,4 +1,4 @@
-// Lamps: lights that are not surfaces. Units as in gradus.h (blender.md 7.1).
+// Lamps: lights that are not surfaces. Units as in gradus.h, strengths as in Cycles.
 #pragma once
 
 #include "base/types.h"

@@ -19,7 +19,7 @@ class Scene {
   explicit Scene(std::shared_ptr<Device> device);
   ~Scene();
   // Copies the arrays. Throws Error INVALID_ARGUMENT with a text that names the mesh where the arrays contradict each other;
-  // broken values (NaN, zero areas) are kept out later, with one warning (contract: broken data costs the broken object).
+  // broken values (NaN, zero areas) are kept out later, with one warning: broken data costs the broken object, not the frame.
   void set_mesh(uint64_t key, const GradusMesh& mesh);
   void set_image(uint64_t key, const GradusImage& image);
   void set_material(uint64_t key, const GradusMaterial& material);
