@@ -68,7 +68,7 @@ WindowSolver::WindowSolver(const WindowSource& source, uint32_t reconstruction, 
       throw unsupported("no solver of windows for reconstruction " + std::to_string(reconstruction));
   }
   if (cancel()) return;
-  twicing_ = std::make_unique<WindowTwicing>(source, solution_, alpha);
+  twicing_ = std::make_unique<WindowTwicing>(source, solution_, system_, alpha);
   twicing_->apply(source, 0, system_, &solution_);
 }
 

@@ -1,8 +1,10 @@
 #include "reconstruct/space_time/window_twicing.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
-#include "reconstruct/space_time/track_smoothing.h"
+#include "reconstruct/field_values.h"
 #include "reconstruct/space_time/value_rows.h"
 #include "reconstruct/twicing.h"
 
@@ -31,47 +33,58 @@ Field squared_residuals(const WindowSource& source, int t, const Field& estimate
 
 }  // namespace
 
-WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate, float alpha)
+WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate, const SpaceTimeSystem& system, float alpha)
     : dct_(source.size().width, source.size().height), data_weight_(alpha * alpha) {
   for (size_t t = 0; t < estimate.size(); ++t) {
-    Field shares = squared_residuals(source, int(t), estimate[t]);
-    limit_squares(&shares);
-    WeightPlane& plane = shares_.emplace_back(shares.width(), shares.height());
-    for_rows(shares.height(), [&](int y) { plane.write_row(y, shares.row(y)); });
+    Field kept = squared_residuals(source, int(t), estimate[t]);
+    limit_squares(&kept);
+    WeightPlane& plane = kept_.emplace_back(kept.width(), kept.height());
+    for_rows(kept.height(), [&](int y) { plane.write_row(y, kept.row(y)); });
+    const Field& frame = estimate[t];
+    Field light = smooth_frame(frame.channels(), [&](int y, float* row) {
+      for (int c = 0; c < frame.channels(); ++c, row += frame.width()) {
+        std::transform(frame.row(y, c), frame.row(y, c) + frame.width(), row, [](float value) { return std::fabs(value); });
+      }
+    });
+    along_tracks_.add_frame(std::move(light), t > 0 ? &system.links(int(t) - 1) : nullptr);
   }
 }
 
 void WindowTwicing::apply(const WindowSource& planes, int first_channel, const SpaceTimeSystem& system, Frames* x) const {
   const size_t w = size_t(dct_.width()), channels = size_t(x->front().channels());
-  const std::unique_ptr<float[]> work(new float[w * size_t(dct_.height()) * channels]);
-  Frames lost = system.make_fields(int(channels));
+  Frames lost;
   for (size_t t = 0; t < x->size(); ++t) {
-    const auto fill = [&](int y, float* row) {
+    lost.push_back(smooth_frame(int(channels), [&](int y, float* row) {
       ValueRow primal(planes.size(), first_channel, int(channels));
       primal.load(planes, RowKind::kPrimal, int(t), y);
       primal.replace_missing();
-      std::vector<float> share(w);
-      shares_[t].read_row(y, share.data());
+      std::vector<float> kept(w);
+      kept_[t].read_row(y, kept.data());
       for (size_t c = 0; c < channels; ++c) {
         const float *value = primal.channel(int(c)), *here = (*x)[t].row(y, int(c));
-        for (size_t i = 0; i < w; ++i) row[c * w + i] = data_weight_ * share[i] * (value[i] - here[i]);
+        for (size_t i = 0; i < w; ++i) row[c * w + i] = kept[i] * (value[i] - here[i]);
       }
-    };
-    const auto take = [&](int y, const float* row) {
-      for (size_t c = 0; c < channels; ++c) std::copy_n(row + c * w, w, lost[t].row(y, int(c)));
-    };
-    dct_.solve(data_weight_, int(channels), fill, {}, take, work.get());
+    }));
   }
-  smooth_tracks(system, data_weight_, &lost);
+  along_tracks_.apply(system, data_weight_, &lost);
   for (size_t t = 0; t < x->size(); ++t) {
-    for_rows(dct_.height(), [&](int y) {
-      for (size_t c = 0; c < channels; ++c) {
-        float* to = (*x)[t].row(y, int(c));
-        const float* from = lost[t].row(y, int(c));
-        for (size_t i = 0; i < w; ++i) to[i] += from[i];
-      }
-    });
+    for_values(&(*x)[t], [&](float& value, int i, int y, int c) { value += lost[t].row(y, c)[i]; });
   }
+}
+
+Field WindowTwicing::smooth_frame(int channels, const PoissonDct::FillRow& fill) const {
+  const size_t w = size_t(dct_.width()), count = w * size_t(channels);
+  const std::unique_ptr<float[]> work(new float[count * size_t(dct_.height())]);
+  Field smooth(dct_.width(), dct_.height(), channels);
+  const auto fill_weighted = [&](int y, float* row) {
+    fill(y, row);
+    for (size_t i = 0; i < count; ++i) row[i] *= data_weight_;
+  };
+  const auto take = [&](int y, const float* row) {
+    for (int c = 0; c < channels; ++c, row += w) std::copy_n(row, w, smooth.row(y, c));
+  };
+  dct_.solve(data_weight_, channels, fill_weighted, {}, take, work.get());
+  return smooth;
 }
 
 }  // namespace gradus

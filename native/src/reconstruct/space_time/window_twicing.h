@@ -1,24 +1,28 @@
 // Twicing over a window (twicing.h): x = x₀ + S W (I − x₀) gives back what an estimate x₀ lost of the noisy images I. S smooths in every
-// frame as the L2 solver does, and then along the tracks, so that what it gives back does not flicker; of the window's L2 solver that is
-// nearly the factorisation, at the cost of a cosine transform. W limits outliers of the residual, by squares.
+// frame as the L2 solver does, and then along the tracks, so that what it gives back does not flicker: as a share of the light there, for
+// bright frames have lost more than dark ones. W limits outliers of the residual, by squares.
 #pragma once
 
 #include "reconstruct/poisson_dct.h"
-#include "reconstruct/space_time/system.h"
+#include "reconstruct/space_time/share_smoothing.h"
 
 namespace gradus {
 
 class WindowTwicing {
  public:
   // Estimates W from the first channels of `source`, as many as x₀ has, and freezes it.
-  WindowTwicing(const WindowSource& source, const Frames& estimate, float alpha);
+  WindowTwicing(const WindowSource& source, const Frames& estimate, const SpaceTimeSystem& system, float alpha);
   // x₀ → x for channels of `planes` from first_channel on.
   void apply(const WindowSource& planes, int first_channel, const SpaceTimeSystem& system, Frames* x) const;
 
  private:
-  std::vector<WeightPlane> shares_;  // W; 0 where I is not finite
+  // The L2 solver's part in S, of what fill(y, row) writes into rows of all channels, one after another.
+  Field smooth_frame(int channels, const PoissonDct::FillRow& fill) const;
+
+  std::vector<WeightPlane> kept_;  // W; 0 where I is not finite
   PoissonDct dct_;
   float data_weight_;
+  ShareSmoothing along_tracks_;
 };
 
 }  // namespace gradus

@@ -1,0 +1,75 @@
+#include "reconstruct/space_time/share_smoothing.h"
+
+#include <algorithm>
+
+#include "reconstruct/field_values.h"
+#include "reconstruct/space_time/solve_tracks.h"
+
+namespace gradus {
+namespace {
+
+// Black has room for quotients and their squares.
+constexpr float kLeastLight = 1e-15f;
+
+WeightPlane to_plane(const Field& field) {
+  WeightPlane plane(field.width(), field.height());
+  for_rows(field.height(), [&](int y) { plane.write_row(y, field.row(y)); });
+  return plane;
+}
+Frames to_fields(const std::vector<WeightPlane>& planes) {
+  Frames fields;
+  for (const WeightPlane& plane : planes) {
+    Field& field = fields.emplace_back(plane.width(), plane.height(), 1);
+    for_rows(plane.height(), [&](int y) { plane.read_row(y, field.row(y)); });
+  }
+  return fields;
+}
+
+// Of the channel that changes most.
+void least_ratios(const Field& light, const Field& next, int y, int begin, int end, int dx, int dy, float* ratio) {
+  std::fill(ratio + begin, ratio + end, 1.0f);
+  for (int c = 0; c < light.channels(); ++c) {
+    const float *a = light.row(y, c), *b = next.row(y + dy, c) + dx;
+    for (int x = begin; x < end; ++x) ratio[x] = std::min(ratio[x], std::min(a[x], b[x]) / std::max(a[x], b[x]));
+  }
+}
+
+// c, 0 where nothing is linked.
+Field weigh_links(const Links& links, const Field& light, const Field& next) {
+  Field weights(light.width(), light.height(), 1);
+  for_rows(light.height(), [&](int y) {
+    float* weight = weights.row(y);
+    links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+      least_ratios(light, next, y, begin, end, dx, dy, weight);
+      for (int x = begin; x < end; ++x) weight[x] *= weight[x] * std::min(mean_of(light, x, y), mean_of(next, x + dx, y + dy));
+    });
+  });
+  return weights;
+}
+
+}  // namespace
+
+void ShareSmoothing::add_frame(Field light, const Links* links) {
+  for_values(&light, [](float& value, int, int, int) { value = std::max(value, kLeastLight); });
+  lights_.push_back(to_plane(make_field(light.width(), light.height(), [&](int x, int y) { return mean_of(light, x, y); })));
+  if (lights_.size() > 1) couplings_.push_back(to_plane(weigh_links(*links, last_, light)));
+  last_ = std::move(light);
+}
+
+void ShareSmoothing::apply(const SpaceTimeSystem& system, float data_weight, Frames* values) const {
+  const Frames lights = to_fields(lights_), couplings = to_fields(couplings_);
+  Frames weights = lights;
+  for (size_t t = 0; t < lights.size(); ++t) {
+    for_values(&weights[t], [&](float& value, int, int, int) { value *= data_weight; });
+    for_values(&(*values)[t], [&](float& value, int x, int y, int) { value /= lights[t].row(y)[x]; });
+  }
+  const Field no_difference;
+  std::vector<TrackStep> steps;
+  for (size_t t = 0; t < couplings.size(); ++t) steps.push_back({system.links(int(t)), no_difference, couplings[t]});
+  solve_tracks(steps, values, &weights);
+  for (size_t t = 0; t < lights.size(); ++t) {
+    for_values(&(*values)[t], [&](float& value, int x, int y, int) { value *= lights[t].row(y)[x]; });
+  }
+}
+
+}  // namespace gradus
