@@ -137,7 +137,7 @@ bool StoredSequence::is_unlinked(int32_t frame) const {
   const FrameForm& form = here->second;
   if (form.stream == frame && form.replayed_stream == frame) return false;  // a cut, or the first of a job
   const bool follows = form.stream == before->second.stream || form.replayed_stream == before->second.stream;
-  return !follows || follows_another_scene(before->second, form);
+  return !follows || follows_another_frame(before->second, form);
 }
 
 std::string StoredSequence::unlinked(int32_t first, int32_t last) const {

@@ -51,8 +51,8 @@ SEQUENCES = (
         REPLAY,
         "those of the frame's own seed",
         PIXELS,
-        "frame.region.y0 + pixel / width, unit.sources->stream_frame}",
-        "frame.region.y0 + pixel / width, context.settings.frame}",
+        "return numbers_of(context, unit, frame.region.x0",
+        "return numbers_of(context, WorkUnit{unit.tile}, frame.region.x0",
         OF_REPLAYS,
     ),
     Fault(
@@ -60,8 +60,8 @@ SEQUENCES = (
         REPLAY,
         "cells have the jitter of the frame's own seed",
         PIXELS,
-        "unit.sources != nullptr ? unit.sources->stream_frame : context.settings.frame",
-        "unit.sources != nullptr ? context.settings.frame : context.settings.frame",
+        "numbers_of(context, unit, cell.x0, cell.y0)",
+        "numbers_of(context, WorkUnit{unit.tile}, cell.x0, cell.y0)",
         OF_REPLAYS,
     ),
     Fault(
@@ -69,8 +69,8 @@ SEQUENCES = (
         REPLAY,
         "those of the same pixel, whatever moves",
         PIXELS,
-        "{StreamKind::Pixel, frame.region.x0 + pixel % width, frame.region.y0 + pixel / width,",
-        "{StreamKind::Pixel, pixel < 0 ? width : x, y,",
+        "frame.region.x0 + pixel % width, frame.region.y0 + pixel / width)",
+        "pixel < 0 ? width : x, y)",
         (native("Replay.MakesDifferencesOverTimeQuieter"),),
     ),
     Fault(
@@ -87,8 +87,8 @@ SEQUENCES = (
         REPLAY,
         "a hole is not tagged: it has the frame's own numbers twice",
         PIXELS,
-        "return {StreamKind::Hole, x, y, context.settings.frame};",
-        "return {StreamKind::Pixel, x, y, context.settings.frame};",
+        "return {StreamKind::Hole, x, y, context.settings.frame, context.settings.seed};",
+        "return numbers_of(context, WorkUnit{unit.tile}, x, y);",
         (native("Replay.HolesHaveNumbersOfTheirOwn"),),
     ),
     Fault(

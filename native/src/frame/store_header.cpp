@@ -92,6 +92,7 @@ json describe(const Frame& frame) {
   if (frame.replayed.pixel.empty()) return j;
   j["replayed_frame"] = frame.replayed.stream_frame;
   j["replayed_scene_key"] = hex(frame.replayed.scene_key);
+  j["replayed_seed"] = frame.replayed.seed;
   return j;
 }
 
@@ -157,6 +158,7 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
   if (description.contains("replayed_scene_key")) frame.replayed_key = key_from_json(description.at("replayed_scene_key"));
+  frame.replayed_seed = description.value("replayed_seed", frame.settings.seed);  // once replays took that of their own frame
   frame.scene_key = key_from_json(description.at("scene_key"));
   frame.frame_number = description.at("frame");
   return frame;
@@ -196,7 +198,9 @@ Frame make_frame(const Imf::Header& header, StoredContent content) {
   if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), known.region);
   frame.passes = make_pass_planes(passes, pixels);
   if (has_fallback) frame.fallback.assign(pixels, 0.0f);
-  if (description.contains("replayed_frame")) frame.replayed = {known.replayed_frame, std::vector<int32_t>(pixels), known.replayed_key};
+  if (description.contains("replayed_frame")) {
+    frame.replayed = {known.replayed_frame, std::vector<int32_t>(pixels), known.replayed_key, known.replayed_seed};
+  }
   check_regions(frame);
   return frame;
 }

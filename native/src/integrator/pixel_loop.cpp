@@ -11,24 +11,33 @@ struct Source {
   StreamKind kind = StreamKind::Pixel;
   int32_t x = 0, y = 0;
   int32_t frame = 0;
+  uint32_t seed = 0;
+  bool shares_jitter = false;  // with its cell
 };
 
-Source source_of(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) {
-  if (unit.sources == nullptr) return {StreamKind::Pixel, x, y, context.settings.frame};
-  const int32_t pixel = unit.sources->pixel[frame.index(x, y)];
-  if (pixel == kNoLink) return {StreamKind::Hole, x, y, context.settings.frame};
-  const int32_t width = frame.region.width();
-  return {StreamKind::Pixel, frame.region.x0 + pixel % width, frame.region.y0 + pixel / width, unit.sources->stream_frame};
+// A pixel's of the frame itself, or of the one that it replays.
+Source numbers_of(const PathContext& context, const WorkUnit& unit, int32_t x, int32_t y) {
+  const SampleSources* replayed = unit.sources;
+  if (replayed != nullptr) return {StreamKind::Pixel, x, y, replayed->stream_frame, replayed->seed, replayed->shares_jitter};
+  return {StreamKind::Pixel, x, y, context.settings.frame, context.settings.seed, shares_jitter(context.camera, context.scene)};
 }
 
-Sampler make_sampler(const PathContext& context, StreamKind kind, uint32_t stream, int32_t frame, uint32_t number) {
-  return Sampler({context.settings.seed, kind, stream, frame, number}, context.settings.independent_sampler != 0);
+Source source_of(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) {
+  if (unit.sources == nullptr) return numbers_of(context, unit, x, y);
+  const int32_t pixel = unit.sources->pixel[frame.index(x, y)];
+  if (pixel == kNoLink) return {StreamKind::Hole, x, y, context.settings.frame, context.settings.seed};
+  const int32_t width = frame.region.width();
+  return numbers_of(context, unit, frame.region.x0 + pixel % width, frame.region.y0 + pixel / width);
+}
+
+Sampler make_sampler(const PathContext& context, const Source& source, StreamKind kind, uint32_t stream, uint32_t number) {
+  return Sampler({source.seed, kind, stream, source.frame, number}, context.settings.independent_sampler != 0);
 }
 
 // Jitter of the cell that holds a pixel.
 Vec2 jitter_of_cell(const PathContext& context, const Source& source, uint32_t number) {
   const uint32_t column = static_cast<uint32_t>(lattice_cell(source.x)), row = static_cast<uint32_t>(lattice_cell(source.y));
-  const Sampler sampler = make_sampler(context, StreamKind::Lattice, (row << 16) ^ (column & 0xffffu), source.frame, number);
+  const Sampler sampler = make_sampler(context, source, StreamKind::Lattice, (row << 16) ^ (column & 0xffffu), number);
   return context.filter.sample(sampler.get2(dimension::kFilm));
 }
 
@@ -48,7 +57,7 @@ uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& ce
 }
 
 bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& frame, const Region& cell) {
-  if (!shares_jitter(context)) return false;
+  if (!shares_jitter(context.camera, context.scene) || (unit.sources != nullptr && !unit.sources->shares_jitter)) return false;
   for (int32_t y = cell.y0; y < cell.y1 && unit.sources != nullptr; ++y) {
     for (int32_t x = cell.x0; x < cell.x1; ++x) {
       if (unit.sources->pixel[frame.index(x, y)] != static_cast<int32_t>(frame.index(x, y))) return false;
@@ -58,8 +67,7 @@ bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& 
 }
 
 Vec2 cell_jitter(const PathContext& context, const WorkUnit& unit, const Region& cell, uint32_t number) {
-  const int32_t frame = unit.sources != nullptr ? unit.sources->stream_frame : context.settings.frame;
-  return jitter_of_cell(context, {StreamKind::Pixel, cell.x0, cell.y0, frame}, number);
+  return jitter_of_cell(context, numbers_of(context, unit, cell.x0, cell.y0), number);
 }
 
 PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, uint32_t number) {
@@ -71,13 +79,13 @@ PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, 
   sample.number = number;
   sample.half = static_cast<int>(number & 1u);
   const uint32_t stream = static_cast<uint32_t>(source.y) * context.settings.width + static_cast<uint32_t>(source.x);
-  sample.sampler = make_sampler(context, source.kind, stream, source.frame, number);
+  sample.sampler = make_sampler(context, source, source.kind, stream, number);
   return sample;
 }
 
 Vec2 own_jitter(const PathContext& context, const WorkUnit& unit, const Frame& frame, const PixelSample& sample) {
   const Source source = source_of(context, unit, frame, sample.x, sample.y);
-  if (shares_jitter(context) && source.kind == StreamKind::Pixel) return jitter_of_cell(context, source, sample.number);
+  if (source.shares_jitter) return jitter_of_cell(context, source, sample.number);
   return context.filter.sample(sample.sampler.get2(dimension::kFilm));
 }
 

@@ -37,12 +37,12 @@ inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
 // Most samples that the unit takes of a pixel of the cell.
 uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& cell);
 // Neither lens nor time set the rays of neighbours apart: the pixels of a cell share their jitter.
-inline bool shares_jitter(const PathContext& context) { return !context.camera.has_lens() && !context.scene.features.has_motion; }
+inline bool shares_jitter(const Camera& camera, const Snapshot& scene) { return !camera.has_lens() && !scene.features.has_motion; }
 // All pixels of a cell take their own random numbers, or those of the same pixels of another frame: what shares its jitter shares its rays.
 bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& frame, const Region& cell);
 // Offset of such a cell's pixels from their centres, by the filter.
 Vec2 cell_jitter(const PathContext& context, const WorkUnit& unit, const Region& cell, uint32_t number);
-// That of a pixel by itself: where it replays one whose cell shares its jitter, that of the cell.
+// That of a pixel by itself: where it replays one whose cell shared its jitter, that of the cell.
 Vec2 own_jitter(const PathContext& context, const WorkUnit& unit, const Frame& frame, const PixelSample& sample);
 // All but its place on the film.
 PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, uint32_t number);

@@ -110,9 +110,11 @@ TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
 TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
   Frame frame = *rendered(small_settings(20, 10, 2));
   frame.replayed.stream_frame = -3;
+  frame.replayed.seed = 11;
   for (int32_t i = 0; i < 200; ++i) frame.replayed.pixel.push_back(i % 7 == 0 ? kNoLink : 199 - i);
   save_frame(frame, path());
   EXPECT_EQ(load_frame(path())->replayed.stream_frame, -3);
+  EXPECT_EQ(load_frame(path())->replayed.seed, 11u);
   EXPECT_EQ(load_frame(path())->replayed.pixel, frame.replayed.pixel);
   frame.replayed.pixel[5] = 200;
   save_frame(frame, path());
@@ -217,6 +219,21 @@ void set_format(int format, Imf::Header* header) {
   nlohmann::json j = description_of(*header);
   j["format"] = format;
   header->insert("gradus", Imf::StringAttribute(j.dump()));
+}
+
+// Replays took the seed of their own frame, and did not tell.
+TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
+  Frame frame = *rendered(small_settings(20, 10, 2));
+  frame.settings.seed = 5;
+  frame.replayed = {3, std::vector<int32_t>(200), 0, 4};
+  save_frame(frame, path());
+  EXPECT_EQ(load_header(path()).replayed_seed, 4u);
+  rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
+    nlohmann::json j = description_of(headers->front());
+    j.erase("replayed_seed");
+    headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
+  });
+  EXPECT_EQ(load_header(path("earlier.exr")).replayed_seed, 5u);
 }
 
 TEST_F(F6_Store, ForeignFilesAreRefusedByName) {

@@ -37,7 +37,7 @@ Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSo
 SampleSources sources_of(const IntegratorContext& before, const IntegratorContext& now, const Region& region = kWhole) {
   const std::vector<int32_t> links =
       link_pixels(view_centres(*before.snapshot, kSize, kSize, region), view_centres(*now.snapshot, kSize, kSize, region));
-  return {before.settings.frame, inverse_links(links)};
+  return {before.settings.frame, inverse_links(links), 0, before.settings.seed};
 }
 
 class Replays : public testing::TestWithParam<Scenario> {};
@@ -64,7 +64,7 @@ TEST(Replay, SeesWhatWasSeenAtItsMomentsThroughTheLens) {
   build(Scenario::Moving, &scene);
   scene.camera_desc.aperture_radius = 0.1f;
   const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
-  SampleSources sources{7, std::vector<int32_t>(size_t(kSize) * kSize)};
+  SampleSources sources{7, std::vector<int32_t>(size_t(kSize) * kSize), 0, 0, false};
   std::iota(sources.pixel.begin(), sources.pixel.end(), 0);
   const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources);
   for (int half = 0; half < kHalves; ++half) EXPECT_TRUE(base.components[0].primal[half] == offset.components[0].primal[half]);

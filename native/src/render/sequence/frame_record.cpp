@@ -16,19 +16,21 @@ uint64_t key_without_frame(GradusSettings settings) {
 }  // namespace
 
 FrameForm form_of(const FrameHeader& base, const FrameHeader& offset) {
-  return {base.region,       base.channels,         base.gradients, has_features(base), base.settings,
-          base.frame_number, offset.replayed_frame, base.scene_key, offset.replayed_key};
+  return {base.region,       base.channels,         base.gradients, has_features(base),  base.settings,
+          base.frame_number, offset.replayed_frame, base.scene_key, offset.replayed_key, offset.replayed_seed};
 }
 
-bool follows_another_scene(const FrameForm& before, const FrameForm& frame) {
-  if (frame.stream == before.stream) return frame.scene_key != before.scene_key;
-  return frame.replayed_stream == before.stream && frame.replayed_scene != 0 && frame.replayed_scene != before.scene_key;
+bool follows_another_frame(const FrameForm& before, const FrameForm& frame) {
+  const uint32_t seed = before.settings.seed;
+  if (frame.stream == before.stream) return frame.scene_key != before.scene_key || frame.settings.seed != seed;
+  const bool shows_another = frame.replayed_scene != 0 && frame.replayed_scene != before.scene_key;
+  return frame.replayed_stream == before.stream && (shows_another || frame.replayed_seed != seed);
 }
 
 bool share_windows(const FrameForm& before, const FrameForm& frame, uint32_t reconstruction) {
   const bool features = before.features == frame.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
   return before.region == frame.region && before.channels == frame.channels && before.gradients == frame.gradients && features &&
-         !follows_another_scene(before, frame);
+         !follows_another_frame(before, frame);
 }
 
 std::unique_ptr<FrameBefore> make_before(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,

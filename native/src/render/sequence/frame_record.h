@@ -21,11 +21,13 @@ struct FrameForm {
   GradusSettings settings{};
   int32_t stream = 0, replayed_stream = 0;     // whose random numbers its own half has taken, and whose the other has
   uint64_t scene_key = 0, replayed_scene = 0;  // 0: not known
+  uint32_t replayed_seed = 0;
 };
 // base, offset: its own half, and the one that replays the frame before.
 FrameForm form_of(const FrameHeader& base, const FrameHeader& offset);
-// Whether `frame` follows another scene than `before` shows: one of the two was stored before the scene was changed.
-bool follows_another_scene(const FrameForm& before, const FrameForm& frame);
+// Whether `frame` follows another scene than `before` shows, or other samples of it: one of the two was stored before the scene or the seed
+// was changed.
+bool follows_another_frame(const FrameForm& before, const FrameForm& frame);
 // Whether one window can hold both: they have all that it reads of its frames, and are of one animation.
 bool share_windows(const FrameForm& before, const FrameForm& frame, uint32_t reconstruction);
 

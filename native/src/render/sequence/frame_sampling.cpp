@@ -215,12 +215,13 @@ bool FrameSampling::replays_before(const FrameHeader& offset) const {
   if (!before) return true;
   if (!follows_before()) return offset.replayed_frame == input_.settings.frame;
   const bool shows_it = offset.replayed_key == 0 || offset.replayed_key == before->snapshot->content_key;
-  return offset.replayed_frame == before->stream_frame && shows_it;
+  return offset.replayed_frame == before->stream_frame && offset.replayed_seed == before->settings.seed && shows_it;
 }
 
 std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, const std::vector<uint32_t>& counts) {
   auto replay = std::make_shared<Replay>();
-  replay->sources = {input_.settings.frame, std::vector<int32_t>(size_t(base.region.area()), kNoLink), base.scene_key};
+  const GradusSettings& now = input_.settings;
+  replay->sources = {now.frame, std::vector<int32_t>(size_t(base.region.area()), kNoLink), base.scene_key, now.seed};
   const FrameBefore* before = sequence_->before_.get();
   if (follows_before()) {
     const Bill bill(&record_.stats.seconds.links, &record_.stats.cpu_seconds.links);

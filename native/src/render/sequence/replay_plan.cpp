@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "integrator/pixel_loop.h"
 #include "temporal/pixel_links.h"
 
 namespace gradus {
@@ -18,7 +19,9 @@ SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const
   const auto view = [&](const Snapshot& snapshot) { return view_centres(snapshot, settings.width, settings.height, region, cancel); };
   const CentreView from = view(*before.snapshot), to = view(now);
   if (cancel()) return {};
-  return {before.stream_frame, inverse_links(link_pixels(from, to)), before.snapshot->content_key};
+  const Snapshot& scene = *before.snapshot;
+  const bool shares = shares_jitter(Camera(scene.camera, settings.width, settings.height), scene);
+  return {before.stream_frame, inverse_links(link_pixels(from, to)), scene.content_key, before.settings.seed, shares};
 }
 
 double mean_of(const std::vector<uint32_t>& counts) {

@@ -1,0 +1,101 @@
+// What a frame repeats of the one before, whatever changes between them: random numbers and sub-pixel jitter (contract 1.1, 4.2).
+#include <gtest/gtest.h>
+
+#include "sequence_fixture.h"
+
+namespace gradus::test {
+namespace {
+
+using Plane = std::vector<Radiance>;
+
+const Plane& plane_of(const Frame& frame) { return frame.components[0].primal[0]; }
+
+double energy_of_difference(const Plane& a, const Plane& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i].y) - double(b[i].y), 2);
+  return sum;
+}
+
+// As the driver `#frame` leaves it.
+GradusSettings with_seed(int32_t frame, uint32_t seed, uint32_t samples = 8) {
+  GradusSettings settings = settings_of(frame, samples);
+  settings.seed = seed;
+  return settings;
+}
+
+// Replays took the seed of their own frame, so that differences over time were noise. Frames that differ in their seed alone are sampled:
+// both halves of them, and none is the file of another frame.
+TEST(C4_ReplayedFrames, ReplaysHaveTheSeedOfTheFrameBeforeWhereItIsKeyed) {
+  Pan still(0.0f);
+  const Folder folder;
+  const auto sequence = make_sequence(1, 3, folder.path());
+  for (uint32_t t = 1; t <= 3; ++t) sample(sequence.get(), still.at(int32_t(t)), with_seed(int32_t(t), t));
+  const SequenceFolder files(folder.path());
+  for (int32_t t = 2; t <= 3; ++t) {
+    const auto before = files.load(t - 1, FramePart::kBase), own = files.load(t, FramePart::kBase);
+    const auto replay = files.load(t, FramePart::kOffset);
+    EXPECT_TRUE(plane_of(*replay) == plane_of(*before)) << t;
+    EXPECT_FALSE(plane_of(*own) == plane_of(*before)) << t;
+    EXPECT_EQ(own->frame_number, t);
+    EXPECT_EQ(replay->frame_number, t);
+  }
+}
+
+TEST(C7_ReplayedFrames, SamplesOfAKeyedSeedAreAddedUp) {
+  Pan pan(1.3f);
+  const Folder folder, fresh;
+  const auto sample_all = [&](const Folder& to, uint32_t samples) {
+    const auto sequence = make_sequence(1, 3, to.path());
+    for (uint32_t t = 1; t <= 3; ++t) sample(sequence.get(), pan.at(int32_t(t)), with_seed(int32_t(t), t, samples));
+    return deliver(sequence.get(), 3);
+  };
+  sample_all(folder, 4);
+  const Delivered more = sample_all(folder, 12), whole = sample_all(fresh, 12);
+  EXPECT_EQ(more.noisy, whole.noisy);
+  EXPECT_EQ(more.combined, whole.combined);
+}
+
+// Frame 1 has another seed than it had: the replay of what was there is linked to none of its samples.
+TEST(C7_ReplayedFrames, ReplaysOfAnotherSeedAreSampledAnew) {
+  Pan pan(1.3f);
+  const Folder folder, fresh;
+  const auto sample_both = [&](const Folder& to, uint32_t seed_of_first) {
+    const auto sequence = make_sequence(1, 2, to.path());
+    sample(sequence.get(), pan.at(1), with_seed(1, seed_of_first));
+    sample(sequence.get(), pan.at(2), with_seed(2, 5));
+    return deliver(sequence.get(), 2);
+  };
+  sample_both(folder, 1);
+  folder.remove(1);
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_seed(1, 9));
+  // All that is stored, as `gradus reconstruct` delivers it.
+  for (const float link : deliver(make_sequence(1, 2, folder.path()).get(), 1).link) ASSERT_EQ(link, 0.0f);
+  const Delivered found = sample_both(folder, 9), expected = sample_both(fresh, 9);
+  EXPECT_EQ(found.noisy, expected.noisy);
+  EXPECT_EQ(found.combined, expected.combined);
+}
+
+// Cells of the frame before shared their jitter, or their pixels had their own: it was asked of the frame that replays them. The lens is
+// too small to blur anything.
+TEST(C4_ReplayedFrames, ReplaysHaveTheJitterOfTheFrameBeforeWhereBlurStartsOrStops) {
+  for (const int32_t blurred : {1, 2}) {
+    PathScene scene;
+    build(Scenario::DiffuseArea, &scene);
+    scene.camera_desc.focus_distance = 3.2f;
+    const Folder folder;
+    const auto sequence = make_sequence(1, 2, folder.path());
+    for (int32_t t = 1; t <= 2; ++t) {
+      scene.camera_desc.aperture_radius = t == blurred ? 1e-7f : 0.0f;
+      GradusSettings settings = settings_of(t);
+      settings.filter_width = 1.5f;
+      sample(sequence.get(), scene.context(settings).snapshot, settings);
+    }
+    const SequenceFolder files(folder.path());
+    const auto before = files.load(1, FramePart::kBase), own = files.load(2, FramePart::kBase), replay = files.load(2, FramePart::kOffset);
+    const double replayed = energy_of_difference(plane_of(*replay), plane_of(*before));
+    EXPECT_LT(replayed, 0.01 * energy_of_difference(plane_of(*own), plane_of(*before))) << "frame " << blurred << " is blurred";
+  }
+}
+
+}  // namespace
+}  // namespace gradus::test
