@@ -7,6 +7,7 @@
 // no gradient that is too small (contract 1.5: the weights are those of the batch's counts, and batches are combined by these).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -74,6 +75,7 @@ struct SharedSamples {
   uint32_t uncounted = 0;        // the first of each pixel, taken by a render that was not adaptive: what they have cost is not known
   std::vector<uint64_t> rays;    // that the samples of a cell have cost
   std::vector<uint8_t> stopped;  // 1: takes no more
+  bool is_done() const { return !stopped.empty() && std::find(stopped.begin(), stopped.end(), 0) == stopped.end(); }
 };
 
 class Frame {

@@ -18,12 +18,13 @@ struct FrameHeader {
   int32_t replayed_frame = 0;  // of a replay
   uint64_t replayed_key = 0;   // of its scene; 0: not known
   uint32_t replayed_seed = 0;
+  SharedSamples shared;
 };
 
 inline FrameHeader header_of(const Frame& frame) {
   const SampleSources& replayed = frame.replayed;
   return {frame.region,    frame.channels,     frame.gradients,       kept_passes(frame), frame.settings, frame.samples,
-          frame.scene_key, frame.frame_number, replayed.stream_frame, replayed.scene_key, replayed.seed};
+          frame.scene_key, frame.frame_number, replayed.stream_frame, replayed.scene_key, replayed.seed,  frame.shared};
 }
 
 }  // namespace gradus

@@ -159,6 +159,7 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.replayed_frame = description.value("replayed_frame", 0);
   if (description.contains("replayed_scene_key")) frame.replayed_key = key_from_json(description.at("replayed_scene_key"));
   frame.replayed_seed = description.value("replayed_seed", frame.settings.seed);  // once replays took that of their own frame
+  if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), frame.region);
   frame.scene_key = key_from_json(description.at("scene_key"));
   frame.frame_number = description.at("frame");
   return frame;
@@ -195,7 +196,7 @@ Frame make_frame(const Imf::Header& header, StoredContent content) {
   frame.scene_key = known.scene_key;
   frame.counters = counters_from_json(description.at("counters"));
   frame.samples = known.samples;
-  if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), known.region);
+  frame.shared = known.shared;
   frame.passes = make_pass_planes(passes, pixels);
   if (has_fallback) frame.fallback.assign(pixels, 0.0f);
   if (description.contains("replayed_frame")) {

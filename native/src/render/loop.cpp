@@ -171,6 +171,7 @@ void RenderLoop::sample() {
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
     if (adaptive_ && begin >= kLongestBatch && (begin % kLongestBatch == 0 || begin == first_begin_)) judge();
+    if (is_done()) frame_->shared = adaptive_->state(begin);  // what the last batch has come to
     if (cancel() || is_done()) break;
     if (show_is_due(begin)) show(begin);
     if (cancel()) break;

@@ -14,13 +14,18 @@ inline constexpr float kBaseShareOfThreshold = 1.41421356f;
 
 inline uint32_t samples_of(FramePart part, uint32_t samples) { return part == FramePart::kBase ? samples - samples / 2 : samples / 2; }
 
+// Of a pixel. The numbers of an adaptive half's samples are those of the pixels that have most: the mean over those that went on tells.
+inline uint64_t samples_taken(const FrameHeader& half) { return half.shared.rays.empty() ? half.samples.total() : half.shared.mean; }
+
 // Whether a half has as many samples as are asked of the frame, or as many as it may have.
 inline bool has_as_many(const FrameHeader& half, FramePart part, const GradusSettings& asked) {
+  const bool is_quiet = half.settings.noise_threshold <= kBaseShareOfThreshold * asked.noise_threshold;
+  if (half.shared.is_done()) return is_quiet;
   // Frames with a time limit have as many as it left them, whatever their settings say.
   const bool is_limited = half.settings.time_limit > 0.0f;
   if (is_limited && asked.time_limit > 0.0f && asked.time_limit <= half.settings.time_limit / kBaseShareOfTime) return true;
-  const uint64_t samples = is_limited ? half.samples.total() : half.settings.samples;
-  return samples >= samples_of(part, asked.samples) && half.settings.noise_threshold <= kBaseShareOfThreshold * asked.noise_threshold;
+  const uint64_t samples = is_limited ? samples_taken(half) : half.settings.samples;
+  return samples >= samples_of(part, asked.samples) && is_quiet;
 }
 
 }  // namespace gradus

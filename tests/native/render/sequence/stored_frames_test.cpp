@@ -187,6 +187,60 @@ TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
   EXPECT_EQ(frame.stats["spp_offset"], 50.0);
 }
 
+// As if a time limit had ended it: how many samples it was asked for does not tell how many it has.
+void say_that_time_ended_it(const SequenceFolder& files, int32_t frame) {
+  const auto base = files.load(frame, FramePart::kBase);
+  base->settings.time_limit = 1.0f;
+  base->settings.samples = 1u << 20;
+  files.save(*base, frame, FramePart::kBase);
+}
+
+GradusSettings with_threshold(int32_t frame, uint32_t samples, float threshold) {
+  GradusSettings settings = settings_of(frame, samples);
+  settings.noise_threshold = threshold;
+  return settings;
+}
+
+// The samples of the cell that has most, up to four times the mean, were taken for those of the frame.
+TEST(C7_StoredFrames, AdaptiveFramesOfATimeLimitHaveTheSamplesOfTheirMean) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const SequenceFolder files(folder.path());
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_threshold(1, 120, 1e-3f));
+  say_that_time_ended_it(files, 1);
+  const auto limited = files.load(1, FramePart::kBase);
+  const auto most = uint32_t(limited->samples.total());
+  ASSERT_EQ(limited->shared.mean, 60u);
+  ASSERT_GT(most, 66u) << "cells that had more than the mean";
+  const auto sequence = make_sequence(1, 1, folder.path());
+  sample(sequence.get(), pan.at(1), with_threshold(1, 132, 1e-3f));
+  EXPECT_EQ(files.load(1, FramePart::kBase)->shared.mean, 66u);
+  EXPECT_EQ(deliver(sequence.get(), 1).stats["stopped"], "samples");
+}
+
+// Its noise is as low as it is asked to be: that its samples are fewer than it may have is no reason to go on. A lower threshold is one,
+// whatever time the frame was given.
+TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIs) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const SequenceFolder files(folder.path());
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_threshold(1, 1000, 0.5f));
+  say_that_time_ended_it(files, 1);
+  const double taken = mean_samples(*files.load(1, FramePart::kBase));
+  ASSERT_LT(taken, 400.0) << "its noise ended it";
+  const auto stopped = [&](float threshold, float time_limit) {
+    const auto sequence = make_sequence(1, 1, folder.path());
+    GradusSettings settings = with_threshold(1, 1000, threshold);
+    settings.time_limit = time_limit;
+    sample(sequence.get(), pan.at(1), settings);
+    return deliver(sequence.get(), 1).stats["stopped"];
+  };
+  EXPECT_EQ(stopped(0.5f, 0.0f), "stored");
+  EXPECT_EQ(stopped(0.5f, 2.0f), "stored");
+  EXPECT_NE(stopped(0.02f, 2.0f), "stored");
+  EXPECT_GT(mean_samples(*files.load(1, FramePart::kBase)), taken);
+}
+
 // The files of frames that do not change are those of the first, and so was their exposure.
 TEST(C7_StoredFrames, StillFramesHaveTheirOwnExposure) {
   Pan pan(0.0f);
