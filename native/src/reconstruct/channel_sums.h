@@ -8,10 +8,10 @@
 
 namespace gradus {
 
-// sign · a / b; 0 for a channel that is solved, which stands still.
-inline Sums quotient(const Sums& a, const Sums& b, double sign = 1.0) {
+// a / b; 0 for a channel that is solved, which stands still.
+inline Sums quotient(const Sums& a, const Sums& b) {
   Sums q(a.size());
-  for (size_t c = 0; c < a.size(); ++c) q[c] = b[c] > 0.0 ? sign * a[c] / b[c] : 0.0;
+  for (size_t c = 0; c < a.size(); ++c) q[c] = b[c] > 0.0 ? a[c] / b[c] : 0.0;
   return q;
 }
 

@@ -1,17 +1,12 @@
 #include "reconstruct/conjugate_gradient.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "base/types.h"
-#include "reconstruct/channel_sums.h"
+#include "reconstruct/cg_loop.h"
 
 namespace gradus {
 namespace {
 
 // Rows at a time: direct() makes two rows around each piece once more.
 constexpr int kGrain = 64;
-// Errors fall, but not from step to step; beyond this factor single precision has been lost, and what follows is worse.
 constexpr float kDivergence = 3.0f;
 
 Sums dot(const Field& a, const Field& b) {
@@ -86,32 +81,33 @@ Sums advance(const Stencil& a, const Sums& step, const Field& p, Field* x, Field
   return sums.total();
 }
 
+// Of an image.
+struct Steps {
+  int width() const { return a.width(); }
+  CgStart start() { return {dot(b, b), residual(a, b, *x, &fields.r)}; }
+  CgProducts precondition() {
+    const RowSums rows = preconditioner->cycle(fields.r, &fields.z);
+    return {rows.total(), rows.largest()};
+  }
+  Sums direct(const Sums& factor) {
+    const Sums pap = gradus::direct(a, fields.z, factor, fields.p, &fields.next_p);
+    std::swap(fields.p, fields.next_p);
+    return pap;
+  }
+  Sums advance(const Sums& step) { return gradus::advance(a, step, fields.p, x, &fields.r); }
+
+  Multigrid* preconditioner;
+  const Stencil& a;
+  const Field& b;
+  Field* x;
+  CgFields& fields;
+};
+
 }  // namespace
 
 CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int most_steps,
                             const CancelTest& cancel) {
-  const Stencil& a = preconditioner->matrix();
-  auto& [r, z, p, next_p] = *fields;
-  const Sums bb = dot(b, b);
-  CgReport report;
-  report.residual = worst(residual(a, b, *x, &r), bb);
-  report.reached = report.residual <= goal.residual;
-  Sums rz_before(bb.size(), 0.0);
-  float best_error = kInfinity;
-  for (; report.steps < most_steps && !report.reached && !cancel(); ++report.steps) {
-    const RowSums rows = preconditioner->cycle(r, &z);
-    const Sums rz = rows.total();
-    const Sums pap = direct(a, z, quotient(rz, rz_before), p, &next_p);
-    std::swap(p, next_p);
-    rz_before = rz;
-    report.residual = worst(advance(a, quotient(rz, pap), p, x, &r), bb);
-    // The cycle is nearly A⁻¹, so r·z is nearly the square of the error before this step.
-    report.row_error = static_cast<float>(std::sqrt(rows.largest() / a.width()));
-    report.reached = report.residual <= goal.residual || report.row_error <= goal.row_error;
-    best_error = std::min(best_error, report.row_error);
-    if (report.row_error > kDivergence * best_error) break;
-  }
-  return report;
+  return run_conjugate_gradient(Steps{preconditioner, preconditioner->matrix(), b, x, *fields}, goal, kDivergence, most_steps, cancel);
 }
 
 }  // namespace gradus

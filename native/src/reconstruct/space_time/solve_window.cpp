@@ -1,16 +1,14 @@
 #include "reconstruct/space_time/solve_window.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "base/types.h"
-#include "reconstruct/channel_sums.h"
+#include "reconstruct/cg_loop.h"
 
 namespace gradus {
 namespace {
 
-// Errors fall, but not from step to step, and not from the first on: the start is 0, and where weights span decades the preconditioner's
-// measure of the error is not quite the true one. Beyond this factor single precision has been lost, and what follows is worse.
+// Errors do not fall from the first step on: the start is 0, and where weights span decades the preconditioner's measure of the error is
+// not quite the true one.
 constexpr float kDivergence = 100.0f;
 
 // Calls function(t, y, channel), which returns a double; their sums over all rows, per channel.
@@ -53,38 +51,44 @@ void direct(const Sums& factor, const Frames& z, Frames* p) {
   }
 }
 
+// Of a window.
+struct Steps {
+  int width() const { return system.width(); }
+  CgStart start() {
+    const Sums bb = squared_norm(fields.r), minus_one(bb.size(), -1.0);
+    system.multiply(*x, &fields.z);
+    return {bb, add_scaled(minus_one, fields.z, &fields.r)};
+  }
+  CgProducts precondition() {
+    CgProducts products{Sums(size_t(x->front().channels()), 0.0)};
+    for (const RowSums& frame : preconditioner->apply(fields.r, &fields.z)) {
+      const Sums more = frame.total();
+      for (size_t c = 0; c < more.size(); ++c) products.rz[c] += more[c];
+      products.largest_row = std::max(products.largest_row, frame.largest());
+    }
+    return products;
+  }
+  Sums direct(const Sums& factor) {
+    gradus::direct(factor, fields.z, &fields.p);
+    return system.multiply(fields.p, &fields.z);
+  }
+  Sums advance(Sums step) {
+    add_scaled(step, fields.p, x);
+    for (double& s : step) s = -s;
+    return add_scaled(step, fields.z, &fields.r);
+  }
+
+  const SpaceTimeSystem& system;
+  TimeLadder* preconditioner;
+  WindowFields& fields;
+  Frames* x;
+};
+
 }  // namespace
 
 CgReport solve_window(const SpaceTimeSystem& system, TimeLadder* preconditioner, const CgGoal& goal, int most_steps,
                       const CancelTest& cancel, WindowFields* fields, Frames* x) {
-  auto& [r, p, z] = *fields;
-  const Sums bb = squared_norm(r), minus_one(bb.size(), -1.0);
-  system.multiply(*x, &z);
-  CgReport report;
-  report.residual = worst(add_scaled(minus_one, z, &r), bb);
-  report.reached = report.residual <= goal.residual;
-  Sums rz_before(bb.size(), 0.0);
-  float best_error = kInfinity;
-  for (; report.steps < most_steps && !report.reached && !cancel(); ++report.steps) {
-    Sums rz(bb.size(), 0.0);
-    double largest = 0.0;
-    for (const RowSums& frame : preconditioner->apply(r, &z)) {
-      const Sums more = frame.total();
-      for (size_t c = 0; c < rz.size(); ++c) rz[c] += more[c];
-      largest = std::max(largest, frame.largest());
-    }
-    direct(quotient(rz, rz_before), z, &p);
-    rz_before = rz;
-    const Sums pap = system.multiply(p, &z);
-    add_scaled(quotient(rz, pap), p, x);
-    report.residual = worst(add_scaled(quotient(rz, pap, -1.0), z, &r), bb);
-    // The preconditioner is nearly A⁻¹, so r·z is nearly the square of the error before this step.
-    report.row_error = static_cast<float>(std::sqrt(largest / system.width()));
-    report.reached = report.residual <= goal.residual || report.row_error <= goal.row_error;
-    best_error = std::min(best_error, report.row_error);
-    if (report.row_error > kDivergence * best_error) break;
-  }
-  return report;
+  return run_conjugate_gradient(Steps{system, preconditioner, *fields, x}, goal, kDivergence, most_steps, cancel);
 }
 
 }  // namespace gradus
