@@ -15,6 +15,7 @@ from .animation import Animation
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
+from .native import Error, GradusError
 from .progress import Display, open_result, wait
 from .store import FINAL, PREVIEW, Cancelled, Key, Session
 
@@ -331,9 +332,19 @@ def _start(job: Job, view: str) -> int:
     return handle.value
 
 
+def _read(job: Job, handle: int) -> None:
+    """Of a frame whose files were still being read when it was cancelled there is nothing to show."""
+    try:
+        job.read(handle)
+    except GradusError as error:
+        if job.cancelled and error.code == Error.INVALID_OPERATION:
+            raise Cancelled from None
+        raise
+
+
 def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
     with job.shot.clock.phase("upload"):
-        job.read(handle)
+        _read(job, handle)
         job.buffer.upload(result.layers[0])
     if job.is_preview or job.cancelled:
         return

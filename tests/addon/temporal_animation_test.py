@@ -471,6 +471,26 @@ def test_escape_ends_the_frames_ahead(
     require_nothing_kept()
 
 
+# Its files were read to their end, however long that took; then there was a picture.
+def test_k5_a_frame_that_is_cancelled_while_it_is_read_ends_well(
+    moving: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    deliver = animation.Animation.deliver
+    delivered: list[int] = []
+
+    def cancelled(self: animation.Animation, view: str, frame: int, settings: Any) -> int:
+        handle = deliver(self, view, frame, settings)
+        self.library.render_cancel(handle)
+        delivered.append(frame)
+        return handle
+
+    moving.frame_end = 2
+    monkeypatch.setattr(animation.Animation, "deliver", cancelled)
+    animate(moving, tmp_path)
+    assert delivered
+    require_nothing_kept()
+
+
 # ------------------------------------------------------------------------------------------------ the command line
 
 

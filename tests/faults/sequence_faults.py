@@ -231,8 +231,8 @@ SEQUENCES = (
         HALVES,
         "differences over time are those of the next frame's own half",
         DELIVERY,
-        "folder.load(next, FramePart::kOffset, StoredContent::kSamples)",
-        "folder.load(next, FramePart::kBase, StoredContent::kSamples)",
+        "folder.load(next, FramePart::kOffset, StoredContent::kSamples, cancel)",
+        "folder.load(next, FramePart::kBase, StoredContent::kSamples, cancel)",
         (native("Sequence.GradientTLeadsToTheNextFrame"),),
     ),
     Fault(
@@ -357,8 +357,8 @@ SEQUENCES = (
         CHANGE,
         "that of the frame before",
         REGULARIZED,
-        "= differences_(frame);",
-        "= differences_(frame > 0 ? frame - 1 : 0);",
+        "= differences_(frame, cancel);",
+        "= differences_(frame > 0 ? frame - 1 : 0, cancel);",
         OF_REGULARIZED,
     ),
     Fault(

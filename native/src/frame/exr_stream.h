@@ -42,8 +42,8 @@ class WriterStream final : public Imf::OStream {
 
 // Runs write(&stream) and commits; what goes wrong is thrown as Error with path and cause, and leaves no file.
 template <class Function>
-void write_exr(const std::string& path, Function&& write) {
-  FileWriter writer(path);
+void write_exr(const std::string& path, Function&& write, Durable durable = Durable::kYes) {
+  FileWriter writer(path, durable);
   WriterStream stream(&writer, path);
   try {
     write(&stream);

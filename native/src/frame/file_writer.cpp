@@ -26,7 +26,7 @@ void sync_folder_of(const std::string& path) {
 
 }  // namespace
 
-FileWriter::FileWriter(const std::string& path) : path_(path) {
+FileWriter::FileWriter(const std::string& path, Durable durable) : path_(path), durable_(durable) {
   const PartFile part = make_part_file(path);
   if (part.descriptor < 0) fail("create");
   temporary_ = part.name;
@@ -63,7 +63,8 @@ void FileWriter::seek(uint64_t position) {
 }
 
 void FileWriter::commit() {
-  if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail("write");
+  const bool is_durable = durable_ == Durable::kYes;
+  if (std::fflush(file_) != 0 || (is_durable && fsync(fileno(file_)) != 0)) fail("write");
   const int closed = std::fclose(file_);
   file_ = nullptr;
   if (closed != 0 || rename(temporary_.c_str(), path_.c_str()) != 0) {
@@ -72,15 +73,15 @@ void FileWriter::commit() {
     errno = reason;
     fail("write");
   }
-  sync_folder_of(path_);
+  if (is_durable) sync_folder_of(path_);
 }
 
-void copy_file(const std::string& path, const std::string& name) {
+void copy_file(const std::string& path, const std::string& name, Durable durable) {
   constexpr size_t kPiece = 1 << 20;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> from(std::fopen(path.c_str(), "rb"), std::fclose);
   const auto refuse = [&] { throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot read " + path + ": " + std::strerror(errno)); };
   if (!from) refuse();
-  FileWriter to(name);
+  FileWriter to(name, durable);
   std::vector<char> piece(kPiece);
   for (size_t size = kPiece; size == kPiece;) {
     size = std::fread(piece.data(), 1, kPiece, from.get());

@@ -8,10 +8,14 @@
 
 namespace gradus {
 
+// Whether a file outlasts a crash of the machine. One that is removed before long need not: to sync it would keep the disk busy for
+// nothing.
+enum class Durable { kYes, kNo };
+
 class FileWriter {
  public:
   // All throw Error(INVALID_OPERATION) with path and the system's reason.
-  explicit FileWriter(const std::string& path);
+  explicit FileWriter(const std::string& path, Durable durable = Durable::kYes);
   ~FileWriter();  // removes the temporary file unless commit() was called
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
@@ -19,16 +23,17 @@ class FileWriter {
   void write(const void* data, size_t size);
   uint64_t position() const;
   void seek(uint64_t position);
-  // Everything is on the disk and has its name when this returns.
+  // It has its name when this returns, and a durable one is on the disk.
   void commit();
 
  private:
   [[noreturn]] void fail(const char* action) const;
   std::string path_, temporary_;
+  Durable durable_;
   std::FILE* file_ = nullptr;
 };
 
 // As it is, under another name, in the place of what has that. Throws as FileWriter.
-void copy_file(const std::string& path, const std::string& name);
+void copy_file(const std::string& path, const std::string& name, Durable durable = Durable::kYes);
 
 }  // namespace gradus

@@ -8,7 +8,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
-#include "base/error.h"
+#include "base/stop_if.h"
 #include "frame/block_file.h"
 #include "frame/block_rows.h"
 #include "frame/exr_problem.h"
@@ -43,7 +43,7 @@ struct PackedBlock {
   Bytes bytes;
 };
 
-void write_blocks(const PartRows& rows, BlockFile* file) {
+void write_blocks(const PartRows& rows, const CancelTest& cancel, BlockFile* file) {
   tbb::enumerable_thread_specific<BlockCodec> codecs;
   int next = 0;
   const auto number = [&](tbb::flow_control& control) {
@@ -51,6 +51,7 @@ void write_blocks(const PartRows& rows, BlockFile* file) {
     return next++;
   };
   const auto pack = [&](int i) {
+    stop_if(cancel);
     const PlacedBlock place = rows.at(i);
     Bytes bytes(rows.of(place.part).bytes(place.block));
     rows.of(place.part).gather(place.block, &bytes);
@@ -63,7 +64,7 @@ void write_blocks(const PartRows& rows, BlockFile* file) {
                                      tbb::make_filter<PackedBlock, void>(tbb::filter_mode::serial_in_order, write));
 }
 
-void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, size_t parts) {
+void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, size_t parts, const CancelTest& cancel) {
   struct Reader {
     BlockCodec codec;
     Bytes packed, bytes;
@@ -73,6 +74,7 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, size_t par
   for (size_t part = 0; part < parts; ++part) inputs.emplace_back(*file, int(part));
   const int top = file->header(0).dataWindow().min.y;
   tbb::parallel_for(0, rows.blocks(), [&](int i) {
+    stop_if(cancel);
     const auto [part, block] = rows.at(i);
     const BlockRows& own = rows.of(part);
     Reader& reader = readers.local();
@@ -97,7 +99,7 @@ Imf::MultiPartInputFile open_file(const std::string& path) {
   return Imf::MultiPartInputFile(path.c_str(), kNoThreads, kRepair);
 }
 
-Frame read_frame(const std::string& path, StoredContent content) {
+Frame read_frame(const std::string& path, StoredContent content, const CancelTest& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
   Frame frame = make_frame(file.header(0), content);
   const std::vector<StoredPart> parts = stored_parts(&frame);
@@ -105,7 +107,7 @@ Frame read_frame(const std::string& path, StoredContent content) {
   if (is_whole ? size_t(file.parts()) != parts.size() : size_t(file.parts()) < parts.size())
     throw invalid_argument("it has parts of something else");
   for (size_t i = 0; i < parts.size(); ++i) check_part(file.header(int(i)), file.header(0), parts[i]);
-  read_blocks(&file, PartRows(parts, frame), parts.size());
+  read_blocks(&file, PartRows(parts, frame), parts.size(), cancel);
   check_sources(frame);
   return frame;
 }
@@ -116,6 +118,7 @@ auto load(const std::string& path, const Read& read) {
   try {
     return read();
   } catch (const Error& e) {
+    if (e.code() == GRADUS_ERROR_CANCELLED) throw;
     throw Error(e.code(), "cannot load frame " + path + ": " + e.what());
   } catch (const std::bad_alloc&) {
     throw;
@@ -126,18 +129,19 @@ auto load(const std::string& path, const Read& read) {
 
 }  // namespace
 
-void save_frame(const Frame& frame, const std::string& path) {
+void save_frame(const Frame& frame, const std::string& path, const FrameWriting& how) {
   // The planes are only read here; the list is shared with reading, which writes them.
   const std::vector<StoredPart> parts = stored_parts(const_cast<Frame*>(&frame));
-  write_exr(path, [&](WriterStream* stream) {
+  const auto write = [&](WriterStream* stream) {
     BlockFile file(make_headers(frame, parts), stream);
-    write_blocks(PartRows(parts, frame), &file);
+    write_blocks(PartRows(parts, frame), how.cancel, &file);
     file.finish();
-  });
+  };
+  write_exr(path, write, how.durable);
 }
 
-std::shared_ptr<Frame> load_frame(const std::string& path, StoredContent content) {
-  return load(path, [&] { return std::make_shared<Frame>(read_frame(path, content)); });
+std::shared_ptr<Frame> load_frame(const std::string& path, StoredContent content, const CancelTest& cancel) {
+  return load(path, [&] { return std::make_shared<Frame>(read_frame(path, content, cancel)); });
 }
 
 FrameHeader load_header(const std::string& path) {

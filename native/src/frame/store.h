@@ -5,19 +5,28 @@
 #include <memory>
 #include <string>
 
+#include "base/cancel_test.h"
+#include "frame/file_writer.h"
 #include "frame/frame_header.h"
 
 namespace gradus {
 
 // By the threads of the caller's arena.
 //
+// `cancel` is asked by several of them, block by block: what is cancelled throws the Error CANCELLED. A file that was being written is not
+// there then, and one that had the name before still has it.
+struct FrameWriting {
+  Durable durable = Durable::kYes;
+  CancelTest cancel = [] { return false; };
+};
 // Writes PATH as a whole or not at all: under a temporary name beside it, synced, then renamed. Throws Error with path and cause.
-void save_frame(const Frame& frame, const std::string& path);
+void save_frame(const Frame& frame, const std::string& path, const FrameWriting& how = {});
 
 // What is read of a file: the samples alone are a frame without gradients and passes.
 enum class StoredContent { kAll, kSamples };
 // Both throw invalid_argument with path and cause for a file that is missing, damaged or no frame.
-std::shared_ptr<Frame> load_frame(const std::string& path, StoredContent content = StoredContent::kAll);
+std::shared_ptr<Frame> load_frame(
+    const std::string& path, StoredContent content = StoredContent::kAll, const CancelTest& cancel = [] { return false; });
 FrameHeader load_header(const std::string& path);
 
 }  // namespace gradus

@@ -4,11 +4,12 @@
 #include <functional>
 #include <memory>
 
+#include "base/cancel_test.h"
 #include "frame/frame.h"
 
 namespace gradus {
 
-// A part of a frame, by its place: its own half, or the one that replays the frame before.
-using LoadPart = std::function<std::shared_ptr<Frame>(int place)>;
+// A part of a frame, by its place: its own half, or the one that replays the frame before. Throws the Error CANCELLED.
+using LoadPart = std::function<std::shared_ptr<Frame>(int place, const CancelTest& cancel)>;
 
 }  // namespace gradus

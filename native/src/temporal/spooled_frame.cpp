@@ -5,22 +5,24 @@
 #include <iterator>
 #include <vector>
 
-#include "base/error.h"
+#include "base/stop_if.h"
 #include "temporal/frame_window.h"
 
 namespace gradus {
 
-SpooledFrame::SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content)
+SpooledFrame::SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content, const CancelTest& cancel)
     : size_(FrameWindow({frame}).size()), gradients_(!frame->base.values.dx.empty()), halves_(content.halves) {
-  write(FrameWindow({frame}), false);
+  write(FrameWindow({frame}), false, cancel);
 }
 
-void SpooledFrame::write_differences(const std::shared_ptr<const TemporalFrame>& frame, const std::shared_ptr<const TemporalFrame>& next) {
-  write(FrameWindow({frame, next}), true);
+void SpooledFrame::write_differences(const std::shared_ptr<const TemporalFrame>& frame, const std::shared_ptr<const TemporalFrame>& next,
+                                     const CancelTest& cancel) {
+  write(FrameWindow({frame, next}), true, cancel);
 }
 
-void SpooledFrame::write(const HalvedWindowSource& rows, bool temporal) {
+void SpooledFrame::write(const HalvedWindowSource& rows, bool temporal, const CancelTest& cancel) {
   tbb::parallel_for(0, size_.height, [&](int y) {
+    stop_if(cancel);
     std::vector<float> row(size_t(size_.width) * size_t(size_.channels));
     for (const RowKind kind : kRowKinds) {
       if (is_temporal(kind) != temporal || !holds(kind)) continue;

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "base/cancel_test.h"
 #include "base/spool_file.h"
 #include "reconstruct/space_time/window_source.h"
 #include "temporal/temporal_frame.h"
@@ -11,10 +12,12 @@ namespace gradus {
 
 class SpooledFrame {
  public:
-  // Its pixels and their differences in space, as many kinds as `content` says. By the threads of the caller's arena.
-  SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content);
+  // Its pixels and their differences in space, as many kinds as `content` says. By the threads of the caller's arena, which ask `cancel`
+  // row by row: throws the Error CANCELLED.
+  SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content, const CancelTest& cancel);
   // Their differences to the next one.
-  void write_differences(const std::shared_ptr<const TemporalFrame>& frame, const std::shared_ptr<const TemporalFrame>& next);
+  void write_differences(const std::shared_ptr<const TemporalFrame>& frame, const std::shared_ptr<const TemporalFrame>& next,
+                         const CancelTest& cancel);
 
   // Of this frame alone.
   const WindowSize& size() const { return size_; }
@@ -27,7 +30,7 @@ class SpooledFrame {
   enum Part { kValues, kHalfDifferences, kParts };
 
   bool holds(RowKind kind) const { return gradients_ || kind == RowKind::kPrimal || kind == RowKind::kDt; }
-  void write(const HalvedWindowSource& rows, bool temporal);
+  void write(const HalvedWindowSource& rows, bool temporal, const CancelTest& cancel);
   void read(RowKind kind, Part part, int y, float* out) const;
   size_t row_bytes() const;
   uint64_t place_of(RowKind kind, Part part, int y) const;

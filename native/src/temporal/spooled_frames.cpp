@@ -3,29 +3,35 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "base/stop_if.h"
 #include "temporal/frame_window.h"
 
 namespace gradus {
 namespace {
 
+// A solver passes over its rows again and again, each time over those of all frames: it is the rows that ask.
 class SpooledWindow final : public HalvedWindowSource {
  public:
-  explicit SpooledWindow(std::vector<std::shared_ptr<const SpooledFrame>> frames) : frames_(std::move(frames)) {}
+  SpooledWindow(std::vector<std::shared_ptr<const SpooledFrame>> frames, CancelTest cancel)
+      : frames_(std::move(frames)), cancel_(std::move(cancel)) {}
 
   WindowSize size() const override {
     WindowSize size = frames_.front()->size();
     size.frames = int(frames_.size());
     return size;
   }
-  void read_row(RowKind kind, int t, int y, float* out) const override { frames_[size_t(t)]->read_row(kind, y, out); }
-  void read_half_differences(RowKind kind, int t, int y, float* out) const override {
-    frames_[size_t(t)]->read_half_differences(kind, y, out);
-  }
-  void read_links(int t, int y, int32_t* out) const override { frames_[size_t(t)]->read_links(y, out); }
+  void read_row(RowKind kind, int t, int y, float* out) const override { frame(t).read_row(kind, y, out); }
+  void read_half_differences(RowKind kind, int t, int y, float* out) const override { frame(t).read_half_differences(kind, y, out); }
+  void read_links(int t, int y, int32_t* out) const override { frame(t).read_links(y, out); }
 
  private:
+  const SpooledFrame& frame(int t) const {
+    stop_if(cancel_);
+    return *frames_[size_t(t)];
+  }
+
   const std::vector<std::shared_ptr<const SpooledFrame>> frames_;
+  const CancelTest cancel_;
 };
 
 // function(plane) for all planes of the images.
@@ -41,9 +47,10 @@ void for_planes(Images* images, const Function& function) {
 // The base of a frame, until the window comes that has the next one, too.
 class SpooledFrames::SpooledBase {
  public:
-  SpooledBase(int place, const TemporalFrame& frame) : place_(place), shape_(shape_of(frame)) {
+  SpooledBase(int place, const TemporalFrame& frame, const CancelTest& cancel) : place_(place), shape_(shape_of(frame)) {
     uint64_t at = 0;
     for_planes(&frame.base, [&](const std::vector<float>* plane) {
+      stop_if(cancel);
       file_.write(at, plane->data(), plane->size() * sizeof(float));
       sizes_.push_back(plane->size());
       at += plane->size() * sizeof(float);
@@ -51,11 +58,12 @@ class SpooledFrames::SpooledBase {
   }
 
   int place() const { return place_; }
-  std::shared_ptr<const TemporalFrame> read() const {
+  std::shared_ptr<const TemporalFrame> read(const CancelTest& cancel) const {
     auto frame = std::make_shared<TemporalFrame>(shape_);
     uint64_t at = 0;
     auto size = sizes_.begin();
     for_planes(&frame->base, [&](std::vector<float>* plane) {
+      stop_if(cancel);
       plane->resize(*size++);
       file_.read(at, plane->data(), plane->size() * sizeof(float));
       at += plane->size() * sizeof(float);
@@ -87,14 +95,14 @@ SpooledFrames::SpooledFrames(LoadPart base, LoadPart replay, TemporalContent con
     : base_(std::move(base)), replay_(std::move(replay)), content_(content) {}
 SpooledFrames::~SpooledFrames() = default;
 
-std::shared_ptr<const TemporalFrame> SpooledFrames::load(int place) const {
-  const std::shared_ptr<const Frame> base = base_(place), replay = replay_(place);
+std::shared_ptr<const TemporalFrame> SpooledFrames::load(int place, const CancelTest& cancel) const {
+  const std::shared_ptr<const Frame> base = base_(place, cancel), replay = replay_(place, cancel);
   return std::make_shared<TemporalFrame>(make_temporal_frame(*base, *replay, content_));
 }
 
-std::shared_ptr<const TemporalFrame> SpooledFrames::base_of(int place) const {
-  if (end_ && end_->place() == place) return end_->read();
-  return std::make_shared<TemporalFrame>(make_base(*base_(place), content_));
+std::shared_ptr<const TemporalFrame> SpooledFrames::base_of(int place, const CancelTest& cancel) const {
+  if (end_ && end_->place() == place) return end_->read(cancel);
+  return std::make_shared<TemporalFrame>(make_base(*base_(place, cancel), content_));
 }
 
 std::unique_ptr<HalvedWindowSource> SpooledFrames::window(int first, int last, const CancelTest& cancel) {
@@ -102,19 +110,19 @@ std::unique_ptr<HalvedWindowSource> SpooledFrames::window(int first, int last, c
   std::shared_ptr<const TemporalFrame> before;  // of the frame before
   for (int place = first; place <= last; ++place) {
     if (frames_.count(place) > 0) continue;
-    if (cancel()) throw cancelled();
-    const auto frame = load(place);
+    stop_if(cancel);
+    const auto frame = load(place, cancel);
     if (place > first) {
-      if (!before) before = base_of(place - 1);
-      frames_.at(place - 1)->write_differences(before, frame);
+      if (!before) before = base_of(place - 1, cancel);
+      frames_.at(place - 1)->write_differences(before, frame, cancel);
     }
-    frames_[place] = std::make_shared<SpooledFrame>(frame, content_);
+    frames_[place] = std::make_shared<SpooledFrame>(frame, content_, cancel);
     before = frame;
   }
-  if (before) end_ = std::make_unique<SpooledBase>(last, *before);
+  if (before) end_ = std::make_unique<SpooledBase>(last, *before, cancel);
   std::vector<std::shared_ptr<const SpooledFrame>> frames;
   for (int place = first; place <= last; ++place) frames.push_back(frames_.at(place));
-  return std::make_unique<SpooledWindow>(std::move(frames));
+  return std::make_unique<SpooledWindow>(std::move(frames), cancel);
 }
 
 }  // namespace gradus

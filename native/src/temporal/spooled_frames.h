@@ -18,17 +18,17 @@ class SpooledFrames {
 
   // The frames from `first` to `last`. Windows come in order: frames before this one's are forgotten. Reads what is new, one frame after
   // the other, by the threads of the caller's arena. Of frames without gradients there are rows of pixels and of their differences over
-  // time alone: to read others throws invalid_operation. `cancel` is asked before each frame that is read: throws the Error CANCELLED,
-  // after which no window can be had.
+  // time alone: to read others throws invalid_operation. `cancel` is asked all the while, and for every row that is read of the window:
+  // throws the Error CANCELLED, after which no window can be had.
   std::unique_ptr<HalvedWindowSource> window(
       int first, int last, const CancelTest& cancel = [] { return false; });
 
  private:
   class SpooledBase;
 
-  std::shared_ptr<const TemporalFrame> load(int place) const;
+  std::shared_ptr<const TemporalFrame> load(int place, const CancelTest& cancel) const;
   // What the differences to the next frame need of one that is there.
-  std::shared_ptr<const TemporalFrame> base_of(int place) const;
+  std::shared_ptr<const TemporalFrame> base_of(int place, const CancelTest& cancel) const;
 
   const LoadPart base_, replay_;
   const TemporalContent content_;

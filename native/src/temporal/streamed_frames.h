@@ -17,14 +17,15 @@ class StreamedFrames {
   using Merge = std::function<std::shared_ptr<const Frame>(int place, std::shared_ptr<Frame> base, const Frame& replay)>;
   StreamedFrames(LoadPart base, LoadPart replay, Merge merge);
 
-  // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena.
-  std::shared_ptr<const Frame> frame(int place);
+  // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena. Throws the Error
+  // CANCELLED.
+  std::shared_ptr<const Frame> frame(int place, const CancelTest& cancel);
   // A window of the frame and the next one, with pixels and their differences over time alone.
-  std::unique_ptr<HalvedWindowSource> differences(int place);
+  std::unique_ptr<HalvedWindowSource> differences(int place, const CancelTest& cancel);
 
  private:
-  std::shared_ptr<const TemporalFrame> images(int place);
-  void load(int place);
+  std::shared_ptr<const TemporalFrame> images(int place, const CancelTest& cancel);
+  void load(int place, const CancelTest& cancel);
 
   const LoadPart base_, replay_;
   const Merge merge_;

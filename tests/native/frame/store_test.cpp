@@ -425,6 +425,49 @@ TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
   EXPECT_TRUE(same_samples(*frame, *load_frame(path("old.exr")))) << "the frame that was there remains";
 }
 
+// True when it has been asked that often. By several threads.
+CancelTest after(int times) {
+  return [left = std::make_shared<std::atomic<int>>(times)] { return --*left < 0; };
+}
+
+// How often work is cancelled before it comes to its end: asked once more each time.
+template <class Work>
+int cancels_of(const Work& work) {
+  for (int times = 0;; ++times) {
+    try {
+      work(after(times));
+      return times;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), GRADUS_ERROR_CANCELLED) << e.what();
+      if (e.code() != GRADUS_ERROR_CANCELLED) return times;
+    }
+  }
+}
+
+// Files took their whole time, whoever cancelled meanwhile.
+TEST_F(F6_Store, K2_ACancelledWriteLeavesWhatWasThere) {
+  const auto frame = rendered(all_passes(96, 64, 2)), other = rendered(all_passes(96, 64, 1));
+  const auto left_by = [&](size_t kept) {
+    return cancels_of([&](const CancelTest& cancel) {
+      EXPECT_EQ(files(), kept);
+      EXPECT_TRUE(kept == 0 || same_samples(*load_frame(path()), *other));
+      save_frame(*frame, path(), {.cancel = cancel});
+    });
+  };
+  EXPECT_GT(left_by(0), 3) << "of four blocks at least";
+  save_frame(*other, path());
+  EXPECT_GT(left_by(1), 3);
+  EXPECT_TRUE(same_samples(*load_frame(path()), *frame));
+}
+
+TEST_F(F6_Store, K2_ACancelIsHeardWhileAFileIsRead) {
+  const auto frame = rendered(all_passes(96, 64, 2));
+  save_frame(*frame, path());
+  std::shared_ptr<const Frame> read;
+  EXPECT_GT(cancels_of([&](const CancelTest& cancel) { read = load_frame(path(), StoredContent::kAll, cancel); }), 3);
+  EXPECT_TRUE(same_samples(*read, *frame));
+}
+
 // A disk of 100 kB: for those who may mount one in a name space of their own.
 TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
   const auto frame = rendered(all_passes(96, 64, 2));

@@ -2,6 +2,7 @@
 #include "temporal/frame_window.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -142,7 +143,7 @@ class FiveFrames : public testing::Test {
     return all;
   }
   static LoadPart load(const std::vector<std::shared_ptr<Frame>>& frames) {
-    return [&](int place) { return std::make_shared<Frame>(*frames[size_t(place)]); };
+    return [&](int place, const CancelTest&) { return std::make_shared<Frame>(*frames[size_t(place)]); };
   }
   FrameWindow in_memory() const {
     std::vector<std::shared_ptr<const TemporalFrame>> frames;
@@ -174,9 +175,9 @@ TEST_F(FiveFrames, WindowsThatOverlapReadEachPartOnce) {
   const FrameWindow whole = in_memory();
   std::array<int, 5> bases{}, replays{};
   const auto counted = [](const LoadPart& load, std::array<int, 5>* loads) {
-    return [load, loads](int place) {
+    return [load, loads](int place, const CancelTest& cancel) {
       ++loads->at(size_t(place));
-      return load(place);
+      return load(place, cancel);
     };
   };
   SpooledFrames frames(counted(load(base_), &bases), counted(load(replay_), &replays), {});
@@ -194,24 +195,43 @@ TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
   const FrameWindow whole = in_memory();
   int loads = 0;
   const auto counted = [&](const LoadPart& load) {
-    return [&loads, load](int place) {
+    return [&loads, load](int place, const CancelTest& cancel) {
       ++loads;
-      return load(place);
+      return load(place, cancel);
     };
   };
+  const auto never = [] { return false; };
   StreamedFrames frames(counted(load(base_)), counted(load(replay_)), [](int, std::shared_ptr<Frame> base, const Frame&) { return base; });
   std::vector<float> row(20 * 4), expected(row);
   for (int t = 0; t < 4; ++t) {
-    EXPECT_EQ(frames.frame(t)->components[0].primal[0][0].x, base_[size_t(t)]->components[0].primal[0][0].x);
-    const auto pair = frames.differences(t);
+    EXPECT_EQ(frames.frame(t, never)->components[0].primal[0][0].x, base_[size_t(t)]->components[0].primal[0][0].x);
+    const auto pair = frames.differences(t, never);
     for (int y = 0; y < 8; ++y) {
       pair->read_half_differences(RowKind::kDt, 0, y, row.data());
       whole.read_half_differences(RowKind::kDt, t, y, expected.data());
       EXPECT_EQ(std::memcmp(row.data(), expected.data(), row.size() * sizeof(float)), 0) << t;
     }
   }
-  frames.frame(4);
+  frames.frame(4, never);
   EXPECT_EQ(loads, 10);
+}
+
+// Between two frames alone a cancel was heard: the rows of each were put down, and those of all read again and again for their weights.
+TEST_F(FiveFrames, K2_ACancelIsHeardAtEveryRow) {
+  std::atomic<int> asked{0};
+  std::atomic<bool> is_cancelled{false};
+  const auto window = SpooledFrames(load(base_), load(replay_), {}).window(0, 4, [&] {
+    ++asked;
+    return is_cancelled.load();
+  });
+  EXPECT_GE(asked, 9 * 8) << "rows of five frames and of their differences";
+  std::vector<float> row(20 * 4);
+  std::vector<int32_t> links(20);
+  EXPECT_NO_THROW(window->read_row(RowKind::kPrimal, 0, 0, row.data()));
+  is_cancelled = true;
+  EXPECT_THROW(window->read_row(RowKind::kPrimal, 0, 0, row.data()), Error);
+  EXPECT_THROW(window->read_deviations(RowKind::kPrimal, 0, 0, row.data()), Error);
+  EXPECT_THROW(window->read_links(0, 0, links.data()), Error);
 }
 
 TEST_F(FiveFrames, TheNoiseOfRowsIsThereWhereItIsAskedFor) {

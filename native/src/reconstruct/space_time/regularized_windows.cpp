@@ -98,10 +98,10 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelTest&
 
 const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const CancelTest& cancel, SolveReport* report) {
   auto known = estimates_.find(frame);
-  if (known == estimates_.end()) known = estimates_.emplace(frame, still(*open_(frame), cancel, report)).first;
+  if (known == estimates_.end()) known = estimates_.emplace(frame, still(*open_(frame, cancel), cancel, report)).first;
   Estimate& estimate = known->second;
   if (!changes || estimate.change) return estimate;
-  const std::unique_ptr<HalvedWindowSource> rows = differences_(frame);
+  const std::unique_ptr<HalvedWindowSource> rows = differences_(frame, cancel);
   check_size(estimate.picture, rows->size());
   estimate.change = regress_change(*rows, 0, std::exchange(estimate.features, {}), scale_of(estimate.picture), cancel);
   return estimate;

@@ -17,10 +17,10 @@ namespace gradus {
 
 class RegularizedWindows {
  public:
-  // All samples of a frame, replays too, with features: asked for once, and not kept.
-  using OpenFrame = std::function<std::shared_ptr<const Frame>(int frame)>;
+  // All samples of a frame, replays too, with features: asked for once, and not kept. Both throw the Error CANCELLED.
+  using OpenFrame = std::function<std::shared_ptr<const Frame>(int frame, const CancelTest& cancel)>;
   // A window of a frame and the next one, of which rows of pixels over time are read; after the frame itself.
-  using OpenDifferences = std::function<std::unique_ptr<HalvedWindowSource>(int frame)>;
+  using OpenDifferences = std::function<std::unique_ptr<HalvedWindowSource>(int frame, const CancelTest& cancel)>;
   RegularizedWindows(OpenFrame open, OpenDifferences differences) : open_(std::move(open)), differences_(std::move(differences)) {}
 
   // Takes the pictures of a window's frames, in order, t counted from its first. Windows come in order: what two of them share is computed

@@ -44,8 +44,8 @@ class SequencePictures {
   FrameRange around(int frame) const { return grid_.around(frame); }
   // Whether the picture can be taken: it was not yet, nor a later one.
   bool has(int frame) const;
-  // Channels interleaved. Each picture is taken once, in order, with gaps as the caller likes; the first one may be any. Empty: cancelled,
-  // and no picture can be taken any more.
+  // Channels interleaved. Each picture is taken once, in order, with gaps as the caller likes; the first one may be any. Empty, or
+  // the Error CANCELLED where a frame was being read: cancelled, and no picture can be taken any more.
   Reconstructed take(int frame, const CancelTest& cancel, SolveReport* report);
 
  private:

@@ -72,10 +72,11 @@ void FrameDelivery::render() {
 
 std::shared_ptr<Frame> FrameDelivery::load() {
   const SequenceFolder& folder = sequence_->folder_;
-  const std::shared_ptr<Frame> frame = folder.load(number_, FramePart::kBase);
+  const CancelTest cancel = [this] { return is_stopped(); };
+  const std::shared_ptr<Frame> frame = folder.load(number_, FramePart::kBase, StoredContent::kAll, cancel);
   const std::optional<GradusSettings> asked = changed_ ? changed_ : folder.settings(number_);
-  read_differences_over_time(*frame, asked ? *asked : frame->settings);
-  const std::shared_ptr<const Frame> offset = folder.load(number_, FramePart::kOffset);
+  read_differences_over_time(*frame, asked ? *asked : frame->settings, cancel);
+  const std::shared_ptr<const Frame> offset = folder.load(number_, FramePart::kOffset, StoredContent::kAll, cancel);
   sequence_->merge(number_, frame.get(), *offset);
   const auto record = sequence_->records_.find(number_);
   const bool is_planned = record != sequence_->records_.end();
@@ -139,7 +140,7 @@ void FrameDelivery::denoise() {
   for (float& value : error_) value *= denoised_error(frame_->settings.reconstruction);
 }
 
-void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusSettings& asked) {
+void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusSettings& asked, const CancelTest& cancel) {
   const Region region = delivered_region(frame);
   const float exposure = asked.film_exposure;
   difference_.assign(3 * size_t(region.area()), 0.0f);
@@ -152,7 +153,7 @@ void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusS
   const bool wanted = wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
   if (!wanted || !folder.holds(next) || !sequence_->goes_on_at(place, reconstruction)) return;
   constexpr TemporalContent kPixels{.gradients = false, .halves = false};
-  const std::shared_ptr<const Frame> replay = folder.load(next, FramePart::kOffset, StoredContent::kSamples);
+  const std::shared_ptr<const Frame> replay = folder.load(next, FramePart::kOffset, StoredContent::kSamples, cancel);
   const FrameWindow window(
       {std::make_shared<TemporalFrame>(make_base(frame, kPixels)),
        std::make_shared<TemporalFrame>(make_replay(*replay, folder.header(next, FramePart::kBase).frame_number, kPixels))});
@@ -161,6 +162,7 @@ void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusS
   std::vector<int32_t> links(static_cast<size_t>(width));
   size_t out = 0;
   for (int32_t y = region.y0; y < region.y1; ++y) {
+    stop_if_asked();
     const int row = y - frame.region.y0;
     window.read_row(RowKind::kDt, 0, row, differences.data());
     window.read_links(0, row, links.data());

@@ -27,7 +27,7 @@ class FrameDelivery final : public RenderTask {
   void reconstruct();
   void denoise();
   // Passes Gradient T and Gradient T Link, of the frame's own half.
-  void read_differences_over_time(const Frame& base, const GradusSettings& asked);
+  void read_differences_over_time(const Frame& base, const GradusSettings& asked, const CancelTest& cancel);
 
   const std::shared_ptr<Sequence> sequence_;
   const int32_t number_;

@@ -66,7 +66,7 @@ std::shared_ptr<const Frame> FrameSampling::frame() const {
 
 std::shared_ptr<const Frame> FrameSampling::own_half(const char* what) const {
   require_end(what);
-  if (!frame_ && text_.empty()) frame_ = read(FramePart::kBase, StoredContent::kAll);
+  if (!frame_ && text_.empty()) frame_ = read(FramePart::kBase, StoredContent::kAll, [] { return false; });
   require_frame(frame_, what, "the render failed: ");
   return frame_;
 }
@@ -109,17 +109,17 @@ std::optional<FrameHeader> FrameSampling::stored(FramePart part) const {
   return frame;
 }
 
-std::shared_ptr<Frame> FrameSampling::read(FramePart part, StoredContent content) const {
+std::shared_ptr<Frame> FrameSampling::read(FramePart part, StoredContent content, const CancelTest& cancel) const {
   std::shared_ptr<Frame> frame;
   tbb::task_arena(arena_size(input_.threads)).execute([&] {
-    frame = read_or_name_the_way_out([&] { return sequence_->folder_.load(input_.settings.frame, part, content); });
+    frame = read_or_name_the_way_out([&] { return sequence_->folder_.load(input_.settings.frame, part, content, cancel); });
   });
   return frame;
 }
 
 std::shared_ptr<Frame> FrameSampling::load(FramePart part, StoredContent content) {
   const Bill bill(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
-  return read(part, content);
+  return read(part, content, [this] { return is_stopped(); });
 }
 
 bool FrameSampling::repeats_before() const {
@@ -147,8 +147,8 @@ void FrameSampling::run(RenderLoop* loop) {
 
 void FrameSampling::save(const Frame& frame, FramePart part) {
   const Bill bill(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
-  stop_if_asked();
-  tbb::task_arena(arena_size(input_.threads)).execute([&] { sequence_->folder_.save(frame, input_.settings.frame, part); });
+  const CancelTest cancel = [this] { return is_stopped(); };
+  tbb::task_arena(arena_size(input_.threads)).execute([&] { sequence_->folder_.save(frame, input_.settings.frame, part, cancel); });
 }
 
 void FrameSampling::repeat_before() {

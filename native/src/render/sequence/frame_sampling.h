@@ -33,7 +33,7 @@ class FrameSampling final : public RenderTask {
   bool has_enough(const FrameHeader& half, FramePart part) const;
   // The frame that is sampled or was stored. With the lock.
   std::shared_ptr<const Frame> own_half(const char* what) const;
-  std::shared_ptr<Frame> read(FramePart part, StoredContent content) const;
+  std::shared_ptr<Frame> read(FramePart part, StoredContent content, const CancelTest& cancel) const;
   std::shared_ptr<Frame> load(FramePart part, StoredContent content = StoredContent::kAll);
   bool repeats_before() const;
   bool differs_from_before() const;

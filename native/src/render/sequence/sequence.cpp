@@ -159,7 +159,9 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
 }
 
 LoadPart Sequence::load_part(FramePart part) const {
-  return [this, part](int place) { return read_or_name_the_way_out([&] { return folder_.load(frame_at(place), part); }); };
+  return [this, part](int place, const CancelTest& cancel) {
+    return read_or_name_the_way_out([&] { return folder_.load(frame_at(place), part, StoredContent::kAll, cancel); });
+  };
 }
 
 void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
@@ -183,7 +185,8 @@ SequenceSource Sequence::source(const SequenceMethod& method) const {
   const auto spooled = std::make_shared<SpooledFrames>(base, offset, TemporalContent{.halves = reads_halves(method)});
   const auto streamed = std::make_shared<StreamedFrames>(base, offset, merged);
   return {[spooled](const FrameRange& window, const CancelTest& cancel) { return spooled->window(window.first, window.last, cancel); },
-          [streamed](int place) { return streamed->frame(place); }, [streamed](int place) { return streamed->differences(place); }};
+          [streamed](int place, const CancelTest& cancel) { return streamed->frame(place, cancel); },
+          [streamed](int place, const CancelTest& cancel) { return streamed->differences(place, cancel); }};
 }
 
 SequencePictures* Sequence::pictures(const SequenceMethod& method, int32_t frame) {

@@ -42,12 +42,14 @@ bool SequenceFolder::holds(int32_t frame) const {
 
 FrameHeader SequenceFolder::header(int32_t frame, FramePart part) const { return load_header(path(frame, part)); }
 
-std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part, StoredContent content) const {
+std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part, StoredContent content, const CancelTest& cancel) const {
   ++loads_;
-  return load_frame(path(frame, part), content);
+  return load_frame(path(frame, part), content, cancel);
 }
 
-void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part) const { save_frame(content, path(frame, part)); }
+void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part, const CancelTest& cancel) const {
+  save_frame(content, path(frame, part), {durable(), cancel});
+}
 
 std::optional<GradusSettings> SequenceFolder::settings(int32_t frame) const {
   const std::string name = path(frame, kSettings);
@@ -62,7 +64,7 @@ std::optional<GradusSettings> SequenceFolder::settings(int32_t frame) const {
 
 void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame) const {
   const std::string text = settings_to_json(settings).dump(1);
-  FileWriter file(path(frame, kSettings));
+  FileWriter file(path(frame, kSettings), durable());
   file.write(text.data(), text.size());
   file.commit();
 }
@@ -70,7 +72,7 @@ void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
   for (const FramePart part : {FramePart::kOffset, FramePart::kBase}) {
     const std::string source = path(from, part), target = path(to, part);
-    if (!link_file(source, target)) copy_file(source, target);
+    if (!link_file(source, target)) copy_file(source, target, durable());
   }
 }
 

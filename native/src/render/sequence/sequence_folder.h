@@ -25,10 +25,12 @@ class SequenceFolder {
   std::string path(int32_t frame, FramePart part) const;
   // Whether both parts of a frame are there.
   bool holds(int32_t frame) const;
-  // Both throw invalid_argument with path and cause. The second by the threads of the caller's arena; so does save().
+  // Both throw invalid_argument with path and cause. The second by the threads of the caller's arena; so does save(). `cancel`: as of
+  // frame/store.h.
   FrameHeader header(int32_t frame, FramePart part) const;
-  std::shared_ptr<Frame> load(int32_t frame, FramePart part, StoredContent content = StoredContent::kAll) const;
-  void save(const Frame& content, int32_t frame, FramePart part) const;
+  std::shared_ptr<Frame> load(
+      int32_t frame, FramePart part, StoredContent content = StoredContent::kAll, const CancelTest& cancel = [] { return false; }) const;
+  void save(const Frame& content, int32_t frame, FramePart part, const CancelTest& cancel) const;
   // Of delivery (exposure and the like): frames that are alike share their files, and may differ in these. Throws invalid_argument with the
   // path; nothing: those of its files.
   std::optional<GradusSettings> settings(int32_t frame) const;
@@ -42,6 +44,8 @@ class SequenceFolder {
 
  private:
   std::string path(int32_t frame, const char* ending) const;
+
+  Durable durable() const { return is_temporary() ? Durable::kNo : Durable::kYes; }
 
   std::unique_ptr<const TemporaryFolder> temporary_;
   std::string path_;

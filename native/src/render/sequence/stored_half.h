@@ -20,6 +20,7 @@ auto read_or_name_the_way_out(const Read& read) {
   try {
     return read();
   } catch (const Error& e) {
+    if (e.code() == GRADUS_ERROR_CANCELLED) throw;
     throw Error(e.code(), e.what() + std::string(kWayOut));
   }
 }

@@ -73,10 +73,10 @@ struct Shot {
     return std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{temporal(t), temporal(t + 1)});
   }
   RegularizedWindows::OpenFrame open() const {
-    return [this](int t) { return merged(t); };
+    return [this](int t, const CancelTest&) { return merged(t); };
   }
   RegularizedWindows::OpenDifferences differences() const {
-    return [this](int t) { return pair(t); };
+    return [this](int t, const CancelTest&) { return pair(t); };
   }
   RegularizedWindows windows() const { return {open(), differences()}; }
   FrameRange all() const { return {0, frames - 1}; }
@@ -235,7 +235,7 @@ TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
   Shot shot;
   shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
   SolveReport report;
-  RegularizedWindows windows(shot.open(), [&](int t) { return std::make_unique<Blind>(shot.pair(t)); });
+  RegularizedWindows windows(shot.open(), [&](int t, const CancelTest&) { return std::make_unique<Blind>(shot.pair(t)); });
   windows.reconstruct(shot.all(), never, &report, [&](int t, const Reconstructed& picture) {
     EXPECT_NEAR(mean(picture.image) / mean(shot.description(t).truth), 1.0, 0.05) << t;
   });
@@ -301,11 +301,11 @@ TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
   std::map<int, int> opened;
   std::map<int, int> changes;
   RegularizedWindows both(
-      [&](int t) {
+      [&](int t, const CancelTest&) {
         ++opened[t];
         return shot.merged(t);
       },
-      [&](int t) {
+      [&](int t, const CancelTest&) {
         ++changes[t];
         return shot.pair(t);
       });

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "sequence_fixture.h"
 #include "support/failing_disk.h"
+#include "support/file_calls.h"
 
 namespace gradus::test {
 namespace {
@@ -652,6 +653,57 @@ TEST(K1_Sequence, ACancelWhileHalvesAreSavedIsMadeGoodByTheNextRender) {
   const auto again = render(&pan, make_sequence(1, 1, folder.path()).get(), 1, 1);
   EXPECT_EQ(again[0].stats["stopped"], is_done ? "stored" : "samples");
   EXPECT_EQ(again[0].noisy, render(&pan, make_sequence(1, 1, fresh.path()).get(), 1, 1)[0].noisy);
+}
+
+// A cancel was heard before a whole file alone, and that of half a frame takes seconds to write.
+TEST(K1_Sequence, ACancelWhileHalfAFrameIsWrittenEndsTheWriting) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto task = make_sequence(1, 1, folder.path())->sample(pan.at(1), with_passes(settings_of(1)));
+  int files = 0;
+  on_open_file = [&] {
+    ++files;
+    task->cancel();
+  };
+  task->run();
+  on_open_file = nullptr;
+  std::string text;
+  EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_CANCELLED);
+  EXPECT_EQ(text, "cancelled");
+  EXPECT_EQ(files, 1);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+// The same of reading: all of the frame that is delivered was read first.
+TEST(K1_Sequence, ACancelledDeliveryReadsNoWholeFile) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto sequence = make_sequence(1, 1, folder.path());
+  run(sequence->sample(pan.at(1), settings_of(1)).get());
+  const std::string path = SequenceFolder(folder.path()).path(1, FramePart::kBase);
+  fs::resize_file(path, fs::file_size(path) / 2);
+  const auto outcome = [&](bool is_cancelled) {
+    const auto task = sequence->deliver(1, nullptr);
+    if (is_cancelled) task->cancel();
+    task->run();
+    std::string text;
+    return task->outcome(&text);
+  };
+  EXPECT_EQ(outcome(true), GRADUS_ERROR_CANCELLED);
+  EXPECT_EQ(outcome(false), GRADUS_ERROR_INVALID_ARGUMENT) << "it is read otherwise";
+}
+
+// Gigabytes were pushed to the disk, to be removed when the next frames had come.
+TEST(F6_Sequence, WithoutAFrameStoreNothingIsForcedToADisk) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto synced_in = [&](const std::string& path) {
+    const int before = synced_files;
+    render(&pan, make_sequence(1, 2, path).get(), 1, 2);
+    return synced_files - before;
+  };
+  EXPECT_EQ(synced_in(""), 0);
+  EXPECT_EQ(synced_in(folder.path()), 2 * 2 * 3) << "two halves and settings of two frames, each with its folder";
 }
 
 // All frames of a window were read first, and all of their samples put down for the solver.

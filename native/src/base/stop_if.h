@@ -1,0 +1,14 @@
+// How work ends that is asked to end.
+#pragma once
+
+#include "base/cancel_test.h"
+#include "base/error.h"
+
+namespace gradus {
+
+// Throws the Error CANCELLED where it is to end.
+inline void stop_if(const CancelTest& cancel) {
+  if (cancel()) throw cancelled();
+}
+
+}  // namespace gradus
