@@ -132,13 +132,13 @@ TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
   uint64_t opening = 0;
   SolveReport report;
   RegularizedWindows windows(
-      [&](int frame) {
+      [&](int frame, const CancelTest&) {
         const uint64_t begin = process_cpu_nanoseconds();
         auto opened = open(frame);
         opening += process_cpu_nanoseconds() - begin;
         return opened;
       },
-      [&](int frame) { return std::make_unique<PairOf>(source, frame); });
+      [&](int frame, const CancelTest&) { return std::make_unique<PairOf>(source, frame); });
   windows.reconstruct({0, size.frames - 1}, kNever, &report, [](int, const Reconstructed&) {});
   const double pixels = double(size.width) * size.height * size.frames, bytes = double(peak_bytes() - before) / pixels;
   std::printf("  %.1f bytes, %.2f µs per pixel and frame\n", bytes, 1e-3 * double(process_cpu_nanoseconds() - start - opening) / pixels);
@@ -156,7 +156,7 @@ std::shared_ptr<Frame> flat_frame(const WindowSize& size, int32_t number) {
 TEST(J1_Window, InputsAreNotHeld) {
   const WindowSize size = test::full_run() ? full_window() : small_window();
   const double pixels = double(size.width) * size.height * size.frames;
-  const auto open = [&](int place) { return flat_frame(size, place); };
+  const auto open = [&](int place, const CancelTest&) { return flat_frame(size, place); };
   const int64_t before = live_bytes();
   forget_peak();
   const uint64_t start = process_cpu_nanoseconds();
