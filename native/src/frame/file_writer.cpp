@@ -24,6 +24,9 @@ void sync_folder_of(const std::string& path) {
   close(fd);
 }
 
+// A sync cannot be cancelled. That of half a frame of 4K, all at its end, takes seconds, or many on a slow disk.
+constexpr size_t kMostUnsynced = size_t{1} << 25;
+
 }  // namespace
 
 FileWriter::FileWriter(const std::string& path, Durable durable) : path_(path), durable_(durable) {
@@ -50,6 +53,13 @@ void FileWriter::fail(const char* action) const {
 
 void FileWriter::write(const void* data, size_t size) {
   if (size > 0 && std::fwrite(data, 1, size, file_) != size) fail("write");
+  unsynced_ += size;
+  if (durable_ == Durable::kYes && unsynced_ >= kMostUnsynced) sync();
+}
+
+void FileWriter::sync() {
+  if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail("write");
+  unsynced_ = 0;
 }
 
 uint64_t FileWriter::position() const {
@@ -64,7 +74,7 @@ void FileWriter::seek(uint64_t position) {
 
 void FileWriter::commit() {
   const bool is_durable = durable_ == Durable::kYes;
-  if (std::fflush(file_) != 0 || (is_durable && fsync(fileno(file_)) != 0)) fail("write");
+  if (is_durable) sync();
   const int closed = std::fclose(file_);
   file_ = nullptr;
   if (closed != 0 || rename(temporary_.c_str(), path_.c_str()) != 0) {

@@ -20,6 +20,7 @@ class FileWriter {
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
+  // Of a durable file, most of what was written is on the disk when this returns.
   void write(const void* data, size_t size);
   uint64_t position() const;
   void seek(uint64_t position);
@@ -28,9 +29,11 @@ class FileWriter {
 
  private:
   [[noreturn]] void fail(const char* action) const;
+  void sync();
   std::string path_, temporary_;
   Durable durable_;
   std::FILE* file_ = nullptr;
+  size_t unsynced_ = 0;
 };
 
 // As it is, under another name, in the place of what has that. Throws as FileWriter.

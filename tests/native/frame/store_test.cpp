@@ -31,6 +31,7 @@
 #include "render/combine.h"
 #include "render/fake_integrator.h"
 #include "support/failing_disk.h"
+#include "support/file_calls.h"
 
 namespace gradus {
 namespace {
@@ -466,6 +467,17 @@ TEST_F(F6_Store, K2_ACancelIsHeardWhileAFileIsRead) {
   std::shared_ptr<const Frame> read;
   EXPECT_GT(cancels_of([&](const CancelTest& cancel) { read = load_frame(path(), StoredContent::kAll, cancel); }), 3);
   EXPECT_TRUE(same_samples(*read, *frame));
+}
+
+// All of it was synced at the end of a file: half a frame of 4K for many seconds, in which no cancel is heard.
+TEST_F(F6_Store, K2_ALongFileIsSyncedWhileItIsWritten) {
+  const std::vector<char> bytes(33 << 20);
+  for (const auto& [durable, syncs] : {std::pair(Durable::kYes, 1), {Durable::kNo, 0}}) {
+    const int before = synced_files;
+    FileWriter writer(path(), durable);
+    writer.write(bytes.data(), bytes.size());
+    EXPECT_EQ(synced_files, before + syncs);
+  }
 }
 
 // A disk of 100 kB: for those who may mount one in a name space of their own.
