@@ -179,7 +179,7 @@ void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusS
 
 const Region& FrameDelivery::delivered() const {
   const std::lock_guard lock(mutex_);
-  require_end("its passes come");
+  require_frame(frame_, "its passes come", kNotDelivered);
   return record_.plan.delivered;
 }
 

@@ -686,6 +686,7 @@ TEST(K1_Sequence, ACancelledDeliveryReadsNoWholeFile) {
     const auto task = sequence->deliver(1, nullptr);
     if (is_cancelled) task->cancel();
     task->run();
+    EXPECT_THROW(task->delivered(), Error) << "nothing is";
     std::string text;
     return task->outcome(&text);
   };
