@@ -192,7 +192,7 @@ void say_that_time_ended_it(const SequenceFolder& files, int32_t frame) {
   const auto base = files.load(frame, FramePart::kBase);
   base->settings.time_limit = 1.0f;
   base->settings.samples = 1u << 20;
-  files.save(*base, frame, FramePart::kBase);
+  files.save(*base, frame, FramePart::kBase, [] { return false; });
 }
 
 GradusSettings with_threshold(int32_t frame, uint32_t samples, float threshold) {
