@@ -21,11 +21,15 @@ class MayBeSeen:
     """Of some scenes. layer: of the first one, which is rendered, too, where it is switched off."""
 
     def __init__(self, scenes: Iterable[Any], layer: str = "") -> None:
-        scenes = list(scenes)
-        self._shown: set[Any] = {obj for scene in scenes for each in _rendered_layers(scene, layer) for obj in _shown_by(each)}
+        self._scenes = list(scenes)
+        self._layer = layer
 
     def __call__(self, obj: Any) -> bool:
         return obj in self._shown or is_keyed(obj, "hide_render") or _acts_unasked(obj) or self._is_used(obj)
+
+    @cached_property
+    def _shown(self) -> set[Any]:
+        return {obj for scene in self._scenes for each in _rendered_layers(scene, self._layer) for obj in _shown_by(each)}
 
     @cached_property
     def _users(self) -> dict[Any, set[Any]]:

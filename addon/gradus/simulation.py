@@ -26,8 +26,6 @@ from .may_be_seen import MayBeSeen, is_keyed
 
 _DEFORMING = frozenset({"CLOTH", "SOFT_BODY"})
 _GUESSED = _DEFORMING | {"DYNAMIC_PAINT"}
-_SHARED = _GUESSED | {"PARTICLE_SYSTEM"}
-"""Every depsgraph writes into their caches."""
 
 
 class Simulations:
@@ -51,32 +49,36 @@ class Simulations:
             if world is not None and world.enabled and not _is_kept(world.point_cache) and self._shows_bodies(world):
                 self._add("Rigid Body World", world.point_cache.frame_start)
         for obj in _with_instances(obj for scene in _with_backgrounds(self.scene) for obj in scene.objects):
-            modifiers = [modifier for modifier in obj.modifiers if modifier.show_render or is_keyed(obj, "show_render")]
+            found = [(modifier, *each) for modifier in obj.modifiers for each in self._not_baked(obj, modifier)]
             # What deforms a body may push others.
-            if modifiers and (obj.rigid_body is not None or self._may_be_seen(obj)):
-                for modifier in modifiers:
-                    self._find_in(obj, modifier)
+            if found and (obj.rigid_body is not None or self._may_be_seen(obj)):
+                for each in found:
+                    self._take(obj, *each)
 
     def _shows_bodies(self, world: Any) -> bool:
         """A world stays behind, empty, where its bodies were deleted."""
         return world.collection is not None and any(self._may_be_seen(obj) for obj in world.collection.all_objects)
 
-    def _find_in(self, obj: Any, modifier: Any) -> None:
-        name = f"{obj.name}, {modifier.name}"
+    def _not_baked(self, obj: Any, modifier: Any) -> Iterator[tuple[int, Any]]:
+        """First frames of what a modifier simulates, with the caches that every depsgraph writes into, or None."""
+        if not modifier.show_render and not is_keyed(obj, "show_render"):
+            return
         for cache in _point_caches(modifier):
             if not _is_kept(cache, is_always_on_disk=modifier.type == "DYNAMIC_PAINT"):
-                self._add(name, cache.frame_start)
-                if modifier.type in _SHARED:
-                    self._caches.append(cache)
-                if modifier.type == "PARTICLE_SYSTEM":
-                    self._has_particles = True
-                if modifier.type in _GUESSED:
-                    self._guessed.append(obj)
+                yield cache.frame_start, cache
         if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" and modifier.domain_settings.cache_type == "REPLAY":
-            self._add(name, modifier.domain_settings.cache_frame_start)
+            yield modifier.domain_settings.cache_frame_start, None
         # Blender does not tell which zones are baked; to step those costs time alone.
         if modifier.type == "NODES" and _has_zone(modifier.node_group, set()):
-            self._add(name, self.scene.frame_start)
+            yield self.scene.frame_start, None
+
+    def _take(self, obj: Any, modifier: Any, first: int, cache: Any) -> None:
+        self._add(f"{obj.name}, {modifier.name}", first)
+        if cache is not None:
+            self._caches.append(cache)
+        if modifier.type in _GUESSED:
+            self._guessed.append(obj)
+        self._has_particles = self._has_particles or modifier.type == "PARTICLE_SYSTEM"
 
     def _add(self, name: str, first: int) -> None:
         self.names.append(name)

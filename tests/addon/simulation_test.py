@@ -56,6 +56,16 @@ def render(scene: bpy.types.Scene, folder: Path) -> None:
     bpy.ops.render.render(animation=True, scene=scene.name)
 
 
+def check_changed(change: Callable[[bpy.types.Scene], None], temporal: bool, exports: Exports, folder: Path) -> None:
+    """With the scene of a cloth changed before it is rendered."""
+    scene = new_scene("cloth", temporal=temporal)
+    change(scene)
+    render(scene, folder)
+    truth = new_scene("cloth")
+    change(truth)
+    compare(simulations.in_order(truth, 1, LAST), exports.of["ViewLayer"], range(1, LAST + 1))
+
+
 @pytest.fixture(params=[kind for kind in simulations.KINDS if kind != "liquid"])
 def kind(request: pytest.FixtureRequest) -> str:
     if not simulations.exists(request.param):
@@ -176,12 +186,7 @@ def put_into_the_background(scene: bpy.types.Scene) -> None:
 @pytest.mark.parametrize("put_away", [put_into_an_instanced_collection, put_into_the_background])
 def test_c6_a_simulation_that_the_scene_shows_from_elsewhere(put_away: Callable, temporal: bool, exports: Exports, tmp_path: Path) -> None:
     """It was not looked for there: it stood still, and no warning told."""
-    scene = new_scene("cloth", temporal=temporal)
-    put_away(scene)
-    render(scene, tmp_path)
-    truth = new_scene("cloth")
-    put_away(truth)
-    compare(simulations.in_order(truth, 1, LAST), exports.of["ViewLayer"], range(1, LAST + 1))
+    check_changed(put_away, temporal, exports, tmp_path)
 
 
 def test_a_rigid_body_in_the_background_is_found() -> None:
@@ -430,12 +435,7 @@ def carry_something_unseen(scene: bpy.types.Scene) -> None:
 
 
 def test_c6_what_hangs_on_a_hidden_simulation_moves_with_it(temporal: bool, exports: Exports, tmp_path: Path) -> None:
-    scene = new_scene("cloth", temporal=temporal)
-    carry_something_unseen(scene)
-    render(scene, tmp_path)
-    truth = new_scene("cloth")
-    carry_something_unseen(truth)
-    compare(simulations.in_order(truth, 1, LAST), exports.of["ViewLayer"], range(1, LAST + 1))
+    check_changed(carry_something_unseen, temporal, exports, tmp_path)
 
 
 # ------------------------------------------------------------------------------------------------ what is left behind

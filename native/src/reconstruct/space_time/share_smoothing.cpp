@@ -11,11 +11,6 @@ namespace {
 // Black has room for quotients and their squares.
 constexpr float kLeastLight = 1e-15f;
 
-WeightPlane to_plane(const Field& field) {
-  WeightPlane plane(field.width(), field.height());
-  for_rows(field.height(), [&](int y) { plane.write_row(y, field.row(y)); });
-  return plane;
-}
 Frames to_fields(const std::vector<WeightPlane>& planes) {
   Frames fields;
   for (const WeightPlane& plane : planes) {

@@ -7,6 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "reconstruct/field.h"
+#include "reconstruct/rows.h"
+
 namespace gradus {
 
 class WeightPlane {
@@ -31,5 +34,12 @@ class WeightPlane {
   int width_ = 0, height_ = 0;
   std::vector<uint16_t> values_;
 };
+
+// Of the field's first channel.
+inline WeightPlane to_plane(const Field& field) {
+  WeightPlane plane(field.width(), field.height());
+  for_rows(field.height(), [&](int y) { plane.write_row(y, field.row(y)); });
+  return plane;
+}
 
 }  // namespace gradus

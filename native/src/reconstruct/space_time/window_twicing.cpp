@@ -38,8 +38,7 @@ WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate,
   for (size_t t = 0; t < estimate.size(); ++t) {
     Field kept = squared_residuals(source, int(t), estimate[t]);
     limit_squares(&kept);
-    WeightPlane& plane = kept_.emplace_back(kept.width(), kept.height());
-    for_rows(kept.height(), [&](int y) { plane.write_row(y, kept.row(y)); });
+    kept_.push_back(to_plane(kept));
     const Field& frame = estimate[t];
     Field light = smooth_frame(frame.channels(), [&](int y, float* row) {
       for (int c = 0; c < frame.channels(); ++c, row += frame.width()) {
