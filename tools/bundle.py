@@ -4,7 +4,8 @@
 
 All that libgradus.so needs, beyond what every system has, is copied into FOLDER, finds its neighbours by $ORIGIN, and gets a soname
 that no library of Blender has: libOpenColorIO.so.2.1 becomes libgradus_OpenColorIO.so.2.1. TBB keeps its soname: two copies of TBB in
-one process would be two thread pools, and the one loaded first serves both. Nothing is done when FOLDER is up to date.
+one process would be two thread pools, and the one loaded first serves both. So it goes for libgradus_flow.so, if it was built, which
+libgradus.so loads when it needs it. Nothing is done when FOLDER is up to date.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from pathlib import Path
 # The C and C++ run-time libraries must be the process's own; they are there wherever Blender runs.
 BASE = ("linux-vdso", "ld-linux", "libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libstdc++.so", "libgcc_s.so")
 SHARED_WITH_HOST = ("libtbb.so",)
+LOADED_LATER = ("libgradus_flow.so",)
 
 
 def run(*command: str | Path) -> str:
@@ -42,6 +44,11 @@ def resolved(library: Path) -> dict[str, Path]:
             raise SystemExit(f"bundle: {library.name} needs {name}, which is not there")
         found[name] = Path(rest.rsplit(" (", 1)[0])
     return found
+
+
+def loaded_later(library: Path) -> list[Path]:
+    """What lies beside a library for it to load when it needs it."""
+    return [path for name in LOADED_LATER if (path := library.parent / name).exists()]
 
 
 def private_name(soname: str) -> str:
@@ -68,7 +75,11 @@ def bundle(library: Path, folder: Path) -> None:
     with tempfile.TemporaryDirectory(prefix=".new-", dir=folder) as name:
         new = Path(name)
         place(library.resolve(), new / "libgradus.so", None)
-        for soname, path in resolved(library).items():
+        closure = resolved(library)
+        for later in loaded_later(library):
+            place(later.resolve(), new / later.name, later.name)
+            closure |= resolved(later)
+        for soname, path in closure.items():
             place(path.resolve(), new / private_name(soname), private_name(soname))
         for old in folder.glob("*.so*"):
             if not (new / old.name).exists():
@@ -79,8 +90,9 @@ def bundle(library: Path, folder: Path) -> None:
 
 def main() -> int:
     library, folder = Path(sys.argv[1]), Path(sys.argv[2])
-    state = library.stat()
-    stamp = f"{state.st_size} {state.st_mtime_ns} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}\n"
+    states = [path.stat() for path in (library, *loaded_later(library))]
+    sources = " ".join(f"{state.st_size} {state.st_mtime_ns}" for state in states)
+    stamp = f"{sources} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}\n"
     marker = folder / ".stamp"
     if marker.exists() and marker.read_text() == stamp and (folder / "libgradus.so").exists():
         return 0

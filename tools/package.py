@@ -19,6 +19,7 @@ import tomllib
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon" / "gradus"
 EMBREE_LICENSE = "share/doc/embree3/LICENSE.txt"
+OPENCV_PACKAGE = "libopencv-video-dev"
 
 
 def version() -> str:
@@ -55,7 +56,11 @@ def owner(library: Path) -> str | None:
 def licenses() -> dict[str, bytes]:
     """Licence texts of what lies in lib/, by name in the zip."""
     texts = {"LICENSE": (ROOT / "LICENSE").read_bytes()}
-    for path in bundle.resolved(ROOT / "build" / "native" / "libgradus.so").values():
+    library = ROOT / "build" / "native" / "libgradus.so"
+    later = bundle.loaded_later(library)
+    if later:  # OpenCV is linked into it
+        texts["lib/licenses/opencv.txt"] = Path(f"/usr/share/doc/{OPENCV_PACKAGE}/copyright").read_bytes()
+    for path in {soname: path for part in (library, *later) for soname, path in bundle.resolved(part).items()}.values():
         package = owner(path.resolve())
         if package is None:
             raise SystemExit(f"package: no licence known for {path}")
