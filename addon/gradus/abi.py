@@ -6,7 +6,7 @@ Only declarations: native.py loads the library and calls it. Tests H1 and H2 com
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
 from enum import IntEnum, IntFlag
 from typing import Any
 
@@ -165,11 +165,22 @@ class Pass(IntEnum):
     COUNT = 33
 
 
+class ComponentPass(IntEnum):
+    COLOR = 0
+    REFLECTANCE = 1
+    IRRADIANCE = 2
+    NORMAL = 3
+    MOTION = 4
+    TRACKED = 5
+    PASS_COUNT = 6
+
+
 class OptionType(IntEnum):
     INT = 0
     FLOAT = 1
     BOOL = 2
     ENUM = 3
+    TEXT = 4
 
 
 class Phase(IntEnum):
@@ -447,6 +458,9 @@ class Settings(Struct):
         ("passes", c_uint64),
         ("first_sample", c_uint32),
         ("denoiser", c_uint32),
+        ("use_decomposition", c_uint32),
+        ("component_passes", c_uint32),
+        ("components", c_char * 512),
     ]
 
 
@@ -525,6 +539,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     Denoiser,
     PixelFilter,
     Pass,
+    ComponentPass,
     OptionType,
     Phase,
 )
@@ -559,6 +574,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_settings_default": (c_int, [POINTER(Settings)]),
     "gradus_settings_parse": (c_int, [POINTER(Settings), c_char_p, c_char_p]),
     "gradus_pass_info": (c_int, [c_uint32, POINTER(c_char_p), POINTER(c_uint32)]),
+    "gradus_component_pass_info": (c_int, [c_uint32, POINTER(c_char_p), POINTER(c_uint32)]),
+    "gradus_components_check": (c_int, [c_char_p, POINTER(c_uint32)]),
+    "gradus_components_item": (c_int, [c_char_p, c_uint32, POINTER(c_char_p), POINTER(c_char_p), POINTER(c_char_p)]),
+    "gradus_components_classify": (c_int, [c_char_p, c_char_p, POINTER(c_uint32)]),
     "gradus_scene_save": (c_int, [Scene, POINTER(Settings), c_char_p]),
     "gradus_scene_load": (c_int, [Device, c_char_p, POINTER(Scene), POINTER(Settings)]),
     "gradus_render_start": (c_int, [Scene, POINTER(Settings), POINTER(Render)]),

@@ -165,6 +165,26 @@ SETTINGS: tuple[Setting, ...] = (
         1,
         1,
     ),
+    Setting(
+        "use_decomposition",
+        BOOL,
+        False,
+        "Decomposition",
+        "The picture in parts, by the paths of light: each is reconstructed by itself and has passes of its own, which add up to Combined",
+        0,
+        1,
+    ),
+    Setting(
+        "components",
+        TEXT,
+        "",
+        "Components",
+        "Parts by path expressions, Name=EXPRESSION;Name=EXPRESSION. E: camera; D, R, T: rough scattering, sharp reflection, sharp "
+        "transmission; L: light; . for any of D R T; * + ? | ( ) as in regular expressions. Empty: Emission, Diffuse, Reflection, "
+        "Transmission, and Residual for the rest",
+        0,
+        511,
+    ),
     Setting("strict", BOOL, False, "Strict", "Missing or broken image files end the render with an error in place of a warning", 0, 1),
     Setting(
         "preview_samples",
@@ -244,7 +264,18 @@ def fill(settings: Any, properties: Any) -> None:
     """Copies the scene's values (attributes of `properties`) into a native.Settings."""
     for setting in native_settings():
         value = getattr(properties, setting.name)
-        setattr(settings, setting.name, setting.value_of(value) if setting.kind == ENUM else value)
+        setattr(settings, setting.name, _native_value(setting, value))
+
+
+def _native_value(setting: Setting, value: Any) -> Any:
+    if setting.kind == ENUM:
+        return setting.value_of(value)
+    if setting.kind != TEXT:
+        return value
+    encoded = value.encode()
+    if len(encoded) > setting.maximum:
+        raise Failure(f"{setting.label} ({setting.name}) is longer than {setting.maximum:.0f} bytes")
+    return encoded
 
 
 def native_settings() -> Iterator[Setting]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import re
-from ctypes import POINTER, byref, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, byref, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
 from pathlib import Path
 from typing import Any
 
@@ -38,8 +38,10 @@ def ctype_of(declaration: str) -> Any:
     match = re.fullmatch(r"\s*(\w+)\s*([*\s]*)(\w*)\s*(?:\[(\d+)\])?\s*", plain)
     assert match, declaration
     name, stars, _, count = match.group(1), match.group(2).count("*"), match.group(3), match.group(4)
-    if name in ("char", "void"):
-        kind: Any = {"char": c_char_p, "void": c_void_p}[name]
+    if name == "char" and count:
+        kind: Any = c_char
+    elif name in ("char", "void"):
+        kind = {"char": c_char_p, "void": c_void_p}[name]
         stars -= 1
     else:
         kind = SCALARS[name] if name in SCALARS else getattr(abi, name.removeprefix("Gradus"))

@@ -38,6 +38,8 @@ DOCUMENTED = {
     "strict": False,
     "preview_samples": 32,
     "vector_with_motion_blur": False,
+    "use_decomposition": False,
+    "components": "",
 }
 """Names that tests and users rely on, and their defaults."""
 
@@ -61,12 +63,14 @@ def test_every_option_of_the_library_has_a_home() -> None:
 @pytest.mark.parametrize("setting", list(settings.native_settings()), ids=lambda setting: setting.name)
 def test_equals_the_library_s_table(setting: settings.Setting) -> None:
     info = library_options()[setting.name]
-    kind = {settings.INT: 0, settings.FLOAT: 1, settings.BOOL: 2, settings.ENUM: 3}[setting.kind]
+    kind = {settings.INT: 0, settings.FLOAT: 1, settings.BOOL: 2, settings.ENUM: 3, settings.TEXT: 4}[setting.kind]
     assert info.type == kind
     if setting.kind == settings.ENUM:
         names = info.choices.decode().split()
         assert [names[choice[3]].upper() for choice in setting.choices] == [choice[0] for choice in setting.choices]
         assert setting.value_of(setting.default) == info.default_value
+    elif setting.kind == settings.TEXT:
+        assert (setting.default, setting.maximum) == ("", info.maximum)
     else:
         assert float(setting.default) == pytest.approx(info.default_value)
         assert (setting.minimum, setting.maximum) == (pytest.approx(info.minimum), pytest.approx(info.maximum))
@@ -166,6 +170,6 @@ def test_the_manual_lists_every_setting_with_its_default() -> None:
     words = {True: "on", False: "off", "": "empty"}
     for setting in settings.SETTINGS:
         assert setting.name in rows, setting.name
-        default = words[setting.default] if setting.kind in (settings.BOOL, settings.FOLDER) else f"{setting.default}"
+        default = words[setting.default] if setting.kind in (settings.BOOL, settings.FOLDER, settings.TEXT) else f"{setting.default}"
         manual = rows[setting.name].strip() or "0"
         assert manual == default or float(manual) == float(setting.default), setting.name

@@ -436,6 +436,9 @@ typedef struct GradusSettings {
   uint64_t passes;                 /* bit i = GradusPass i is wanted; Combined always is */
   uint32_t first_sample;           /* samples are numbered first_sample … first_sample + samples - 1, for frames to merge */
   uint32_t denoiser;               /* GradusDenoiser */
+  uint32_t use_decomposition;      /* the picture is sampled and reconstructed by components (docs/contract.md 3) */
+  uint32_t component_passes;       /* bit i = GradusComponentPass i of each component is wanted */
+  char components[512];            /* "Name=EXPR;Name=EXPR" in UTF-8, ended by 0; "" = the default set */
 } GradusSettings;
 
 typedef enum GradusPass {
@@ -475,7 +478,24 @@ typedef enum GradusPass {
   GRADUS_PASS_COUNT
 } GradusPass;
 
-typedef enum GradusOptionType { GRADUS_OPTION_INT = 0, GRADUS_OPTION_FLOAT = 1, GRADUS_OPTION_BOOL = 2, GRADUS_OPTION_ENUM = 3 } GradusOptionType;
+/* Of a component: Path NAME and, in Blender, Path NAME followed by the pass's name. */
+typedef enum GradusComponentPass {
+  GRADUS_COMPONENT_COLOR = 0,      /* reconstructed; the components add up to Combined */
+  GRADUS_COMPONENT_REFLECTANCE,    /* mean albedo at the first rough vertex */
+  GRADUS_COMPONENT_IRRADIANCE,     /* color / reflectance, where that is at least 1e-3; color elsewhere */
+  GRADUS_COMPONENT_NORMAL,         /* at the first rough vertex, in the world */
+  GRADUS_COMPONENT_MOTION,         /* previous - now, now - next: pixels, y up (docs/contract.md 6.6) */
+  GRADUS_COMPONENT_TRACKED,        /* 1, or a negative cause */
+  GRADUS_COMPONENT_PASS_COUNT
+} GradusComponentPass;
+
+typedef enum GradusOptionType {
+  GRADUS_OPTION_INT = 0,
+  GRADUS_OPTION_FLOAT = 1,
+  GRADUS_OPTION_BOOL = 2,
+  GRADUS_OPTION_ENUM = 3,
+  GRADUS_OPTION_TEXT = 4           /* default "", `maximum` bytes at most */
+} GradusOptionType;
 
 typedef struct GradusOptionInfo {
   uint32_t struct_size;
@@ -495,6 +515,18 @@ GRADUS_API GradusError gradus_settings_default(GradusSettings* settings);
 /* Sets one option from text ("samples", "16"; enums in any case, '-' = '_'; bool 0 1 true false on off). */
 GRADUS_API GradusError gradus_settings_parse(GradusSettings* settings, const char* name, const char* value);
 GRADUS_API GradusError gradus_pass_info(uint32_t pass, const char** name, uint32_t* channels);
+/* "Color", "Reflectance" …, static text. */
+GRADUS_API GradusError gradus_component_pass_info(uint32_t pass, const char** name, uint32_t* channels);
+
+/* How many components a set of path expressions has, as in GradusSettings.components, with Residual, which is the last. INVALID_ARGUMENT
+ * and a text for users where it is none: malformed, empty, overlapping, matching no path. */
+GRADUS_API GradusError gradus_components_check(const char* components, uint32_t* count);
+/* Name, expression ("" for Residual) and some of the shortest paths, "EDL, EDDL", of a component. All texts valid until the thread's next
+ * call; NULL: not wanted. */
+GRADUS_API GradusError gradus_components_item(const char* components, uint32_t index, const char** name, const char** expression,
+                                              const char** examples);
+/* The component of a path, such as "ETTDL". */
+GRADUS_API GradusError gradus_components_classify(const char* components, const char* path, uint32_t* index);
 
 /* Saves what was set since recording began as a .gradus file, images packed (docs/contract.md 7.3). INVALID_OPERATION without recording.
  * `settings` are saved with it for the tool; may be NULL. */

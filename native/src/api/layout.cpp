@@ -40,7 +40,7 @@ GRADUS_FIELDS(Settings, struct_size, width, height, region, samples, min_samples
   frame, integrator, reconstruction, reconstruction_alpha, max_bounces, diffuse_bounces, glossy_bounces, transmission_bounces,
   volume_bounces, transparent_max_bounces, clamp_direct, clamp_indirect, pixel_filter, filter_width, film_exposure, film_transparent,
   roughness_threshold, strict, threads, alpha_threshold, use_sky, independent_sampler, passes, first_sample,
-  denoiser)
+  denoiser, use_decomposition, component_passes, components)
 GRADUS_FIELDS(OptionInfo, struct_size, type, name, doc, default_value, minimum, maximum, choices)
 GRADUS_FIELDS(Progress, struct_size, phase, fraction, seconds, samples_done, version, memory_bytes, peak_memory_bytes)
 GRADUS_FIELDS(SequenceSettings, struct_size, step, first, last, window_size, window_overlap, folder)
@@ -69,7 +69,9 @@ GRADUS_VALUES(Pass, PASS_COMBINED, PASS_NOISY_IMAGE, PASS_DEPTH, PASS_MIST, PASS
   PASS_DIFFUSE_COLOR, PASS_GLOSSY_DIRECT, PASS_GLOSSY_INDIRECT, PASS_GLOSSY_COLOR, PASS_TRANSMISSION_DIRECT, PASS_TRANSMISSION_INDIRECT,
   PASS_TRANSMISSION_COLOR, PASS_AMBIENT_OCCLUSION, PASS_DENOISING_NORMAL, PASS_DENOISING_ALBEDO, PASS_DENOISING_DEPTH,
   PASS_SAMPLE_COUNT, PASS_GRADIENT_X, PASS_GRADIENT_Y, PASS_VARIANCE, PASS_FALLBACK, PASS_ERROR, PASS_GRADIENT_T, PASS_GRADIENT_T_LINK, PASS_COUNT)
-GRADUS_VALUES(OptionType, OPTION_INT, OPTION_FLOAT, OPTION_BOOL, OPTION_ENUM)
+GRADUS_VALUES(ComponentPass, COMPONENT_COLOR, COMPONENT_REFLECTANCE, COMPONENT_IRRADIANCE, COMPONENT_NORMAL, COMPONENT_MOTION,
+  COMPONENT_TRACKED, COMPONENT_PASS_COUNT)
+GRADUS_VALUES(OptionType, OPTION_INT, OPTION_FLOAT, OPTION_BOOL, OPTION_ENUM, OPTION_TEXT)
 GRADUS_VALUES(Phase, PHASE_WAITING, PHASE_SAMPLING, PHASE_RECONSTRUCTING, PHASE_DONE, PHASE_CANCELLED, PHASE_FAILED)
 // clang-format on
 
@@ -86,10 +88,10 @@ constexpr StructLayout kStructs[] = {
     GRADUS_STRUCT(SequenceSettings),
 };
 constexpr EnumLayout kEnums[] = {
-    GRADUS_ENUM(Error),      GRADUS_ENUM(Domain),     GRADUS_ENUM(Visibility),     GRADUS_ENUM(LightType),   GRADUS_ENUM(LightFlags),
-    GRADUS_ENUM(CameraType), GRADUS_ENUM(Panorama),   GRADUS_ENUM(MistFalloff),    GRADUS_ENUM(ImageSource), GRADUS_ENUM(AlphaMode),
-    GRADUS_ENUM(ObjectKind), GRADUS_ENUM(Integrator), GRADUS_ENUM(Reconstruction), GRADUS_ENUM(Denoiser),    GRADUS_ENUM(PixelFilter),
-    GRADUS_ENUM(Pass),       GRADUS_ENUM(OptionType), GRADUS_ENUM(Phase),
+    GRADUS_ENUM(Error),      GRADUS_ENUM(Domain),        GRADUS_ENUM(Visibility),     GRADUS_ENUM(LightType),   GRADUS_ENUM(LightFlags),
+    GRADUS_ENUM(CameraType), GRADUS_ENUM(Panorama),      GRADUS_ENUM(MistFalloff),    GRADUS_ENUM(ImageSource), GRADUS_ENUM(AlphaMode),
+    GRADUS_ENUM(ObjectKind), GRADUS_ENUM(Integrator),    GRADUS_ENUM(Reconstruction), GRADUS_ENUM(Denoiser),    GRADUS_ENUM(PixelFilter),
+    GRADUS_ENUM(Pass),       GRADUS_ENUM(ComponentPass), GRADUS_ENUM(OptionType),     GRADUS_ENUM(Phase),
 };
 
 std::string abi_text() {

@@ -1,4 +1,4 @@
-// gradus_option*, gradus_settings_*, gradus_pass_info
+// gradus_option*, gradus_settings_*, gradus_pass_info, gradus_component_pass_info
 #include "settings/options.h"
 
 #include "api/guard.h"
@@ -43,8 +43,8 @@ GradusError gradus_settings_parse(GradusSettings* settings, const char* name, co
     const Option* option = find_option(&api::require(name, "name"));
     if (!option) throw invalid_argument("there is no option " + std::string(name));
     GradusSettings copy = api::read_struct(settings, "settings", default_settings());
-    set_option(&copy, *option, parse_option(*option, &api::require(value, "value")));
-    if (option->offset + sizeof(uint32_t) > api::struct_size_of<GradusSettings>(settings, "settings")) {
+    parse_option(*option, &api::require(value, "value"), &copy);
+    if (option->offset + size_of(*option) > api::struct_size_of<GradusSettings>(settings, "settings")) {
       throw invalid_argument("option " + std::string(option->name) + " is newer than the caller's GradusSettings");
     }
     api::write_struct(settings, copy, "settings");
@@ -54,6 +54,14 @@ GradusError gradus_settings_parse(GradusSettings* settings, const char* name, co
 GradusError gradus_pass_info(uint32_t pass, const char** name, uint32_t* channels) {
   return api::guard([&] {
     const PassInfo& info = pass_info(pass);
+    if (name) *name = info.name;
+    if (channels) *channels = info.channels;
+  });
+}
+
+GradusError gradus_component_pass_info(uint32_t pass, const char** name, uint32_t* channels) {
+  return api::guard([&] {
+    const ComponentPassInfo& info = component_pass_info(pass);
     if (name) *name = info.name;
     if (channels) *channels = info.channels;
   });

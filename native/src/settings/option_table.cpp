@@ -12,6 +12,7 @@ constexpr auto kInt = GRADUS_OPTION_INT;
 constexpr auto kFloat = GRADUS_OPTION_FLOAT;
 constexpr auto kBool = GRADUS_OPTION_BOOL;
 constexpr auto kEnum = GRADUS_OPTION_ENUM;
+constexpr auto kText = GRADUS_OPTION_TEXT;
 
 #define OPTION(field, type, value, low, high, choices, sampling, doc) \
   Option { #field, type, offsetof(GradusSettings, field), value, low, high, choices, doc, sampling }
@@ -62,6 +63,9 @@ constexpr Option kOptions[] = {
     OPTION(alpha_threshold, kFloat, 0.5, 0, 1, "", kSampling, "Surfaces with less alpha are skipped by data passes"),
     OPTION(use_sky, kBool, 1, 0, 1, "", kSampling, "The world is seen by the camera"),
     OPTION(independent_sampler, kBool, 0, 0, 1, "", kSampling, "Independent random numbers in place of the Sobol net, for statistical tests"),
+    OPTION(use_decomposition, kBool, 0, 0, 1, "", kSampling, "The picture is sampled and reconstructed by components, each with passes of its own"),
+    OPTION(components, kText, 0, 0, sizeof(GradusSettings::components) - 1, "", kSampling,
+           "Components by path expressions, Name=EXPR;Name=EXPR; empty: Emission, Diffuse, Reflection, Transmission and Residual"),
     OPTION(first_sample, kInt, 0, 0, 16777216, "", kOther, "Number of the first sample, for frames that are merged later"),
 };
 // clang-format on

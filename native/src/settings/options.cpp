@@ -64,6 +64,22 @@ double parse_number(const Option& option, const std::string& text) {
 
 bool is_signed(const Option& option) { return option.minimum < 0; }
 
+double parse_value(const Option& option, std::string_view text) {
+  const std::string value = canonical(text);
+  if (option.type == GRADUS_OPTION_BOOL) return parse_bool(option, value);
+  if (option.type != GRADUS_OPTION_ENUM) return parse_number(option, std::string(text));
+  const std::vector<std::string> names = choices_of(option);
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (value == names[i]) return double(i);
+  }
+  throw refused(option, text, "one of " + std::string(option.choices));
+}
+
+void check_length(const Option& option, size_t length) {
+  if (double(length) > option.maximum)
+    throw invalid_argument(std::string(option.name) + " is longer than " + number(option.maximum) + " bytes");
+}
+
 }  // namespace
 
 const Option* find_option(std::string_view name) {
@@ -97,23 +113,44 @@ void set_option(GradusSettings* settings, const Option& option, double value) {
   }
 }
 
+size_t size_of(const Option& option) { return option.type == GRADUS_OPTION_TEXT ? size_t(option.maximum) + 1 : sizeof(uint32_t); }
+
+// Ended by 0, or by the field's end: the caller's bytes may be anything.
+std::string get_text(const GradusSettings& settings, const Option& option) {
+  const char* from = reinterpret_cast<const char*>(&settings) + option.offset;
+  return std::string(from, strnlen(from, size_of(option)));
+}
+
+void set_text(GradusSettings* settings, const Option& option, std::string_view text) {
+  check_length(option, text.size());
+  char* to = reinterpret_cast<char*>(settings) + option.offset;
+  std::memset(to, 0, size_of(option));
+  std::memcpy(to, text.data(), text.size());
+}
+
+std::string value_text(const GradusSettings& settings, const Option& option) {
+  if (option.type == GRADUS_OPTION_TEXT) return '"' + get_text(settings, option) + '"';
+  const double value = get_option(settings, option);
+  if (option.type == GRADUS_OPTION_ENUM) return choice_name(option, static_cast<uint32_t>(value));
+  if (option.type == GRADUS_OPTION_BOOL) return value != 0 ? "true" : "false";
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 GradusSettings default_settings() {
   GradusSettings settings{};
   settings.struct_size = sizeof(settings);
-  for (const Option& option : options()) set_option(&settings, option, option.default_value);
+  for (const Option& option : options()) {
+    if (option.type != GRADUS_OPTION_TEXT) set_option(&settings, option, option.default_value);
+  }
   settings.passes = uint64_t{1} << GRADUS_PASS_COMBINED;
   return settings;
 }
 
-double parse_option(const Option& option, std::string_view text) {
-  const std::string value = canonical(text);
-  if (option.type == GRADUS_OPTION_BOOL) return parse_bool(option, value);
-  if (option.type != GRADUS_OPTION_ENUM) return parse_number(option, std::string(text));
-  const std::vector<std::string> names = choices_of(option);
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (value == names[i]) return double(i);
-  }
-  throw refused(option, text, "one of " + std::string(option.choices));
+void parse_option(const Option& option, std::string_view text, GradusSettings* settings) {
+  if (option.type == GRADUS_OPTION_TEXT) return set_text(settings, option, text);
+  set_option(settings, option, parse_value(option, text));
 }
 
 // Squared and added to eigenvalues in float.
@@ -125,6 +162,10 @@ void check_alpha(float alpha) {
 
 void check_settings(const GradusSettings& settings) {
   for (const Option& option : options()) {
+    if (option.type == GRADUS_OPTION_TEXT) {
+      check_length(option, get_text(settings, option).size());
+      continue;
+    }
     const double value = get_option(settings, option);
     if (value == 0 && std::strcmp(option.name, "samples") == 0) throw invalid_argument("0 samples: there is nothing to render");
     // The float of a minimum may lie just below it.
@@ -142,6 +183,10 @@ std::string choice_name(const Option& option, uint32_t value) {
 nlohmann::json settings_to_json(const GradusSettings& settings) {
   nlohmann::json json = nlohmann::json::object();
   for (const Option& option : options()) {
+    if (option.type == GRADUS_OPTION_TEXT) {
+      json[option.name] = get_text(settings, option);
+      continue;
+    }
     const double value = get_option(settings, option);
     switch (option.type) {
       case GRADUS_OPTION_BOOL:
@@ -153,13 +198,14 @@ nlohmann::json settings_to_json(const GradusSettings& settings) {
       case GRADUS_OPTION_INT:
         json[option.name] = static_cast<int64_t>(value);
         break;
-      case GRADUS_OPTION_FLOAT:
+      default:
         json[option.name] = value;
         break;  // every float is a double: nothing is lost
     }
   }
   json["region"] = settings.region;
   json["passes"] = settings.passes;
+  json["component_passes"] = settings.component_passes;
   return json;
 }
 
@@ -168,11 +214,11 @@ GradusSettings settings_from_json(const nlohmann::json& json) {
   for (const Option& option : options()) {
     const auto found = json.find(option.name);
     if (found == json.end()) continue;
-    if (found->is_boolean()) {
+    if (found->is_boolean() && option.type != GRADUS_OPTION_TEXT) {
       set_option(&settings, option, found->get<bool>() ? 1 : 0);
     } else if (found->is_string()) {
-      set_option(&settings, option, parse_option(option, found->get<std::string>()));
-    } else if (found->is_number()) {
+      parse_option(option, found->get<std::string>(), &settings);
+    } else if (found->is_number() && option.type != GRADUS_OPTION_TEXT) {
       const double value = found->get<double>();
       if (option.type != GRADUS_OPTION_FLOAT) check_range(option, value);
       set_option(&settings, option, value);
@@ -182,6 +228,7 @@ GradusSettings settings_from_json(const nlohmann::json& json) {
     for (size_t i = 0; i < 4; ++i) settings.region[i] = region->at(i).get<uint32_t>();
   }
   if (const auto passes = json.find("passes"); passes != json.end()) settings.passes = passes->get<uint64_t>();
+  if (const auto passes = json.find("component_passes"); passes != json.end()) settings.component_passes = passes->get<uint32_t>();
   return settings;
 }
 
@@ -190,7 +237,7 @@ uint64_t sampling_key(const GradusSettings& settings) {
   for (const Option& option : options()) {
     if (!option.sampling) continue;
     const auto* bytes = reinterpret_cast<const unsigned char*>(&settings) + option.offset;
-    for (size_t i = 0; i < sizeof(uint32_t); ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    for (size_t i = 0; i < size_of(option); ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   }
   return hash;
 }

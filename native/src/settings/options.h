@@ -29,13 +29,20 @@ struct Option {
 std::span<const Option> options();
 const Option* find_option(std::string_view name);
 
+// Bytes of its field.
+size_t size_of(const Option& option);
 double get_option(const GradusSettings& settings, const Option& option);
 // No check of the range. Never for an option that lies beyond an older caller's struct_size.
 void set_option(GradusSettings* settings, const Option& option, double value);
+// The same of a text.
+std::string get_text(const GradusSettings& settings, const Option& option);
+void set_text(GradusSettings* settings, const Option& option, std::string_view text);
+// Its value as a user would write it.
+std::string value_text(const GradusSettings& settings, const Option& option);
 
 GradusSettings default_settings();
 // Throws invalid_argument naming option, value and what is allowed.
-double parse_option(const Option& option, std::string_view text);
+void parse_option(const Option& option, std::string_view text, GradusSettings* settings);
 // Throws invalid_argument for the first value outside its range.
 void check_settings(const GradusSettings& settings);
 // The range of reconstruction_alpha has a gap: 0 is automatic.

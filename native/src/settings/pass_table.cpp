@@ -45,15 +45,25 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_GRADIENT_T,            "Gradient T",            3, PassKind::Sequence, kNone},
     {GRADUS_PASS_GRADIENT_T_LINK,       "Gradient T Link",       3, PassKind::Sequence, kNone},
 };
+constexpr ComponentPassInfo kComponentPasses[] = {
+    {GRADUS_COMPONENT_COLOR,       "Color",       3},
+    {GRADUS_COMPONENT_REFLECTANCE, "Reflectance", 3},
+    {GRADUS_COMPONENT_IRRADIANCE,  "Irradiance",  3},
+    {GRADUS_COMPONENT_NORMAL,      "Normal",      3},
+    {GRADUS_COMPONENT_MOTION,      "Motion",      4},
+    {GRADUS_COMPONENT_TRACKED,     "Tracked",     1},
+};
 // clang-format on
 
-constexpr bool is_in_order() {
-  for (uint32_t i = 0; i < std::size(kPasses); ++i) {
-    if (kPasses[i].pass != i) return false;
+template <class Table>
+constexpr bool is_in_order(const Table& table, uint32_t count) {
+  for (uint32_t i = 0; i < std::size(table); ++i) {
+    if (table[i].pass != i) return false;
   }
-  return std::size(kPasses) == GRADUS_PASS_COUNT;
+  return std::size(table) == count;
 }
-static_assert(is_in_order(), "one row per GradusPass, in order");
+static_assert(is_in_order(kPasses, GRADUS_PASS_COUNT), "one row per GradusPass, in order");
+static_assert(is_in_order(kComponentPasses, GRADUS_COMPONENT_PASS_COUNT), "one row per GradusComponentPass, in order");
 
 bool is_stored(PassKind kind) {
   return kind != PassKind::Image && kind != PassKind::Derived && kind != PassKind::Solved && kind != PassKind::Sequence;
@@ -64,6 +74,11 @@ bool is_stored(PassKind kind) {
 const PassInfo& pass_info(uint32_t pass) {
   if (pass >= GRADUS_PASS_COUNT) throw invalid_argument("there is no pass " + std::to_string(pass));
   return kPasses[pass];
+}
+
+const ComponentPassInfo& component_pass_info(uint32_t pass) {
+  if (pass >= GRADUS_COMPONENT_PASS_COUNT) throw invalid_argument("components have no pass " + std::to_string(pass));
+  return kComponentPasses[pass];
 }
 
 uint64_t needed_passes(uint64_t passes) {

@@ -35,6 +35,15 @@ struct PassInfo {
 // Throws invalid_argument for a number that is no pass.
 const PassInfo& pass_info(uint32_t pass);
 
+// Passes of a component.
+struct ComponentPassInfo {
+  uint32_t pass;
+  const char* name;
+  uint32_t channels;
+};
+// Throws invalid_argument for a number that is none.
+const ComponentPassInfo& component_pass_info(uint32_t pass);
+
 inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
 
 // `passes` plus what they need: the colours that light passes are divided by.

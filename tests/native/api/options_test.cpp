@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/error.h"
 #include "frame/pass_planes.h"
 #include "gradus/gradus.h"
 #include "settings/options.h"
@@ -45,6 +46,8 @@ threads 0 0 0 1024
 alpha_threshold 1 0.5 0 1 
 use_sky 2 1 0 1 
 independent_sampler 2 0 0 1 
+use_decomposition 2 0 0 1 
+components 4 0 0 511 
 first_sample 0 0 0 1.67772e+07 
 )";
 
@@ -168,6 +171,24 @@ TEST(Passes, LightPassesBringTheirColours) {
   EXPECT_EQ(needed_passes(direct), direct | uint64_t{1} << GRADUS_PASS_GLOSSY_COLOR);
   EXPECT_EQ(make_pass_planes(direct, 10).size(), 2u);
   EXPECT_EQ(make_pass_planes(uint64_t{1} << GRADUS_PASS_COMBINED, 10).size(), 0u);
+}
+
+TEST(G9_Options, ATextIsKeptAsItIsWritten) {
+  GradusSettings s = defaults();
+  EXPECT_STREQ(s.components, "");
+  ASSERT_EQ(gradus_settings_parse(&s, "components", "Vase=ETTTTD.*L;A-b=EL"), GRADUS_OK);
+  EXPECT_STREQ(s.components, "Vase=ETTTTD.*L;A-b=EL");
+  const GradusSettings back = settings_from_json(settings_to_json(s));
+  EXPECT_STREQ(back.components, s.components);
+  EXPECT_NE(sampling_key(s), sampling_key(defaults()));
+  EXPECT_EQ(sampling_key(s), sampling_key(back));
+  EXPECT_NE(refused("components", std::string(512, 'D').c_str()).find("components is longer than 511 bytes"), std::string::npos);
+}
+
+TEST(G9_Options, ATextThatIsNotEndedIsRefusedAndNotReadBeyond) {
+  GradusSettings s = defaults();
+  std::fill(std::begin(s.components), std::end(s.components), 'D');
+  EXPECT_THROW(check_settings(s), Error);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+// A path expression as a nondeterministic automaton (Thompson's construction).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace gradus {
+
+// Letters of path words.
+enum class PathLetter : uint8_t { D, R, T, E, L };
+
+class PathExpression {
+ public:
+  using States = std::vector<uint32_t>;  // in ascending order
+
+  // Throws invalid_argument with the place of what is no expression. Blanks are passed over.
+  explicit PathExpression(std::string_view text);
+
+  States start() const { return closure({0}); }
+  States step(const States& from, PathLetter letter) const;
+  bool accepts(const States& states) const;
+
+ private:
+  friend class ExpressionParser;
+  static constexpr uint32_t kNone = UINT32_MAX;
+  // Goes on to both `next` by no letter, or to the first by one of `letters`.
+  struct State {
+    uint8_t letters = 0;  // bits of PathLetter
+    uint32_t next[2] = {kNone, kNone};
+  };
+  States closure(States states) const;
+
+  std::vector<State> states_;
+  uint32_t end_ = 0;
+};
+
+}  // namespace gradus
