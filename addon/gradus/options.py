@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from . import passes, settings
-from .abi import Pass
+from .abi import ComponentPass, Pass
 
 PREFIX = "--gradus-"
 
@@ -31,19 +31,27 @@ class Overrides:
     stats: str = ""
     save_scene: str = ""
     threads: int = 0
-    passes: frozenset[Pass] = frozenset()
+    passes: passes.Extra = passes.NOTHING
+
+    def text(self, name: str) -> str | None:
+        """Text of the last native option `name`; None if it was not given."""
+        return next((text for option, text in reversed(self.native) if option == name), None)
 
     def value(self, name: str) -> str | None:
-        """Text of the last native option `name`, in lower case and with underscores; None if it was not given."""
-        found = [text for option, text in self.native if option == name]
-        return found[-1].lower().replace("-", "_") if found else None
+        """The same of an enum, in lower case and with underscores."""
+        text = self.text(name)
+        return None if text is None else text.lower().replace("-", "_")
+
+    def switch(self, name: str) -> bool | None:
+        """The same of a switch; None, too, where it is none, which the library says."""
+        return _BOOL.get((self.text(name) or "").lower())
 
 
 def parse(arguments: Sequence[str]) -> Overrides:
     """`arguments`: those after `--`. Raises OptionError. The values of native settings are left to the library."""
     native: list[tuple[str, str]] = []
     host: dict[str, object] = {}
-    rest = {"stats": "", "save_scene": "", "threads": 0, "passes": frozenset()}
+    rest = {"stats": "", "save_scene": "", "threads": 0, "passes": passes.NOTHING}
     for name, text in _pairs(arguments):
         if name in ("stats", "save_scene"):
             rest[name] = text
@@ -96,19 +104,24 @@ def _host_value(setting: settings.Setting, text: str) -> object:
     return text
 
 
-def _passes(text: str) -> frozenset[Pass]:
-    """Names of native passes, or of the groups of the pass table, separated by commas."""
-    wanted: set[Pass] = set()
-    for part in filter(None, (item.strip() for item in text.split(","))):
-        name = part.upper().replace("-", "_")
-        if name in passes.GROUPS:
-            wanted.update(passes.GROUPS[name])
-        elif name in Pass.__members__ and name != "COUNT":
-            wanted.add(Pass[name])
-        else:
-            known = sorted(n.lower() for n in {*passes.GROUPS, *Pass.__members__} - {"COUNT"})
-            raise OptionError(f"option {PREFIX}passes: unknown pass '{part}'; there are {', '.join(known)}")
-    return frozenset(wanted)
+_PLANES = passes.GROUPS | {plane.name: (plane,) for plane in Pass if plane != Pass.COUNT}
+_PARTS = {"COMPONENTS": tuple(part.plane for part in passes.PARTS)} | {
+    f"COMPONENT_{part.plane.name}": (part.plane,) for part in passes.PARTS
+}
+
+
+def _passes(text: str) -> passes.Extra:
+    """Names of native passes, or of groups of them, separated by commas."""
+    planes: set[Pass] = set()
+    parts: set[ComponentPass] = set()
+    for item in filter(None, (item.strip() for item in text.split(","))):
+        name = item.upper().replace("-", "_")
+        if name not in _PLANES and name not in _PARTS:
+            known = sorted(n.lower() for n in {*_PLANES, *_PARTS})
+            raise OptionError(f"option {PREFIX}passes: unknown pass '{item}'; there are {', '.join(known)}")
+        planes.update(_PLANES.get(name, ()))
+        parts.update(_PARTS.get(name, ()))
+    return passes.Extra(frozenset(planes), frozenset(parts))
 
 
 @lru_cache(maxsize=8)

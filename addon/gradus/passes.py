@@ -7,16 +7,24 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from .abi import Pass
+from .abi import ComponentPass, Pass
 
 LONG_NAMES_SINCE = (5, 0, 0)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A plane of one component of the picture."""
+
+    component: str
+    plane: ComponentPass
 
 
 @dataclass(frozen=True)
 class PassInfo:
     """A pass as Blender knows it. `switch`: property of the view layer, or of view_layer.gradus where it starts with "gradus."."""
 
-    plane: Pass
+    plane: Pass | Part
     name: str
     long_name: str  # from Blender 5.0 on
     ids: str  # one letter per channel
@@ -27,11 +35,18 @@ class PassInfo:
     def channels(self) -> int:
         return len(self.ids)
 
+    @property
+    def is_motion(self) -> bool:
+        """Whether it needs the moments before and after the frame."""
+        if isinstance(self.plane, Part):
+            return self.plane.plane in (ComponentPass.MOTION, ComponentPass.TRACKED)
+        return self.plane == Pass.VECTOR
+
     def blender_name(self, version: tuple[int, ...]) -> str:
         return self.long_name if version >= LONG_NAMES_SINCE else self.name
 
 
-def _same(plane: Pass, name: str, ids: str, kind: str, switch: str) -> PassInfo:
+def _same(plane: Pass | Part, name: str, ids: str, kind: str, switch: str) -> PassInfo:
     return PassInfo(plane, name, name, ids, kind, switch)
 
 
@@ -75,6 +90,31 @@ TABLE: tuple[PassInfo, ...] = (
     _same(Pass.FALLBACK, "Fallback", "X", "VALUE", "option"),
 )
 
+
+@dataclass(frozen=True)
+class PartInfo:
+    """A pass that every component has. `suffix`: of its name, after that of the component."""
+
+    plane: ComponentPass
+    suffix: str
+    ids: str
+    kind: str
+    switch: str
+
+    def of(self, component: str) -> PassInfo:
+        return _same(Part(component, self.plane), f"Path {component}{self.suffix}", self.ids, self.kind, self.switch)
+
+
+PARTS: tuple[PartInfo, ...] = (
+    PartInfo(ComponentPass.COLOR, "", "RGB", "COLOR", "gradus.use_pass_components"),
+    PartInfo(ComponentPass.REFLECTANCE, " Reflectance", "RGB", "COLOR", "gradus.use_pass_component_reflectance"),
+    PartInfo(ComponentPass.IRRADIANCE, " Irradiance", "RGB", "COLOR", "gradus.use_pass_component_irradiance"),
+    PartInfo(ComponentPass.NORMAL, " Normal", "XYZ", "VECTOR", "gradus.use_pass_component_normal"),
+    PartInfo(ComponentPass.MOTION, " Motion", "XYZW", "VECTOR", "gradus.use_pass_component_motion"),
+    PartInfo(ComponentPass.TRACKED, " Tracked", "X", "VALUE", "gradus.use_pass_component_motion"),
+)
+"""Passes of a component: Path NAME, Path NAME Reflectance … (contract 6.6)."""
+
 GROUPS: dict[str, tuple[Pass, ...]] = {
     "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y, Pass.GRADIENT_T, Pass.GRADIENT_T_LINK),
     "DENOISING": (Pass.DENOISING_NORMAL, Pass.DENOISING_ALBEDO, Pass.DENOISING_DEPTH),
@@ -89,12 +129,25 @@ def is_reconstructed(integrator: str, reconstruction: str, denoiser: str) -> boo
     return reconstruction == "REGULARIZED" or (integrator != "PATH" and reconstruction != "NONE") or denoiser != "NONE"
 
 
-def list_passes(view_layer: Any, reconstructed: bool, extra: Iterable[Pass] = ()) -> Iterator[PassInfo]:
-    """The passes of a view layer. `extra`: planes asked for on the command line."""
-    wanted = frozenset(extra)
+@dataclass(frozen=True)
+class Extra:
+    """Planes asked for on the command line."""
+
+    planes: frozenset[Pass] = frozenset()
+    parts: frozenset[ComponentPass] = frozenset()
+
+
+NOTHING = Extra()
+
+
+def list_passes(view_layer: Any, reconstructed: bool, components: Iterable[str] = (), extra: Extra = NOTHING) -> Iterator[PassInfo]:
+    """The passes of a view layer. `components`: names of those into which the picture is taken apart."""
     for info in TABLE:
-        if info.plane in wanted or _is_on(info.switch, view_layer, reconstructed):
+        if info.plane in extra.planes or _is_on(info.switch, view_layer, reconstructed):
             yield info
+    parts = [part for part in PARTS if part.plane in extra.parts or _is_on(part.switch, view_layer, reconstructed)]
+    for component in components:
+        yield from (part.of(component) for part in parts)
 
 
 def _is_on(switch: str, view_layer: Any, reconstructed: bool) -> bool:
@@ -109,9 +162,18 @@ def _is_on(switch: str, view_layer: Any, reconstructed: bool) -> bool:
 
 def mask(infos: Iterable[PassInfo]) -> int:
     """GradusSettings.passes: one bit for each plane."""
+    return _bits(info.plane for info in infos if not isinstance(info.plane, Part))
+
+
+def component_mask(infos: Iterable[PassInfo]) -> int:
+    """GradusSettings.component_passes."""
+    return _bits(info.plane.plane for info in infos if isinstance(info.plane, Part))
+
+
+def _bits(planes: Iterable[int]) -> int:
     bits = 0
-    for info in infos:
-        bits |= 1 << info.plane
+    for plane in planes:
+        bits |= 1 << plane
     return bits
 
 

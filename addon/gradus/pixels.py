@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import ctypes
 from array import array
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from .abi import Pass
-from .passes import PassInfo
+from .passes import Part, PassInfo
 
 FLOAT_BYTES = 4
+
+Read = Callable[[Pass | Part, Any, int], Any]
+"""Writes a plane to a pointer to floats, so many of them."""
 
 
 class PassBuffer:
@@ -37,8 +40,8 @@ class PassBuffer:
         if len(self._values) != total:
             self._values = array("f", [0.0]) * total  # from bytes it would take the memory, and the time to touch it, twice
 
-    def fill(self, read: Any, only: frozenset[Pass] | None = None) -> None:
-        """Lets `read(plane, pointer, float count)` write every pass in place, or those in `only`."""
+    def fill(self, read: Read, only: frozenset[Pass] | None = None) -> None:
+        """Lets `read` write every pass in place, or those in `only`."""
         if not self._values:
             return
         memory = (ctypes.c_float * len(self._values)).from_buffer(self._values)
@@ -46,7 +49,7 @@ class PassBuffer:
         for info, first, count in self._layout:
             if info is not None and (only is None or info.plane in only):
                 target = ctypes.cast(base + FLOAT_BYTES * first, ctypes.POINTER(ctypes.c_float))
-                read(int(info.plane), target, count)
+                read(info.plane, target, count)
         del memory
 
     def upload(self, layer: Any) -> None:

@@ -10,10 +10,20 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 from . import native, settings
 from .settings import Setting
 
+CHANGE_PASSES = frozenset(("integrator", "reconstruction", "denoiser", "use_decomposition", "components"))
+"""Settings by which there are passes or not."""
+
+
+def _show_passes(group: Any, _context: Any) -> None:
+    """Sockets of the compositor's Render Layers follow at once. Any layer speaks for all of the scene."""
+    group.id_data.view_layers[0].update_render_passes()
+
 
 def _property(setting: Setting) -> Any:
     """The bpy property of a setting."""
     common = {"name": setting.label, "description": setting.doc, "default": setting.default}
+    if setting.name in CHANGE_PASSES:
+        common["update"] = _show_passes
     if setting.kind == settings.BOOL:
         return BoolProperty(**common)
     if setting.kind == settings.ENUM:
@@ -36,22 +46,41 @@ class GradusSceneSettings(bpy.types.PropertyGroup):
     __annotations__ = {setting.name: _property(setting) for setting in settings.SETTINGS}  # noqa: RUF012
 
 
+def _switch(name: str, description: str, default: bool = False) -> Any:
+    return BoolProperty(name=name, description=description, default=default, update=_show_passes)
+
+
 class GradusViewLayerSettings(bpy.types.PropertyGroup):
     """Passes of the engine that Blender has no switch for."""
 
-    use_pass_gradients: BoolProperty(
-        name="Gradients",
-        description="Sampled differences to the right and the upper neighbour: Gradient X, Gradient Y; in animations to the next frame, "
+    use_pass_gradients: _switch(
+        "Gradients",
+        "Sampled differences to the right and the upper neighbour: Gradient X, Gradient Y; in animations to the next frame, "
         "Gradient T, and where the surface is there: Gradient T Link",
-        default=False,
     )
-    use_pass_variance: BoolProperty(name="Variance", description="Estimated variance of the mean of Noisy Image", default=False)
-    use_pass_error: BoolProperty(
-        name="Error", description="Estimated squared error of Combined, mean over red, green and blue", default=False
+    use_pass_variance: _switch("Variance", "Estimated variance of the mean of Noisy Image")
+    use_pass_error: _switch("Error", "Estimated squared error of Combined, mean over red, green and blue")
+    use_pass_sample_count: _switch("Sample Count", "Samples that each pixel took")
+    use_pass_denoising: _switch("Denoising Data", "Denoising Normal, Albedo and Depth, as the compositor's Denoise node takes them")
+    use_pass_components: _switch(
+        "Color", "Each component of the picture, reconstructed by itself; they add up to Combined: Path Diffuse, Path Reflection …", True
     )
-    use_pass_sample_count: BoolProperty(name="Sample Count", description="Samples that each pixel took", default=False)
-    use_pass_denoising: BoolProperty(
-        name="Denoising Data", description="Denoising Normal, Albedo and Depth, as the compositor's Denoise node takes them", default=False
+    use_pass_component_reflectance: _switch("Reflectance", "Albedo of the first rough surface on the component's paths")
+    use_pass_component_irradiance: _switch("Irradiance", "The component divided by its reflectance: light without texture")
+    use_pass_component_normal: _switch("Normal", "Normal of the first rough surface on the component's paths")
+    use_pass_component_motion: _switch(
+        "Motion", "Where the component comes from and goes to, as pass Vector tells it of surfaces, and Tracked: 1 where that is known"
+    )
+
+
+class GradusWindowState(bpy.types.PropertyGroup):
+    """What the interface remembers; no file does."""
+
+    path: StringProperty(
+        name="Try a Path",
+        description="E, then D (rough), R (sharp reflection) or T (sharp transmission) for each scattering, then L: to which component it "
+        "belongs is shown below",
+        default="ETTDL",
     )
 
 
@@ -81,21 +110,26 @@ class GradusPreferences(bpy.types.AddonPreferences):
             layout.label(text=error.text, icon="ERROR")
 
 
-CLASSES = (GradusSceneSettings, GradusViewLayerSettings, GradusPreferences)
+CLASSES = (GradusSceneSettings, GradusViewLayerSettings, GradusWindowState, GradusPreferences)
+OWNERS = {
+    bpy.types.Scene: GradusSceneSettings,
+    bpy.types.ViewLayer: GradusViewLayerSettings,
+    bpy.types.WindowManager: GradusWindowState,
+}
 
 
 def register() -> None:
     for kind in CLASSES:
         bpy.utils.register_class(kind)
-    bpy.types.Scene.gradus = PointerProperty(type=GradusSceneSettings)
-    bpy.types.ViewLayer.gradus = PointerProperty(type=GradusViewLayerSettings)
+    for owner, kind in OWNERS.items():
+        owner.gradus = PointerProperty(type=kind)
     addon = bpy.context.preferences.addons.get(__package__)
     if addon is not None and addon.preferences is not None:
         _set_library(addon.preferences, None)
 
 
 def unregister() -> None:
-    for owner in (bpy.types.Scene, bpy.types.ViewLayer):
+    for owner in OWNERS:
         if hasattr(owner, "gradus"):
             del owner.gradus
     for kind in reversed(CLASSES):

@@ -10,7 +10,22 @@ from typing import Any
 
 import bpy
 
-from . import animation, compat, cycles_settings, frame_store, native, options, output, passes, pixels, settings, simulation, stats, store
+from . import (
+    animation,
+    compat,
+    components,
+    cycles_settings,
+    frame_store,
+    native,
+    options,
+    output,
+    passes,
+    pixels,
+    settings,
+    simulation,
+    stats,
+    store,
+)
 from .animation import Animation
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
@@ -34,7 +49,15 @@ def active_passes(scene: Any, view_layer: Any, overrides: options.Overrides) -> 
     """Passes of the layer, with the command line's wishes."""
     names = ("integrator", "reconstruction", "denoiser")
     reconstructed = passes.is_reconstructed(*((overrides.value(name) or getattr(scene.gradus, name)).upper() for name in names))
-    return list(passes.list_passes(view_layer, reconstructed, overrides.passes))
+    return list(passes.list_passes(view_layer, reconstructed, _component_names(scene, overrides), overrides.passes))
+
+
+def _component_names(scene: Any, overrides: options.Overrides) -> list[str]:
+    """Of the parts into which the picture is taken apart; none if it is one."""
+    switch, text = overrides.switch("use_decomposition"), overrides.text("components")
+    if not (scene.gradus.use_decomposition if switch is None else switch):
+        return []
+    return components.names(scene.gradus.components if text is None else text)
 
 
 def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
@@ -68,6 +91,8 @@ def native_settings(library: native.Library, scene: Any, view_layer: Any, overri
     result.threads = overrides.threads or compat.fixed_threads(scene.render)
     for name, text in overrides.native:
         library.settings_parse(byref(result), native.text(name), native.text(text))
+    if result.use_decomposition:
+        components.describe(library, result.components)  # refuses what is no set, before the export
     return result
 
 
@@ -76,6 +101,7 @@ def limit_preview(result: native.Settings, samples: int) -> None:
     result.samples = min(result.samples, samples)
     result.threads = max(1, store.process_cpu_threads() // 2)
     result.denoiser = native.Denoiser.NONE
+    result.use_decomposition = 0
 
 
 def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
@@ -152,7 +178,7 @@ class Job:
         """Those of the frame that the depsgraph shows."""
         settings = native_settings(native.load(), self.scene, self.layer, self.overrides)
         settings.width, settings.height = self.engine.resolution_x, self.engine.resolution_y  # by which plans are made before the export
-        settings.passes = passes.mask(self.infos)
+        settings.passes, settings.component_passes = passes.mask(self.infos), passes.component_mask(self.infos)
         if self.is_preview:
             limit_preview(settings, self.host_value("preview_samples"))
         return settings
@@ -185,7 +211,15 @@ class Job:
 
     def read(self, handle: int, only: frozenset[passes.Pass] | None = None) -> None:
         """Passes of a render into the buffer."""
-        self.buffer.fill(lambda plane, target, count: self.session.library.render_read_pass(handle, plane, target, count), only)
+        library = self.session.library
+
+        def read_plane(plane: passes.Pass | passes.Part, target: Any, count: int) -> None:
+            if isinstance(plane, passes.Part):
+                library.render_read_component(handle, native.text(plane.component), plane.plane, target, count)
+            else:
+                library.render_read_pass(handle, plane, target, count)
+
+        self.buffer.fill(read_plane, only)
 
     def show_simulations(self) -> None:
         """Those that are not baked, in an animation: Blender's own way to a frame does not compute them."""
@@ -218,11 +252,11 @@ class Job:
 
     def wants_vectors(self) -> bool:
         """Under motion blur they are 0 unless they are asked for, as in Cycles: whoever blurs by them would blur twice."""
-        if not any(info.plane == passes.Pass.VECTOR for info in self.infos):
+        if not any(info.is_motion for info in self.infos):
             return False
         if shutter_of(self.scene, self.layer) is None or self.host_value("vector_with_motion_blur"):
             return True
-        self.warn(["Pass Vector is 0: the picture has motion blur (Motion Blur > Vector Pass gives it all the same)"])
+        self.warn(["Passes of motion are 0: the picture has motion blur (Motion Blur > Vector Pass gives them all the same)"])
         return False
 
     def warn(self, texts: list[str]) -> None:

@@ -264,10 +264,10 @@ def fill(settings: Any, properties: Any) -> None:
     """Copies the scene's values (attributes of `properties`) into a native.Settings."""
     for setting in native_settings():
         value = getattr(properties, setting.name)
-        setattr(settings, setting.name, _native_value(setting, value))
+        setattr(settings, setting.name, native_value(setting, value))
 
 
-def _native_value(setting: Setting, value: Any) -> Any:
+def native_value(setting: Setting, value: Any) -> Any:
     if setting.kind == ENUM:
         return setting.value_of(value)
     if setting.kind != TEXT:

@@ -106,6 +106,7 @@ class View:
         settings.samples = scene.gradus.preview_samples
         settings.noise_threshold = settings.time_limit = 0.0
         settings.integrator, settings.reconstruction, settings.denoiser = Integrator.PATH, _reconstruction(scene.gradus), Denoiser.NONE
+        settings.use_decomposition = 0
         settings.threads = max(1, store.process_cpu_threads() - 1)  # one is left for the interface
         settings.width, settings.height = self.override.width, self.override.height
         settings.region[:] = region

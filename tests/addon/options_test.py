@@ -6,7 +6,7 @@ import sys
 
 import pytest
 from gradus import options
-from gradus.abi import Pass
+from gradus.abi import ComponentPass, Pass
 from gradus.options import OptionError, parse
 
 
@@ -53,7 +53,7 @@ def test_unknown_ones_are_named(arguments: list[str], part: str) -> None:
 
 
 def test_passes() -> None:
-    assert parse(["--gradus-passes", "depth, noisy-image,GRADIENTS"]).passes == {
+    assert parse(["--gradus-passes", "depth, noisy-image,GRADIENTS"]).passes.planes == {
         Pass.DEPTH,
         Pass.NOISY_IMAGE,
         Pass.GRADIENT_X,
@@ -61,6 +61,21 @@ def test_passes() -> None:
         Pass.GRADIENT_T,
         Pass.GRADIENT_T_LINK,
     }
+
+
+def test_passes_of_components() -> None:
+    """Numbers of planes and of parts begin at 0 both: Combined and Color must not be taken for each other."""
+    wanted = parse(["--gradus-passes", "component-color,combined,component_motion"]).passes
+    assert wanted.planes == {Pass.COMBINED}
+    assert sorted(plane.name for plane in wanted.parts) == ["COLOR", "MOTION"]
+    assert len(parse(["--gradus-passes", "components"]).passes.parts) == ComponentPass.PASS_COUNT
+    assert parse(["--gradus-passes", "all"]).passes.parts == frozenset()
+
+
+def test_text_keeps_its_case_and_switches_take_what_the_library_takes() -> None:
+    parsed = parse(["--gradus-components", "A=ED-L", "--gradus-use-decomposition", "On", "--gradus-strict", "maybe"])
+    assert parsed.text("components") == "A=ED-L"
+    assert (parsed.switch("use_decomposition"), parsed.switch("strict"), parsed.switch("use_temporal")) == (True, None, None)
 
 
 def test_the_last_value_counts() -> None:

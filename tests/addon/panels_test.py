@@ -46,7 +46,8 @@ def context(scene: bpy.types.Scene, light: str) -> SimpleNamespace:
     obj = bpy.data.objects.new("O", bpy.data.meshes.new("O"))
     return SimpleNamespace(
         scene=scene, view_layer=layer, material=material, world=world, light=data, object=obj, engine="GRADUS",
-        region=SimpleNamespace(width=200), preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+        window_manager=bpy.context.window_manager, region=SimpleNamespace(width=200),
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from gradus import native, passes
-from gradus.abi import Pass
+from gradus.abi import ComponentPass, Pass
 
 # Copied from Blender's documentation and source, not from our table.
 NAMES = {
@@ -73,14 +73,13 @@ def test_channels_are_those_of_the_library() -> None:
 
 def layer(**on: bool) -> SimpleNamespace:
     ours = {name.removeprefix("gradus_"): value for name, value in on.items() if name.startswith("gradus_")}
-    defaults = dict.fromkeys(
-        ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising"), False
-    )
+    infos = (*passes.TABLE, *passes.PARTS)
+    defaults = dict.fromkeys((info.switch.removeprefix("gradus.") for info in infos if info.switch.startswith("gradus.")), False)
     return SimpleNamespace(gradus=SimpleNamespace(**(defaults | ours)), **on)
 
 
 def listed(view_layer: SimpleNamespace, reconstructed: bool = False, extra: tuple = ()) -> list[Pass]:
-    return [info.plane for info in passes.list_passes(view_layer, reconstructed, extra)]
+    return [info.plane for info in passes.list_passes(view_layer, reconstructed, (), passes.Extra(frozenset(extra)))]
 
 
 def test_only_what_is_enabled() -> None:
@@ -115,7 +114,7 @@ def test_noisy_image_exists_whenever_combined_is_reconstructed(integrator: str, 
 
 def test_switches_exist_in_this_blender() -> None:
     view_layer = bpy.context.scene.view_layers[0]
-    for info in passes.TABLE:
+    for info in (*passes.TABLE, *passes.PARTS):
         if info.switch.startswith("gradus."):
             assert hasattr(view_layer.gradus, info.switch.removeprefix("gradus."))
         elif info.switch.startswith("use_"):
@@ -124,3 +123,44 @@ def test_switches_exist_in_this_blender() -> None:
 
 def test_mask() -> None:
     assert passes.mask([info for info in passes.TABLE if info.plane in (Pass.COMBINED, Pass.DEPTH)]) == 0b101
+
+
+# ------------------------------------------------------------------------------------------------ components
+
+
+def named(view_layer: SimpleNamespace, components: tuple[str, ...], extra: passes.Extra = passes.NOTHING) -> list[str]:
+    return [info.name for info in passes.list_passes(view_layer, False, components, extra)]
+
+
+def test_each_component_has_the_passes_that_are_switched_on() -> None:
+    assert named(layer(gradus_use_pass_components=True), ("Diffuse", "A_1")) == ["Combined", "Path Diffuse", "Path A_1"]
+    assert named(layer(gradus_use_pass_component_motion=True), ("A",)) == ["Combined", "Path A Motion", "Path A Tracked"]
+    assert named(layer(gradus_use_pass_components=True), ()) == ["Combined"]
+    wanted = passes.Extra(parts=frozenset((ComponentPass.NORMAL,)))
+    assert named(layer(), ("A",), wanted) == ["Combined", "Path A Normal"]
+
+
+def test_channels_and_names_of_parts_are_those_of_the_library() -> None:
+    library = native.load()
+    assert [part.plane for part in passes.PARTS] == list(range(ComponentPass.PASS_COUNT))
+    for part in passes.PARTS:
+        name, channels = ctypes.c_char_p(), ctypes.c_uint32()
+        library.component_pass_info(part.plane, byref(name), byref(channels))
+        assert (part.suffix.strip() or "Color", len(part.ids)) == ((name.value or b"").decode(), channels.value)
+
+
+def test_names_of_the_longest_component_fit_into_blender_s_64_bytes() -> None:
+    assert all(len(part.of("X" * 24).name) < 64 for part in passes.PARTS)
+
+
+def test_color_of_a_component_is_not_taken_for_combined() -> None:
+    """Both planes are number 0 of their kind."""
+    color, combined = passes.PARTS[0].of("Diffuse"), passes.TABLE[0]
+    assert color.plane not in frozenset((Pass.COMBINED,))
+    assert (passes.mask([color]), passes.component_mask([color])) == (0, 1)
+    assert (passes.mask([combined]), passes.component_mask([combined])) == (1, 0)
+
+
+def test_motion_is_what_needs_the_moments_around_the_frame() -> None:
+    parts = [part.of("A") for part in passes.PARTS]
+    assert [info.name for info in (*passes.TABLE, *parts) if info.is_motion] == ["Vector", "Path A Motion", "Path A Tracked"]

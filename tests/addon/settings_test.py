@@ -173,3 +173,9 @@ def test_the_manual_lists_every_setting_with_its_default() -> None:
         default = words[setting.default] if setting.kind in (settings.BOOL, settings.FOLDER, settings.TEXT) else f"{setting.default}"
         manual = rows[setting.name].strip() or "0"
         assert manual == default or float(manual) == float(setting.default), setting.name
+
+
+def test_the_manual_lists_every_pass_of_a_component() -> None:
+    manual = (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text()
+    for part in passes.PARTS:
+        assert f"| `Path NAME{part.suffix}` | `component_{part.plane.name.lower()}` |" in manual

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import bpy
 
-from . import layer_panels, motion_panels, object_panels, pass_panels, presets, render_panels, shading_panels, stock
+from . import decomposition_panels, layer_panels, motion_panels, object_panels, pass_panels, presets, render_panels, shading_panels, stock
 
 
 def classes() -> tuple[type, ...]:
-    modules = (presets, render_panels, motion_panels, pass_panels, layer_panels, object_panels, shading_panels)
+    modules = (presets, render_panels, decomposition_panels, motion_panels, pass_panels, layer_panels, object_panels, shading_panels)
     return tuple(kind for module in modules for kind in module.CLASSES)
 
 

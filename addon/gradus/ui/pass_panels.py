@@ -14,6 +14,13 @@ LIGHT = tuple(
     (kind, tuple(f"use_pass_{kind}_{part}" for part in ("direct", "indirect", "color"))) for kind in ("diffuse", "glossy", "transmission")
 )
 OTHER_LIGHT = ("use_pass_emit", "use_pass_environment", "use_pass_ambient_occlusion")
+OF_COMPONENTS = (
+    "use_pass_components",
+    "use_pass_component_reflectance",
+    "use_pass_component_irradiance",
+    "use_pass_component_normal",
+    "use_pass_component_motion",
+)
 OURS = ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising")
 
 
@@ -68,9 +75,24 @@ class GRADUS_VIEWLAYER_PT_passes_gradus(PassPanel, bpy.types.Panel):
             column.prop(context.view_layer.gradus, name)
 
 
+class GRADUS_VIEWLAYER_PT_passes_components(PassPanel, bpy.types.Panel):
+    bl_label = "Components"
+    bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
+
+    def draw(self, context: Any) -> None:
+        layout = self.columns()
+        column = layout.column(heading="Include", align=True)
+        column.active = context.scene.gradus.use_decomposition
+        for name in OF_COMPONENTS:
+            column.prop(context.view_layer.gradus, name)
+        if not context.scene.gradus.use_decomposition:
+            layout.label(text="Render Properties > Decomposition is off", icon="INFO")
+
+
 CLASSES = (
     GRADUS_VIEWLAYER_PT_passes,
     GRADUS_VIEWLAYER_PT_passes_data,
     GRADUS_VIEWLAYER_PT_passes_light,
+    GRADUS_VIEWLAYER_PT_passes_components,
     GRADUS_VIEWLAYER_PT_passes_gradus,
 )

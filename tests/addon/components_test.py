@@ -1,0 +1,211 @@
+"""Components: names without the library, what the library says of a set, the panel and Blender's sockets."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import bpy
+import pytest
+from gradus import components, native, passes, renderer, ui
+from gradus.failure import Failure
+from gradus.options import parse
+from gradus.ui import decomposition_panels
+
+SETS = (
+    "",
+    "Caustics=ED.*(R|T)D?L",
+    "A=EL;B=EDL",
+    " Sky = EL ; Glass_2=ETTTTD.*L ;",
+    "x=ER.*L;Y=ET.*L;z=ED.*L;w=EL",
+)
+
+
+@pytest.mark.parametrize("text", SETS)
+def test_names_are_those_of_the_library(text: str) -> None:
+    found = components.describe(native.load(), text.encode())
+    assert components.names(text) == [component.name for component in found]
+    assert found[-1].name == components.RESIDUAL
+
+
+def test_a_set_that_is_refused_has_the_names_that_can_be_read() -> None:
+    """Their sockets stay while the user is still writing."""
+    assert components.names("A=EDL;=ERL;2x=EL;a=ETL;residual=EL;B") == ["A", "B", "Residual"]
+    assert components.names(";") == ["Residual"]
+
+
+def test_the_default_set_written_out_is_the_default_set() -> None:
+    library = native.load()
+    found = components.describe(library, b"")
+    again = components.describe(library, components.written(found).encode())
+    assert again == found
+    assert [component.expression for component in found] == ["EL", "ED.*L", "ER(D.*)?L", "ETT(D.*)?L", ""]
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [("EL", "Emission"), ("EDL", "Diffuse"), ("EDTTL", "Diffuse"), ("ERDRL", "Reflection"), ("ETTL", "Transmission"), ("ETL", "Residual")],
+)
+def test_where_a_path_belongs(path: str, name: str) -> None:
+    assert components.component_of(native.load(), b"", path).name == name
+
+
+def test_examples_belong_to_their_component() -> None:
+    library = native.load()
+    for component in components.describe(library, b""):
+        paths = component.examples.split(", ")
+        assert paths[0]
+        assert {components.component_of(library, b"", path).name for path in paths} == {component.name}
+
+
+MALFORMED = ("A=ED(L", "A=EDL;B=ED.*L", "A=", "A=EXL", "A=DL", "A=EDL;a=ERL", "Residual=EL", ";", "7=EL")
+
+
+@pytest.mark.parametrize("text", MALFORMED)
+def test_a_malformed_set_is_refused_before_the_export(scene: bpy.types.Scene, text: str) -> None:
+    scene.gradus.use_decomposition, scene.gradus.components = True, text
+    with pytest.raises(native.GradusError, match=r"\w+ \w+"):
+        renderer.native_settings(native.load(), scene, scene.view_layers[0], parse([]))
+    scene.gradus.use_decomposition = False
+    renderer.native_settings(native.load(), scene, scene.view_layers[0], parse([]))
+
+
+def test_options_win_over_the_scene_s_set(scene: bpy.types.Scene) -> None:
+    scene.gradus.components = "A=ED("
+    filled = renderer.native_settings(
+        native.load(), scene, scene.view_layers[0], parse(["--gradus-components", "B=EDL", "--gradus-use-decomposition", "1"])
+    )
+    assert (filled.components, filled.use_decomposition) == (b"B=EDL", 1)
+
+
+def test_too_long_a_set_is_named(scene: bpy.types.Scene) -> None:
+    scene.gradus.use_decomposition, scene.gradus.components = True, "A=" + "E" * 600
+    with pytest.raises(Failure, match="Components .components. is longer than 511 bytes"):
+        renderer.native_settings(native.load(), scene, scene.view_layers[0], parse([]))
+
+
+# ------------------------------------------------------------------------------------------------ passes and sockets
+
+
+def registered(scene: bpy.types.Scene, arguments: tuple[str, ...] = ()) -> list[str]:
+    return [info.name for info in renderer.active_passes(scene, scene.view_layers[0], parse(arguments)) if info.name.startswith("Path")]
+
+
+def test_path_passes_are_there_whenever_the_picture_is_decomposed(scene: bpy.types.Scene) -> None:
+    assert registered(scene) == []
+    scene.gradus.use_decomposition = True
+    default = ["Path Emission", "Path Diffuse", "Path Reflection", "Path Transmission", "Path Residual"]
+    assert registered(scene) == default
+    scene.gradus.components = "Sky=EL"
+    assert registered(scene) == ["Path Sky", "Path Residual"]
+    assert registered(scene, ("--gradus-components", "")) == default
+    assert registered(scene, ("--gradus-use-decomposition", "off")) == []
+    assert registered(scene, ("--gradus-passes", "component_normal")) == [
+        "Path Sky", "Path Sky Normal", "Path Residual", "Path Residual Normal"
+    ]  # fmt: skip
+
+
+def sockets(scene: bpy.types.Scene) -> list[str]:
+    tree = getattr(scene, "compositing_node_group", None) or scene.node_tree
+    node = next(node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers")
+    return [output.name for output in node.outputs if output.enabled]
+
+
+def make_compositor(scene: bpy.types.Scene) -> None:
+    if hasattr(scene, "compositing_node_group"):
+        scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
+        scene.compositing_node_group.nodes.new("CompositorNodeRLayers")
+    else:
+        scene.use_nodes = True
+
+
+def test_sockets_come_and_go_with_the_settings(scene: bpy.types.Scene) -> None:
+    """In 3.4 the compositor showed no socket until something else made it look for passes."""
+    make_compositor(scene)
+    assert not any(name.startswith("Path") for name in sockets(scene))
+    scene.gradus.use_decomposition = True
+    scene.gradus.components = "Sky=EL;Far_away=ERR.*L"
+    scene.view_layers[0].gradus.use_pass_component_motion = True
+    expected = {f"Path {name}{suffix}" for name in ("Sky", "Far_away", "Residual") for suffix in ("", " Motion", " Tracked")}
+    assert {name for name in sockets(scene) if name.startswith("Path")} == expected
+    scene.view_layers[0].gradus.use_pass_components = False
+    scene.gradus.components = "Sky=EL"
+    assert {name for name in sockets(scene) if name.startswith("Path")} == {
+        "Path Sky Motion", "Path Sky Tracked", "Path Residual Motion", "Path Residual Tracked"
+    }  # fmt: skip
+
+
+def test_sockets_of_the_longest_names_are_whole(scene: bpy.types.Scene) -> None:
+    make_compositor(scene)
+    layer = scene.view_layers[0].gradus
+    layer.use_pass_component_reflectance = layer.use_pass_component_irradiance = True
+    name = "Twenty_four_letters_long"
+    scene.gradus.use_decomposition, scene.gradus.components = True, f"{name}=EL"
+    assert {f"Path {name}", f"Path {name} Reflectance", f"Path {name} Irradiance"} <= set(sockets(scene))
+
+
+# ------------------------------------------------------------------------------------------------ the panel
+
+
+class Labels:
+    """Writes down labels and icons; takes all else."""
+
+    def __init__(self) -> None:
+        self.found: list[tuple[str, str]] = []
+
+    def label(self, text: str = "", icon: str = "NONE") -> None:
+        self.found.append((text, icon))
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *_, **__: self
+
+    def texts(self) -> list[str]:
+        return [text for text, _ in self.found]
+
+
+def drawn(scene: bpy.types.Scene) -> Labels:
+    labels = Labels()
+    shown = SimpleNamespace(
+        scene=scene, window_manager=bpy.context.window_manager, region=SimpleNamespace(width=300),
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+    )  # fmt: skip
+    decomposition_panels.GRADUS_RENDER_PT_decomposition.draw(SimpleNamespace(columns=lambda: labels), shown)
+    return labels
+
+
+def test_the_panel_has_a_row_for_each_component_with_paths(scene: bpy.types.Scene) -> None:
+    bpy.context.window_manager.gradus.path = "ETTDL"
+    labels = drawn(scene)
+    row = labels.texts().index("Reflection")
+    assert labels.texts()[row + 1] == "ER(D.*)?L"
+    assert labels.texts()[row + 2].startswith("ERL, ERDL")
+    assert labels.texts()[labels.texts().index("Residual") + 1] == "all else"
+    assert labels.found[-1] == ("ETTDL belongs to Transmission", "CHECKMARK")
+
+
+@pytest.mark.parametrize("text", ["A=EDL;B=ED.*L", "A=" + "E" * 600])
+def test_the_panel_says_why_a_set_is_refused(scene: bpy.types.Scene, text: str) -> None:
+    scene.gradus.components = text
+    labels = drawn(scene)
+    assert labels.found[0][1] == "ERROR"
+    message = " ".join(labels.texts())
+    assert "overlap: both match EDL" in message or "longer than 511 bytes" in message
+
+
+def test_the_panel_says_that_a_path_is_none(scene: bpy.types.Scene) -> None:
+    bpy.context.window_manager.gradus.path = "EXL"
+    labels = drawn(scene)
+    assert [text for text, icon in labels.found if icon == "ERROR"]
+    bpy.context.window_manager.gradus.path = "EDL"
+
+
+def test_the_automatic_set_can_be_written_out(scene: bpy.types.Scene) -> None:
+    bpy.ops.gradus.write_out_components()
+    settings = bpy.context.scene.gradus
+    assert settings.components.startswith("Emission=EL;Diffuse=ED.*L;")
+    assert not bpy.ops.gradus.write_out_components.poll()
+
+
+def test_components_have_a_panel_among_the_passes() -> None:
+    switches = {part.switch.removeprefix("gradus.") for part in passes.PARTS}
+    assert set(ui.pass_panels.OF_COMPONENTS) == switches
