@@ -11,7 +11,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "addon")]
 
-from builders import animated, boxes, common, hero, lights, textures  # noqa: E402
+from builders import animated, boxes, common, components, hero, lights, textures  # noqa: E402
 
 SCENES = {
     "hero": hero.build,
@@ -21,6 +21,8 @@ SCENES = {
     "textures_world": textures.build,
     "compositor": animated.compositor,
     "animated": animated.animated,
+    "mirror_and_glass": components.mirror_and_glass,
+    "components": components.compositor,
 }
 
 

@@ -11,16 +11,6 @@ from . import boxes, common
 FRAMES = 24
 
 
-def _key(obj: bpy.types.Object, path: str, values: list[tuple[int, tuple[float, ...]]]) -> None:
-    """Linear keys, so that vectors are easy to predict."""
-    for frame, value in values:
-        setattr(obj, path, value)
-        obj.keyframe_insert(path, frame=frame)
-    for curve in obj.animation_data.action.fcurves:
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
-
-
 def _waving_flag(cloth: bpy.types.Material) -> None:
     """A strip that waves by a shape key: deformation, not a transform."""
     columns = 24
@@ -53,10 +43,10 @@ def _scene() -> None:
     boxes.room(3.2, 2.4, 2.0, walls)
     common.area_lamp("Key", (0.2, -0.2, 1.98), (0, 0, 0), (0.9, 0.6), 55.0, (1.0, 0.94, 0.86))
     ball = common.sphere("Ball", (-1.0, -0.35, 0.3), 0.3, common.principled("Ball", (0.8, 0.25, 0.1), 0.3))
-    _key(ball, "location", [(1, (-1.0, -0.35, 0.3)), (FRAMES, (0.9, -0.35, 0.3))])
+    common.key(ball, "location", [(1, (-1.0, -0.35, 0.3)), (FRAMES, (0.9, -0.35, 0.3))])
     mirror = common.principled("Mirror", (0.95, 0.95, 0.95), 0.02, 1.0)
     block = common.box("Block", (0.75, 0.55, 0.5), (0.5, 0.5, 1.0), mirror)
-    _key(block, "rotation_euler", [(1, (0, 0, 0.2)), (FRAMES, (0, 0, 1.4))])
+    common.key(block, "rotation_euler", [(1, (0, 0, 0.2)), (FRAMES, (0, 0, 1.4))])
     _waving_flag(common.principled("Cloth", (0.15, 0.45, 0.3), 0.8))
 
 
@@ -64,7 +54,7 @@ def animated() -> None:
     """A rolling ball, a turning mirror, a waving flag; the camera moves along."""
     _scene()
     camera = common.camera((-0.3, -3.6, 1.1), (0, 0, 0.8), lens=32)
-    _key(camera, "location", [(1, (-0.3, -3.6, 1.1)), (FRAMES, (0.3, -3.5, 1.15))])
+    common.key(camera, "location", [(1, (-0.3, -3.6, 1.1)), (FRAMES, (0.3, -3.5, 1.15))])
 
 
 def compositor() -> None:

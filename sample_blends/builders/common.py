@@ -115,6 +115,16 @@ def world(color: Color, strength: float) -> bpy.types.World:
     return block
 
 
+def key(obj: bpy.types.Object, path: str, values: list[tuple[int, tuple[float, ...]]]) -> None:
+    """Linear keys, so that vectors are easy to predict."""
+    for frame, value in values:
+        setattr(obj, path, value)
+        obj.keyframe_insert(path, frame=frame)
+    for curve in obj.animation_data.action.fcurves:
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+
+
 # Meshes
 
 
