@@ -8,6 +8,7 @@
 
 #include "frame/frame.h"
 #include "frame/sample_sources.h"
+#include "path/components.h"
 #include "scene/camera.h"
 #include "scene/snapshot.h"
 
@@ -43,6 +44,7 @@ struct IntegratorContext {
   std::shared_ptr<const Snapshot> snapshot;
   Camera camera;
   GradusSettings settings;
+  ComponentSet components = {};  // planes of the frames that are sampled
 };
 
 std::unique_ptr<Integrator> make_path_integrator(const IntegratorContext& context);

@@ -90,11 +90,15 @@ Vec2 own_jitter(const PathContext& context, const WorkUnit& unit, const Frame& f
 }
 
 void add_primal(const PathResult& result, const PixelSample& sample, Frame* frame, Counters* counters) {
-  Radiance value = result.radiance;
-  if (frame->channels < 4) {
-    value.w = 0.0f;
+  for (size_t c = 0; c < frame->components.size(); ++c) {
+    Radiance value = result.radiance[c];
+    if (frame->channels < 4) {
+      value.w = 0.0f;
+    }
+    if (value != Radiance(0.0f)) {
+      add_radiance(value, &frame->components[c].primal[sample.half][sample.pixel], counters);
+    }
   }
-  add_radiance(value, &frame->components[0].primal[sample.half][sample.pixel], counters);
   ++frame->count[sample.half][sample.pixel];
   if (!frame->fallback.empty() && result.fallback) {
     frame->fallback[sample.pixel] += 1.0f;

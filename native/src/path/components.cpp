@@ -153,21 +153,43 @@ void ComponentSet::look_ahead() {
   }
 }
 
-ComponentSet ComponentSet::merged(uint32_t kept) const {
+ComponentSet ComponentSet::with(uint32_t kept, uint8_t rest) const {
   ComponentSet set = *this;
   set.components_.clear();
-  const int residual = count() - 1;
-  std::vector<uint8_t> place(components_.size());
-  for (int i = 0; i < residual; ++i) {
+  std::vector<uint8_t> place(components_.size(), rest);
+  for (int i = 0; i < count(); ++i) {
     if ((kept >> i & 1) == 0) continue;
     place[size_t(i)] = uint8_t(set.components_.size());
     set.components_.push_back((*this)[i]);
   }
-  const auto rest = uint8_t(set.components_.size());
-  set.components_.push_back((*this)[residual]);
-  for (State& s : set.states_) s.component = int(s.component) < residual && (kept >> s.component & 1) != 0 ? place[s.component] : rest;
+  for (State& s : set.states_) s.component = place[s.component];
   set.look_ahead();
   return set;
+}
+
+ComponentSet ComponentSet::merged(uint32_t kept) const {
+  const int residual = count() - 1;
+  kept |= 1u << residual;
+  return with(kept, uint8_t(__builtin_popcount(kept & ((1u << count()) - 1)) - 1));
+}
+
+ComponentSet ComponentSet::without_empty(uint32_t kept) const { return with(kept != 0 ? kept : 1u << (count() - 1), 0); }
+
+uint32_t ComponentSet::reached(uint32_t letters) const {
+  std::vector<PathWord> words{0};
+  std::vector<bool> known(states_.size());
+  known[0] = true;
+  uint32_t bits = 0;
+  for (size_t i = 0; i < words.size(); ++i) {
+    for (int k = 0; k < kScatterClasses; ++k) {
+      if ((letters >> k & 1) == 0) continue;
+      const PathWord to = next(words[i], static_cast<ScatterClass>(k));
+      bits |= 1u << component(to);
+      if (!known[to]) words.push_back(to);
+      known[to] = true;
+    }
+  }
+  return bits;
 }
 
 int ComponentSet::find(std::string_view name) const {

@@ -40,6 +40,8 @@ class ComponentSet {
   static ComponentSet parse(std::string_view text);
   // The same with those alone whose bit is set; the others' paths belong to Residual, which stays.
   ComponentSet merged(uint32_t kept) const;
+  // Without those that no path comes to: there is nothing to keep for them. kept: bits of some that do.
+  ComponentSet without_empty(uint32_t kept) const;
 
   int count() const { return int(components_.size()); }
   const Component& operator[](int i) const { return components_[size_t(i)]; }
@@ -51,6 +53,8 @@ class ComponentSet {
   int component(PathWord word) const { return states_[word].component; }
   // Bits of the components to which a path may still come from here, by this word or a longer one.
   uint32_t ahead(PathWord word) const { return states_[word].ahead; }
+  // Bits of the components of paths that scatter once or more, by these letters alone (a bit each).
+  uint32_t reached(uint32_t letters) const;
 
   // Of a whole word as a user writes it ("ETTDL"). Throws invalid_argument where it is none.
   int classify(std::string_view word) const;
@@ -64,6 +68,8 @@ class ComponentSet {
     uint32_t ahead = 1;
   };
   void look_ahead();
+  // Paths of others belong to the one at `rest`.
+  ComponentSet with(uint32_t kept, uint8_t rest) const;
 
   std::vector<Component> components_;
   std::vector<State> states_;

@@ -1,6 +1,7 @@
 #include "path/context.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/emitter_table.h"
 #include "shading/material.h"
@@ -40,10 +41,11 @@ bool lets_through(const Snapshot& scene) {
 
 }  // namespace
 
-PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const GradusSettings& settings_)
+PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const GradusSettings& settings_, ComponentSet components_)
     : scene(snapshot),
       camera(camera_),
       settings(settings_),
+      components(std::move(components_)),
       filter(settings_.pixel_filter, settings_.filter_width),
       clamp_direct(sum_limit(settings_.clamp_direct)),
       clamp_indirect(sum_limit(settings_.clamp_indirect)),

@@ -3,6 +3,7 @@
 
 #include "frame/frame.h"
 #include "gradus/gradus.h"
+#include "path/components.h"
 #include "path/film_filter.h"
 #include "sampling/sampler.h"
 #include "scene/camera.h"
@@ -14,11 +15,12 @@ namespace gradus {
 inline constexpr uint32_t kAllBounces = GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION;
 
 struct PathContext {
-  PathContext(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings);
+  PathContext(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings, ComponentSet components = {});
 
   const Snapshot& scene;
   const Camera& camera;
   const GradusSettings& settings;
+  const ComponentSet components;
   FilmFilter filter;
   // Bounds on the sum of the channels of one contribution (infinite: none), as Cycles clamps.
   float clamp_direct = kInfinity;

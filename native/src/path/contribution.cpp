@@ -11,6 +11,7 @@ Contribution found(const PathContext& context, const RaySource& source, const Pa
   c.pdf_light = pdf_light;
   c.pdf_bsdf = source.sampled_light() ? source.event->pdf : 0.0f;
   c.indirect = state.depth > 1;
+  c.component = context.components.component(state.word);
   c.light = radiance;
   c.tail = radiance * bsdf_weight(c.pdf_light, c.pdf_bsdf);
   c.clamped = clamp_contribution(context, throughput * c.tail, c.indirect);
@@ -59,8 +60,8 @@ bool light_classes(const PathContext& context, const Vertex& vertex, const Light
   return any;
 }
 
-Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, const LitClass& lit,
-                                const Rgb& transmittance) {
+Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, ScatterClass scatter_class,
+                                const LitClass& lit, const Rgb& transmittance) {
   Contribution c;
   if (is_black(lit.value)) {
     return c;
@@ -68,6 +69,7 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
   c.pdf_light = light.view.pdf;
   c.pdf_bsdf = lit.pdf_bsdf;
   c.indirect = state.depth > 0;
+  c.component = context.components.component(context.components.next(state.word, scatter_class));
   c.light = transmittance;
   c.tail = lit.value * c.light / (c.pdf_light + c.pdf_bsdf);
   c.clamped = clamp_contribution(context, state.throughput * c.tail, c.indirect);

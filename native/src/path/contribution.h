@@ -14,6 +14,7 @@ struct Contribution {
   float pdf_light = 0.0f;  // of the techniques that could have found the emitter, in solid angle
   float pdf_bsdf = 0.0f;
   bool indirect = false;
+  int component = 0;
 };
 
 // The path passes a segment.
@@ -27,8 +28,8 @@ Contribution emission_contribution(const PathContext& context, const RaySource& 
 // Next-event estimation. False: no class scatters the light.
 bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light, const RayState& ray,
                    LitClass lit[kScatterClasses]);
-Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, const LitClass& lit,
-                                const Rgb& transmittance);
+Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, ScatterClass scatter_class,
+                                const LitClass& lit, const Rgb& transmittance);
 
 // The surface is cut out of the film.
 bool is_hole(const PathContext& context, const Vertex& vertex);

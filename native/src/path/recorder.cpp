@@ -59,6 +59,10 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
     features_ |= plane.in_halves;
     others_ |= !plane.in_halves;
   }
+  if (!frame->components[0].rough[0].empty()) {
+    components_ = &frame->components;
+    active_ = true;
+  }
 }
 
 void PassRecorder::begin_sample(size_t pixel, int half, bool first_sample) {
@@ -66,6 +70,7 @@ void PassRecorder::begin_sample(size_t pixel, int half, bool first_sample) {
   half_ = half;
   first_sample_ = first_sample;
   features_done_ = !features_;
+  looks_for_rough_ = components_ != nullptr;
   path_length_ = 0.0f;
   albedo_ = Rgb(0.0f);
 }
@@ -100,6 +105,7 @@ void PassRecorder::light(const PathState& state, const Vertex& vertex, ScatterCl
 }
 
 void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
+  looks_for_rough_ = looks_for_rough_ && event.scatter_class != ScatterClass::Diffuse;
   if (depth > 0 || !lights_) {
     return;
   }
@@ -122,6 +128,9 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
   }
   if (!features_done_) {
     features(state, vertex);
+  }
+  if (looks_for_rough_) {
+    rough_vertex(state, vertex);
   }
 }
 
@@ -239,6 +248,21 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   }
   add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
   add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
+}
+
+// The first rough vertex of all paths that scatter here in class D; some of them may have been seen in a mirror on the way.
+void PassRecorder::rough_vertex(const PathState& state, const Vertex& vertex) {
+  const Closures& closures = vertex.shade.closures;
+  if (!(closures.class_probability(ScatterClass::Diffuse) > 0.0f)) {
+    return;
+  }
+  const uint32_t ahead = context_.components.ahead(context_.components.next(state.word, ScatterClass::Diffuse));
+  const RoughVertices here{glm::clamp(closures.albedo(vertex.wo), Rgb(0.0f), Rgb(1.0f)), shown_normal(vertex), path_length_, 1.0f};
+  for (size_t c = 0; c < components_->size(); ++c) {
+    if ((ahead >> c & 1) != 0) {
+      add_rough(here, &(*components_)[c].rough[half_][pixel_], counters_);
+    }
+  }
 }
 
 // A sample's albedo stays in [0, 1], as denoisers expect it.

@@ -18,7 +18,7 @@ class PassRecorder {
 
   void begin_sample(size_t pixel, int half, bool first_sample);
   // surface() will look at the closures of the vertex with `depth` scatterings before it.
-  bool needs_closures(int depth) const { return depth == 0 || !features_done_; }
+  bool needs_closures(int depth) const { return depth == 0 || !features_done_ || looks_for_rough_; }
   // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // The ray left the scene.
@@ -51,6 +51,7 @@ class PassRecorder {
   void background_motion(const Vec3& direction);
   void features(const PathState& state, const Vertex& vertex);
   void add_albedo(const Rgb& value);
+  void rough_vertex(const PathState& state, const Vertex& vertex);
 
   const PathContext& context_;
   Counters* counters_;
@@ -58,7 +59,9 @@ class PassRecorder {
   bool active_ = false;
   bool lights_ = false;
   bool features_ = false;
-  bool others_ = false;  // planes that are no features
+  bool others_ = false;                                 // planes that are no features
+  std::vector<ComponentPlanes>* components_ = nullptr;  // that keep rough vertices
+  bool looks_for_rough_ = false;                        // the path has met none so far
   bool first_sample_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;

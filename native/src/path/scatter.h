@@ -11,6 +11,7 @@ struct PathState {
   Rgb throughput = Rgb(1.0f);
   int depth = 0;               // scatterings so far
   bool emission_only = false;  // the bounce limits are reached: the next vertex shows its emission and no more
+  PathWord word = 0;           // of the scatterings so far
 };
 
 // All that the path's last ray may have to show are lamps and the world.

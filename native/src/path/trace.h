@@ -4,6 +4,9 @@
 // bits whatever observer looks on.
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "path/camera_vertex.h"
 #include "path/contribution.h"
 #include "path/recorder.h"
@@ -19,7 +22,7 @@ struct PathScratch {
 };
 
 struct PathResult {
-  Radiance radiance = Radiance(0.0f);  // w: alpha, if the film is transparent
+  std::array<Radiance, kMostComponents> radiance;  // of each component of the context's set; w: alpha, if the film is transparent
   bool fallback = false;
 };
 
@@ -51,11 +54,12 @@ class PathTracer {
         counters_(*counters),
         observer_(*observer) {}
 
-  // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is known.
-  PathResult trace(const Sampler& sampler, const Vec2& film, CameraVertex* first = nullptr) {
-    result_ = PathResult{};
-    result_.radiance.w = 1.0f;
+  // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is known. The result
+  // stays until the next path.
+  const PathResult& trace(const Sampler& sampler, const Vec2& film, CameraVertex* first = nullptr) {
     state_ = PathState{};
+    start_result();
+    alpha() = 1.0f;
     const CameraSample sample = camera_sample(context_, sampler, film);
     observer_.begin(sampler, sample);
     ++counters_.rays_primary;
@@ -79,13 +83,13 @@ class PathTracer {
 
   // What a path adds that stands at a vertex whose emission was seen. state: its segment's weight included. leaves: the vertex was lit,
   // too.
-  Rgb go_on(const Sampler& sampler, const PathState& state, Vertex* vertex, bool leaves) {
-    result_ = PathResult{};
+  const PathResult& go_on(const Sampler& sampler, const PathState& state, Vertex* vertex, bool leaves) {
+    start_result();
     state_ = state;
     if (leaves ? leave(sampler.vertex(state_.depth), *vertex) : light_and_leave(sampler, vertex)) {
       follow_rays(sampler, vertex);
     }
-    return Rgb(result_.radiance);
+    return result_;
   }
 
  private:
@@ -197,14 +201,22 @@ class PathTracer {
     return add_surface(sampler, source, vertex);
   }
 
-  void add(const Rgb& value) { result_.radiance += Radiance(value, 0.0f); }
+  void start_result() {
+    std::fill_n(result_.radiance.begin(), context_.components.count(), Radiance(0.0f));
+    result_.fallback = false;
+  }
+
+  // That of the film: no more than one component has it, so that they add up.
+  float& alpha() { return result_.radiance[size_t(context_.components.component(PathWord{0}))].w; }
+
+  void add(const Contribution& c) { result_.radiance[size_t(c.component)] += Radiance(c.clamped, 0.0f); }
 
   void add_lamps(const RaySource& source) {
     for (const LampSighting& lamp : segment_->lamps) {
       const Contribution c = lamp_contribution(context_, source, state_, lamp);
       if (recorder_ != nullptr) recorder_->sighting(state_.throughput * lamp.weight * c.light);
       if (!is_black(c.clamped)) {
-        add(c.clamped);
+        add(c);
         if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
         observer_.lamp(source, c, lamp);
       }
@@ -217,7 +229,7 @@ class PathTracer {
     const Contribution c = world_contribution(context_, source, state_);
     if (recorder_ != nullptr) recorder_->sighting(state_.throughput * c.light);
     if (!is_black(c.clamped)) {
-      add(c.clamped);
+      add(c);
       if (recorder_ != nullptr) recorder_->environment(state_.depth, c.clamped);
       observer_.world(source, c);
     }
@@ -225,7 +237,7 @@ class PathTracer {
 
   void add_transparent(float value) {
     if (value != 0.0f) {
-      result_.radiance.w -= value;
+      alpha() -= value;
       observer_.transparent(value);
     }
   }
@@ -242,7 +254,7 @@ class PathTracer {
     if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, *segment_);
     const Contribution c = emission_contribution(context_, source, state_, vertex);
     if (!is_black(c.clamped)) {
-      add(c.clamped);
+      add(c);
       if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
       observer_.emission(source, c, vertex);
     }
@@ -258,9 +270,9 @@ class PathTracer {
     ++counters_.rays_shadow;
     const Rgb through = light_transmittance(context_, vertex.point, s_.light.point, s_.light.view, here.ray.state.transparent_depth);
     for (int k = 0; k < kScatterClasses && !is_black(through); ++k) {
-      const Contribution c = light_contribution(context_, here, s_.light, lit[k], through);
+      const Contribution c = light_contribution(context_, here, s_.light, static_cast<ScatterClass>(k), lit[k], through);
       if (!is_black(c.clamped)) {
-        add(c.clamped);
+        add(c);
         const auto scatter_class = static_cast<ScatterClass>(k);
         if (recorder_ != nullptr) recorder_->light(here, vertex, scatter_class, s_.light, c.clamped);
         observer_.light(vertex, s_.light, scatter_class, c);

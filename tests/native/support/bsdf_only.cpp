@@ -15,7 +15,7 @@ Rgb lamps_between(const Snapshot& scene, const Ray& ray) {
 }
 
 // A direction by all classes; false: absorbed. factor: f·|cos| over its density.
-bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, Vec3* wi, Rgb* factor) {
+bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, Vec3* wi, Rgb* factor, std::string* word) {
   float u = random->get();
   for (int k = 0; k < kScatterClasses; ++k) {
     const auto c = static_cast<ScatterClass>(k);
@@ -25,6 +25,7 @@ bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, 
       const float lobe = random->get();
       if (!closures.sample(c, wo, lobe, random->get2(), &sample) || !(sample.pdf > 0.0f)) return false;
       *wi = sample.wi;
+      *word += "DRT"[k];
       *factor = sample.value / (probability * sample.pdf);
       return true;
     }
@@ -35,28 +36,35 @@ bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, 
 
 }  // namespace
 
-Rgb bsdf_only_sample(const IntegratorContext& context, int x, int y, testing::Random* random) {
+void bsdf_only_path(const IntegratorContext& context, int x, int y, testing::Random* random, const FoundLight& found_light) {
   const Snapshot& scene = *context.snapshot;
   const Vec2 film = Vec2(float(x), float(y)) + random->get2();
   const Vec2 lens = random->get2();
   Ray ray = context.camera.ray({film, lens, scene.shutter.sample(random->get())});
-  Rgb radiance(0.0f), throughput(1.0f);
+  Rgb throughput(1.0f);
+  std::string word = "E";
   for (uint32_t scatterings = 0;; ++scatterings) {
     Hit hit;
     const bool found = scene.intersect(ray, GRADUS_VISIBLE_ALL, &hit);
     if (found) ray.t_max = hit.t;
-    radiance += throughput * lamps_between(scene, ray);
-    if (!found) return radiance + throughput * shade_world(scene, ray.direction, RayState{});
+    found_light(word + "L", throughput * lamps_between(scene, ray));
+    if (!found) return found_light(word + "L", throughput * shade_world(scene, ray.direction, RayState{}));
     const SurfacePoint point = scene.surface_point(hit);
     ShadeResult shade;
     shade_surface(scene, point, -ray.direction, RayState{}, context.settings.roughness_threshold, &shade);
-    radiance += throughput * shade.emission;
+    found_light(word + "L", throughput * shade.emission);
     Vec3 wi;
     Rgb factor;
-    if (scatterings > context.settings.max_bounces || !scatter(shade.closures, -ray.direction, random, &wi, &factor)) return radiance;
+    if (scatterings > context.settings.max_bounces || !scatter(shade.closures, -ray.direction, random, &wi, &factor, &word)) return;
     throughput *= factor;
     ray = spawn_ray(point, wi);
   }
+}
+
+Rgb bsdf_only_sample(const IntegratorContext& context, int x, int y, testing::Random* random) {
+  Rgb radiance(0.0f);
+  bsdf_only_path(context, x, y, random, [&](const std::string&, const Rgb& light) { radiance += light; });
+  return radiance;
 }
 
 }  // namespace gradus::test

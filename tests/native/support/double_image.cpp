@@ -77,9 +77,9 @@ DoubleImage render_in_double(const IntegratorContext& context, uint32_t samples)
   const WorkUnit unit{frame.region, 0, samples, nullptr};
   const auto vertices = std::make_unique<CameraVertices>(path);
   for_each_sample(path, unit, frame, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
-    const PathResult result = tracer.trace(s.sampler, s.film, s.first);
+    const PathResult& result = tracer.trace(s.sampler, s.film, s.first);
     add_primal(result, s, &frame, &frame.counters);
-    if (!fits(result.radiance)) return;
+    if (!fits(result.radiance[0])) return;
     sums[s.pixel].sum += observer.radiance;
     sums[s.pixel].squares += observer.radiance * observer.radiance;
   });

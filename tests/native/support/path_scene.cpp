@@ -241,9 +241,9 @@ void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, 
   integrator.sample(unit, frame, &frame->counters, stop);
 }
 
-Frame make_test_frame(const GradusSettings& settings, bool gradients) {
+Frame make_test_frame(const GradusSettings& settings, bool gradients, int components) {
   const Region region{0, 0, static_cast<int32_t>(settings.width), static_cast<int32_t>(settings.height)};
-  return Frame(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, 1, gradients);
+  return Frame(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, components, gradients);
 }
 
 Surface matte(const Rgb& color) {

@@ -69,7 +69,7 @@ void sample_at_pixel_centres(GradusSettings* settings);
 
 // All pixels with samples [first, first + count).
 void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame);
-Frame make_test_frame(const GradusSettings& settings, bool gradients);
+Frame make_test_frame(const GradusSettings& settings, bool gradients, int components = 1);
 
 // An open box with two coloured walls, seen from its open side, and a square light below its ceiling.
 void add_box(PathScene* scene, const Surface& floor);

@@ -47,10 +47,24 @@ std::array<PairCount, kOffsets> pair_counts(const WorkUnit& unit, const Frame& f
   return pairs;
 }
 
+// Most paths have found nothing for most components, whose planes are left alone.
+void add_gradients(const std::array<Radiance, kOffsets>& gradients, const PixelSample& s, int channels, ComponentPlanes* planes,
+                   Counters* counters) {
+  for (int k = 0; k < kOffsets; ++k) {
+    Radiance gradient = gradients[size_t(k)];
+    if (channels < 4) {
+      gradient.w = 0.0f;
+    }
+    if (gradient != Radiance(0.0f)) {
+      add_gradient(gradient, &planes->gradient[s.half][k][s.pixel], counters);
+    }
+  }
+}
+
 class GradientIntegrator final : public Integrator {
  public:
   explicit GradientIntegrator(const IntegratorContext& context)
-      : context_(context), path_(*context_.snapshot, context_.camera, context_.settings) {}
+      : context_(context), path_(*context_.snapshot, context_.camera, context_.settings, context_.components) {}
 
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto worker = std::make_unique<Worker>(path_, frame, counters);
@@ -63,15 +77,11 @@ class GradientIntegrator final : public Integrator {
       const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, s.x, s.y, s.half);
       worker->offsets.start(pairs, s);
       add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, frame, counters);
-      const std::array<Radiance, kOffsets>& gradients = worker->offsets.finish();
-      for (int k = 0; k < kOffsets; ++k) {
-        Radiance gradient = gradients[k];
-        if (frame->channels < 4) {
-          gradient.w = 0.0f;
-        }
-        add_gradient(gradient, &frame->components[0].gradient[s.half][k][s.pixel], counters);
-        frame->pair_count[s.half][k][s.pixel] += pairs[k].weight();
+      worker->offsets.finish();
+      for (int c = 0; c < path_.components.count(); ++c) {
+        add_gradients(worker->offsets.gradient(c), s, frame->channels, &frame->components[size_t(c)], counters);
       }
+      for (int k = 0; k < kOffsets; ++k) frame->pair_count[s.half][k][s.pixel] += pairs[k].weight();
     });
   }
 

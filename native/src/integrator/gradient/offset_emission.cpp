@@ -83,12 +83,13 @@ void OffsetPaths::seen() {
   if (open_ == 0) {
     return;
   }
+  const int component = context_.components.component(base_state_.word);  // of both: the shift copies classes
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
       const Radiance seen = see_once(&o);
       if (seen != Radiance(0.0f) || seen_ != Radiance(0.0f)) {
-        gradient_[k] += pairs_[k].paired(seen_, seen, o.ratio);
+        add(k, component, pairs_[k].paired(seen_, seen, o.ratio));
       }
     }
     if (o.stage == OffsetStage::Traced || o.stage == OffsetStage::Linked) {

@@ -23,8 +23,10 @@ void OffsetPaths::part(int k, ShiftFailure cause, bool goes_on, bool leaves) {
   OffsetPath& o = offsets_[k];
   count_failure(&counters_, cause);
   if (goes_on) {
-    const Rgb found = own_tracer_.go_on(*sampler_, o.state, o.here, leaves);
-    gradient_[k] += pairs_[k].paired(Radiance(0.0f), Radiance(found, 0.0f), o.ratio);
+    const PathResult& found = own_tracer_.go_on(*sampler_, o.state, o.here, leaves);
+    for (int c = 0; c < context_.components.count(); ++c) {
+      add(k, c, pairs_[k].paired(Radiance(0.0f), Radiance(Rgb(found.radiance[size_t(c)]), 0.0f), o.ratio));
+    }
     counters_.rays_shift += own_rays_.rays_bounce;
     counters_.rays_shift_shadow += own_rays_.rays_shadow;
     own_rays_ = Counters{};

@@ -38,6 +38,7 @@ inline bool is_beside(OffsetStage stage) { return stage == OffsetStage::Linked |
 // What the base has found since settled offsets were last told. All of it lies behind what they share, so that one pair does for it.
 struct Suffix {
   bool empty = true;
+  int component = 0;       // that it was found for
   Rgb weight = Rgb(1.0f);  // by which throughputs have changed
   Rgb base = Rgb(0.0f);    // sum of the base's contributions
   Rgb tail = Rgb(0.0f);    // and of those of a path with the throughput 1

@@ -51,12 +51,16 @@ OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraV
 void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample) {
   pairs_ = pairs;
   sample_ = &sample;
-  gradient_.fill(Radiance(0.0f));
+  for (int c = 0; c < context_.components.count(); ++c) gradient_[size_t(c)].fill(Radiance(0.0f));
 }
 
 void OffsetPaths::collect(const Contribution& c, const Rgb& weight) {
   if (kept_ != nullptr) {
     resume();
+  }
+  if (c.component != suffix_.component) {
+    tell_settled();
+    suffix_.component = c.component;
   }
   const Rgb tail = suffix_.weight * weight * c.tail;
   if (clamps_) {
@@ -64,7 +68,7 @@ void OffsetPaths::collect(const Contribution& c, const Rgb& weight) {
       const OffsetPath& o = offsets_[k];
       if (is_settled(o.stage)) {
         const Rgb value = clamp_contribution(context_, o.state.throughput * tail, c.indirect);
-        gradient_[k] += pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(value, 0.0f), o.ratio);
+        add(k, c.component, pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(value, 0.0f), o.ratio));
       }
     }
     return;
@@ -87,7 +91,7 @@ void OffsetPaths::tell_settled() {
     OffsetPath& o = offsets_[k];
     if (is_settled(o.stage)) {
       const Rgb value = o.state.throughput * suffix_.tail;
-      gradient_[k] += pairs_[k].paired(Radiance(suffix_.base, 0.0f), Radiance(value, 0.0f), o.ratio);
+      add(k, suffix_.component, pairs_[k].paired(Radiance(suffix_.base, 0.0f), Radiance(value, 0.0f), o.ratio));
       o.state.throughput *= suffix_.weight;
     }
   }
@@ -140,8 +144,8 @@ void OffsetPaths::pair(int k, const Contribution& c, const Rgb& offset_value, fl
     alone(k, c);
     return;
   }
-  gradient_[k] +=
-      pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(clamp_contribution(context_, offset_value, c.indirect), 0.0f), ratio);
+  const Radiance offset(clamp_contribution(context_, offset_value, c.indirect), 0.0f);
+  add(k, c.component, pairs_[k].paired(Radiance(c.clamped, 0.0f), offset, ratio));
 }
 
 void OffsetPaths::begin(const Sampler& sampler, const CameraSample& sample) {

@@ -15,11 +15,9 @@ class OffsetPaths {
 
   // Before each sample.
   void start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample);
-  // After it: the weighted gradient sample of each pair, alpha included.
-  const std::array<Radiance, kOffsets>& finish() {
-    tell_settled();
-    return gradient_;
-  }
+  // After it: the weighted gradient sample of each pair, by components, alpha included.
+  void finish() { tell_settled(); }
+  const std::array<Radiance, kOffsets>& gradient(int component) const { return gradient_[size_t(component)]; }
 
   // What PathTracer tells.
   void begin(const Sampler& sampler, const CameraSample& sample);
@@ -39,7 +37,8 @@ class OffsetPaths {
  private:
   // Adds the gradient sample of one contribution: with the offset's, or alone.
   void pair(int k, const Contribution& c, const Rgb& offset_value, float ratio);
-  void alone(int k, const Contribution& c) { gradient_[k] += pairs_[k].unpaired(Radiance(c.clamped, 0.0f)); }
+  void alone(int k, const Contribution& c) { add(k, c.component, pairs_[k].unpaired(Radiance(c.clamped, 0.0f))); }
+  void add(int k, int component, const Radiance& sample) { gradient_[size_t(component)][size_t(k)] += sample; }
   // Settled offsets: a contribution of the base, behind a segment of this weight; what all of them have found so far; one more of them.
   void collect(const Contribution& c, const Rgb& weight);
   void scale(const Rgb& factor);
@@ -117,7 +116,7 @@ class OffsetPaths {
   const Sampler* sampler_ = nullptr;
   CameraSample camera_sample_;
   std::array<PairCount, kOffsets> pairs_{};
-  std::array<Radiance, kOffsets> gradient_{};
+  std::array<std::array<Radiance, kOffsets>, kMostComponents> gradient_{};
   std::array<OffsetPath, kOffsets> offsets_;
   int open_ = 0;  // offsets that are neither absent nor waiting nor settled
   Suffix suffix_;

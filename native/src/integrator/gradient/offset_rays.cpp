@@ -86,6 +86,7 @@ void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathStat
   o->state.ray.state.transparent_depth = transparent_depth;
   o->state.ray.ray = spawn_ray(o->here->point, event.wi);
   o->state.depth = state.depth;
+  o->state.word = state.word;
   o->state.throughput *= event.factor;
   o->ratio *= event.ratio;
   o->kind_ratio = event.kind_ratio;

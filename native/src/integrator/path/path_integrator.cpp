@@ -9,7 +9,7 @@ namespace {
 class PathIntegrator final : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorContext& context)
-      : context_(context), path_(*context_.snapshot, context_.camera, context_.settings) {}
+      : context_(context), path_(*context_.snapshot, context_.camera, context_.settings, context_.components) {}
 
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto scratch = std::make_unique<PathScratch>();

@@ -1,0 +1,158 @@
+// Each path lands in its component, and the components add up to what one plane would hold (contract 3.3, 3.4).
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+using test::Scenario;
+
+constexpr uint32_t kSide = 24;
+// By bounces, so that paths change their component at every vertex.
+const char* const kByBounces = "Seen=EL;Once=E.L;Twice=E..L;Thrice=E...L";
+
+Frame sampled(const IntegratorContext& context, bool gradients, uint32_t samples = 6) {
+  Frame frame = test::make_test_frame(context.settings, gradients, context.components.count());
+  const auto integrator = gradients ? make_gradient_integrator(context) : make_path_integrator(context);
+  test::sample_frame(*integrator, 0, samples, &frame);
+  return frame;
+}
+
+struct Sums {
+  Radiance sum = Radiance(0.0f), magnitude = Radiance(0.0f);
+};
+
+template <class PlaneOf>
+Sums sums_at(const Frame& frame, size_t pixel, const PlaneOf& plane_of) {
+  Sums s;
+  for (const ComponentPlanes& planes : frame.components) {
+    const Radiance value = plane_of(planes)[pixel];
+    s.sum += value;
+    s.magnitude += glm::abs(value);
+  }
+  return s;
+}
+
+// Up to the order of additions. `scale`: of the largest terms.
+template <class PlaneOf>
+void expect_same_sums(const Frame& one, const Frame& many, float scale, const PlaneOf& plane_of) {
+  size_t pixels = 0;
+  float worst = 0.0f;
+  for (size_t i = 0; i < size_t(one.region.area()); ++i) {
+    const Sums whole = sums_at(one, i, plane_of), parts = sums_at(many, i, plane_of);
+    const Radiance off = glm::abs(whole.sum - parts.sum) / (parts.magnitude + scale);
+    worst = std::max({worst, off.x, off.y, off.z, off.w});
+    pixels += whole.magnitude != Radiance(0.0f) ? 1 : 0;
+  }
+  EXPECT_LT(worst, 1e-5f);
+  EXPECT_GT(pixels, size_t(one.region.area()) / 8);
+}
+
+float largest(const std::vector<Radiance>& plane) {
+  float most = 0.0f;
+  for (const Radiance& r : plane) most = std::max({most, std::fabs(r.x), std::fabs(r.y), std::fabs(r.z)});
+  return most;
+}
+
+class Scenarios : public testing::TestWithParam<int> {
+ protected:
+  Scenario scenario() const { return Scenario(GetParam()); }
+  IntegratorContext context(const char* components) {
+    scene_ = std::make_unique<PathScene>();
+    test::build(scenario(), scene_.get());
+    GradusSettings settings = test::test_settings(kSide, kSide);
+    settings.film_transparent = scenario() == Scenario::World ? 1 : 0;
+    settings.clamp_indirect = scenario() == Scenario::GlossyFloor ? 2.0f : 0.0f;
+    IntegratorContext context = scene_->context(settings);
+    if (components != nullptr) context.components = ComponentSet::parse(components);
+    return context;
+  }
+  std::unique_ptr<PathScene> scene_;
+};
+
+TEST_P(Scenarios, SumsOfComponentsAreThoseOfOnePlane) {
+  const Frame one = sampled(context(nullptr), true);
+  for (const char* set : {"", kByBounces}) {
+    const Frame many = sampled(context(set), true);
+    EXPECT_EQ(one.count, many.count);
+    EXPECT_EQ(one.pair_count, many.pair_count);
+    EXPECT_EQ(one.counters.rays_shift, many.counters.rays_shift);
+    for (int half = 0; half < kHalves; ++half) {
+      const float scale = largest(one.components[0].primal[half]);
+      expect_same_sums(
+          one, many, scale, [=](const ComponentPlanes& p) -> const auto& { return p.primal[half]; });
+      for (int k = 0; k < kOffsets; ++k) {
+        expect_same_sums(
+            one, many, scale, [=](const ComponentPlanes& p) -> const auto& { return p.gradient[half][k]; });
+      }
+    }
+  }
+}
+
+TEST_P(Scenarios, PlainPathsHaveTheSameComponents) {
+  const IntegratorContext c = context("");
+  const Frame plain = sampled(c, false), with_gradients = sampled(c, true);
+  for (size_t i = 0; i < plain.components.size(); ++i) {
+    for (int half = 0; half < kHalves; ++half) {
+      EXPECT_EQ(plain.components[i].primal[half], with_gradients.components[i].primal[half]) << c.components[int(i)].name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Components, Scenarios, testing::Range(0, int(Scenario::Count)),
+                         [](const auto& info) { return test::name_of(Scenario(info.param)); });
+
+double light_of(const Frame& frame, int component) {
+  double sum = 0.0;
+  for (const auto& half : frame.components[size_t(component)].primal) {
+    for (const Radiance& r : half) sum += double(r.x) + r.y + r.z;
+  }
+  return sum;
+}
+
+TEST(Components, AlphaBelongsToWhatTheCameraSees) {
+  PathScene scene;
+  test::build(Scenario::World, &scene);
+  GradusSettings settings = test::test_settings(kSide, kSide);
+  settings.film_transparent = 1;
+  IntegratorContext context = scene.context(settings);
+  context.components = ComponentSet::parse("");
+  const Frame frame = sampled(context, true);
+  const int seen = context.components.find("Emission");
+  float most = 0.0f;
+  for (int c = 0; c < context.components.count(); ++c) {
+    for (const Radiance& r : frame.components[size_t(c)].primal[0]) {
+      if (c == seen) {
+        most = std::max(most, r.w);
+      } else {
+        ASSERT_EQ(r.w, 0.0f) << context.components[c].name;
+      }
+    }
+  }
+  EXPECT_EQ(most, 3.0f);
+}
+
+TEST(Components, AMirrorShowsReflectionsAndNoEmission) {
+  PathScene scene;
+  test::Surface light;
+  light.emission = Rgb(2.0f);
+  const uint64_t mirror = scene.material(test::glossy(0.0f));
+  scene.quad(Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), mirror);
+  scene.quad(Vec3(-8, -8, 6), Vec3(0, 16, 0), Vec3(16, 0, 0), scene.material(light), GRADUS_VISIBLE_ALL & ~uint32_t(GRADUS_VISIBLE_CAMERA));
+  scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
+  IntegratorContext context = scene.context(test::test_settings(kSide, kSide));
+  context.components = ComponentSet::parse("");
+  const Frame frame = sampled(context, true);
+  for (int c = 0; c < context.components.count(); ++c) {
+    EXPECT_EQ(light_of(frame, c) > 0.0, context.components[c].name == "Reflection") << context.components[c].name;
+  }
+}
+
+}  // namespace
+}  // namespace gradus
