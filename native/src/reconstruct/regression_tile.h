@@ -68,6 +68,7 @@ class Tile {
         columns_{Rows(O::kCount, width_), Rows(O::kCount, width_)} {}
 
   void run() {
+    if (is_black()) return pass_over();
     for (int j = y0_ - kReach; j < y1_ + kReach; ++j) {
       sum_squares(j);
       M::template join<M::kX>(moments_, moments_, 1, unit_, &at(pairs_, j));
@@ -90,6 +91,45 @@ class Tile {
   template <size_t N>
   static Rows& at(std::array<Rows, N>& ring, int j) {
     return ring[size_t(j + 64 * int(N)) % N];
+  }
+
+  // Nothing is in reach of its squares.
+  bool is_black() const {
+    const int w = task_.weights->width(), h = task_.weights->height();
+    const auto at = [&](int square) { return square * side_ - octave_.shift; };
+    const int begin = std::clamp(at(x0_ - kReach), 0, w), end = std::clamp(at(x1_ + kReach), 0, w);
+    for (int y = std::max(0, at(y0_ - kReach)); y < std::min(h, at(y1_ + kReach)); ++y) {
+      for (int c = 0; c < C; ++c) {
+        const float* row = value_row(y, c);
+        if (std::any_of(row + begin, row + end, [](float value) { return value != 0.0f; })) return false;
+      }
+    }
+    return true;
+  }
+
+  // All windows say 0, as surely as any can; the octave above may have more to say.
+  void pass_over() {
+    const float most = 1.0f / (float(task_.settings->lattices) * task_.settings->floor);
+    if constexpr (Estimates) {
+      for (int m = y0_ - kReach; m < y1_; ++m) keep_most(m, most);
+    }
+    for (int m = y0_; m < y1_; ++m) {
+      said_.clear();
+      std::fill_n(said_[O::kConfidence], width_, octave_.octave.small ? 2.0f * most : most);
+      if (octave_.coarse != nullptr) add_coarse(m);
+      octave_.opinions != nullptr ? write_opinions(m) : write_pixels(m);
+    }
+  }
+
+  // Small windows that begin two squares before the image hold none of it.
+  void keep_most(int m, float most) {
+    for (int x = 0; x < boxes_.width(); x += kLanes) {
+      keep_confidence(m, kLarge, x, Lanes{} + 0.0625f * most);
+      if (!octave_.octave.small || m < -1) continue;
+      Lanes small{};
+      for (int l = 0; l < kLanes; ++l) small[l] = first_ + x + l < -1 ? 0.0f : 0.25f * most;
+      keep_confidence(m, kSmall, x, small);
+    }
   }
 
   // Pixel k of group g.
@@ -213,7 +253,7 @@ class Tile {
     for (int i = 0; i < kSides; ++i) solution[i] = load(boxes_[M::kRight + i] + x);
     const Lanes zero{}, weight = matrix[0], ridge = task_.settings->ridge * weight;
     for (int i = 1; i < P; ++i) matrix[packed(i, i)] += ridge;
-    solve_windows<P, C>(matrix, solution);
+    if (!holds_nothing(x)) solve_windows<P, C>(matrix, solution);
     Lanes eta, bias = zero;
     if constexpr (Estimates) {
       Lanes residuals[kChannels] = {load(boxes_[M::kSquares] + x)}, noises[kChannels] = {};
@@ -242,6 +282,16 @@ class Tile {
     for (int i = 0; i < kSides; ++i) store(eta * solution[i], (*said)[i] + x);
     store(eta, (*said)[O::kConfidence] + x);
     store(eta * bias, (*said)[O::kBias] + x);
+  }
+
+  // Of eight windows.
+  bool holds_nothing(int x) const {
+    auto any = load(boxes_[M::kRight] + x) != Lanes{};
+    for (int i = 1; i < kSides; ++i) any |= load(boxes_[M::kRight + i] + x) != Lanes{};
+    for (int l = 0; l < kLanes; ++l) {
+      if (any[l] != 0) return false;
+    }
+    return true;
   }
 
   // Every window is kept by one tile alone.

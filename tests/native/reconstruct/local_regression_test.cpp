@@ -194,5 +194,35 @@ TEST(B2_Regression, LeavesOutPixelsWithoutWeight) {
   EXPECT_LT(largest_difference(regression.estimate(image, Field(w, h, 3), never).mean, truth), 0.03);
 }
 
+// Light in a corner alone: tiles that see none of it are passed over, with the result that their windows would have had.
+TEST(B1_Regression, PassesOverWhatIsBlack) {
+  constexpr int w = 700, h = 900, corner = 60;
+  Field mean = noise(w, h, 1.0f, 1), half = noise(w, h, 0.3f, 2);
+  for (Field* field : {&mean, &half}) {
+    for (int y = 0; y < h; ++y) {
+      for (int c = 0; c < 3; ++c) {
+        for (int x = 0; x < w; ++x) field->row(y, c)[x] *= x < corner && y < corner ? 1.0f : 0.0f;
+      }
+    }
+  }
+  const auto hardly_anything = make_field(w, h, 3, [](int x, int y, int) { return x < corner && y < corner ? 0.0f : 1e-12f; });
+  Field seen = mean;
+  for (int y = 0; y < h; ++y) {
+    for (int c = 0; c < 3; ++c) {
+      for (int x = 0; x < w; ++x) seen.row(y, c)[x] += hardly_anything.row(y, c)[x];
+    }
+  }
+  const auto never = [] { return false; };
+  const auto shared = predictors(features(w, h), ones(w, h));
+  LocalRegression passing(shared, ones(w, h), kSettings), working(shared, ones(w, h), kSettings);
+  const RegressionResult a = passing.estimate(mean, half, never), b = working.estimate(seen, half, never);
+  EXPECT_LT(largest_difference(a.mean, b.mean), 1e-5);
+  EXPECT_LT(largest_difference(a.noise, b.noise), 1e-5);
+  EXPECT_LT(largest_difference(a.bias, b.bias), 1e-5);
+  // Weights are kept there, too.
+  const Field other = channel_of(noise(w, h, 1.0f, 3), 0);
+  EXPECT_LT(largest_difference(passing.apply(other, never), working.apply(other, never)), 1e-4);
+}
+
 }  // namespace
 }  // namespace gradus
