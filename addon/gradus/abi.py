@@ -587,6 +587,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_render_wait": (c_int, [Render, c_double]),
     "gradus_render_release": (c_int, [Render]),
     "gradus_render_read_pass": (c_int, [Render, c_uint32, POINTER(c_float), c_size_t]),
+    "gradus_render_read_component": (c_int, [Render, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_render_stats": (c_int, [Render, POINTER(c_char_p)]),
     "gradus_render_frame": (c_int, [Render, POINTER(Frame)]),
     "gradus_sequence_applies": (c_int, [POINTER(Settings), POINTER(c_uint32), POINTER(c_char_p)]),
@@ -603,6 +604,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_frame_size": (c_int, [Frame, POINTER(c_uint32), POINTER(c_uint32)]),
     "gradus_frame_reconstruct": (c_int, [Frame, c_uint32, c_float, c_uint32, POINTER(c_float), c_size_t, POINTER(c_float)]),
     "gradus_frame_read_pass": (c_int, [Frame, c_uint32, POINTER(c_float), c_size_t]),
+    "gradus_frame_read_component": (c_int, [Frame, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_frame_release": (c_int, [Frame]),
 }
 """(restype, argtypes) of every function of the header."""

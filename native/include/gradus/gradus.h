@@ -570,6 +570,9 @@ GRADUS_API GradusError gradus_render_release(GradusRender render);
 /* Copies a pass of the region, width·height·channels floats (`count` must match exactly); never waits for samples. While sampling: Noisy Image so
  * far, and Combined, which whoever reads it once then sees reconstructed, first at a quarter of the size; others INVALID_OPERATION until later. */
 GRADUS_API GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* pixels, size_t count);
+/* The same of a component's pass (GradusComponentPass), once sampling has ended. 0 for a component to which no path of the scene belongs.
+ * INVALID_ARGUMENT: none of the settings' components has that name. */
+GRADUS_API GradusError gradus_render_read_component(GradusRender render, const char* component, uint32_t pass, float* pixels, size_t count);
 /* The stats object of the finished frame as JSON (docs/contract.md 7.1) without the fields that only the host knows. Valid until release. */
 GRADUS_API GradusError gradus_render_stats(GradusRender render, const char** json);
 /* The frame of a finished render: planes with half-buffers. */
@@ -629,6 +632,8 @@ GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uin
 GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
                                                 size_t count, float* error);
 GRADUS_API GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count);
+/* Color and Irradiance are reconstructed as Combined is, without the denoiser. */
+GRADUS_API GradusError gradus_frame_read_component(GradusFrame frame, const char* component, uint32_t pass, float* pixels, size_t count);
 GRADUS_API GradusError gradus_frame_release(GradusFrame frame);
 
 #ifdef __cplusplus

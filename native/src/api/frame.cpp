@@ -8,7 +8,9 @@
 #include "frame/features.h"
 #include "frame/store.h"
 #include "plan/plan.h"
+#include "reconstruct/reconstruct_frame.h"
 #include "render/combine.h"
+#include "render/component_read.h"
 #include "render/denoise_combined.h"
 #include "render/pass_read.h"
 #include "render/resume.h"
@@ -71,6 +73,21 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
   }
   std::copy(image.begin(), image.end(), rgba);
   std::copy(estimate.begin(), estimate.end(), error);
+}
+
+// RGB of a component's picture.
+std::vector<float> reconstruct_color(FrameObject* object, const Frame& frame, int component) {
+  const uint32_t reconstruction = resolve(frame.settings.reconstruction, frame);
+  const uint32_t threads = frame.settings.threads > 0 ? frame.settings.threads : object->device->threads();
+  std::vector<float> color;
+  tbb::task_arena(arena_size(threads)).execute([&] {
+    const FlushDenormals flush;
+    SolveReport report;
+    const Reconstructed picture = reconstruct_component(
+        frame, component, reconstruction, frame.settings.reconstruction_alpha, false, [] { return false; }, &report);
+    color = crop_component(frame, reconstruction, picture.image, delivered_region(frame));
+  });
+  return color;
 }
 
 }  // namespace
@@ -140,6 +157,22 @@ GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixe
     if (pass != GRADUS_PASS_ERROR) return read_frame_pass(*content, pass, region, pixels);
     std::vector<float> rgba(4 * count);
     api::reconstruct_into(object.get(), *content, s.reconstruction, s.reconstruction_alpha, GRADUS_DENOISER_NONE, rgba.data(), pixels);
+  });
+}
+
+GradusError gradus_frame_read_component(GradusFrame frame, const char* component, uint32_t pass, float* pixels, size_t count) {
+  return api::guard([&] {
+    const auto object = api::find_handle<api::FrameObject>(frame);
+    const std::shared_ptr<const Frame> content = object->get();
+    const std::string name = &api::require(component, "component");
+    const Region region = delivered_region(*content);
+    api::check_count(count, region, component_pass_info(pass).channels);
+    api::check_array(pixels, count, "pixels");
+    check_component(content->settings, name);
+    const int place = find_component(*content, name);
+    if (place < 0) return static_cast<void>(std::fill_n(pixels, count, 0.0f));
+    const std::vector<float> color = is_of_picture(pass) ? api::reconstruct_color(object.get(), *content, place) : std::vector<float>();
+    read_component_pass(*content, place, pass, region, color, pixels);
   });
 }
 

@@ -70,6 +70,15 @@ GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* p
   });
 }
 
+GradusError gradus_render_read_component(GradusRender render, const char* component, uint32_t pass, float* pixels, size_t count) {
+  return api::guard([&] {
+    const auto object = api::find_handle<api::RenderObject>(render);
+    const std::string name = &api::require(component, "component");
+    api::check_array(pixels, count, "pixels");
+    object->render.read_component(name, pass, pixels, count);
+  });
+}
+
 GradusError gradus_render_stats(GradusRender render, const char** json) {
   return api::guard([&] {
     api::require(json, "json") = nullptr;

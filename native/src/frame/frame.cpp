@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "base/text_list.h"
+
 namespace gradus {
 
 void Counters::add(const Counters& other) {
@@ -37,7 +39,7 @@ uint64_t Frame::memory_bytes() const {
   uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + replayed.pixel.size() * sizeof(int32_t);
   for (const ComponentPlanes& component : components) {
     for (int half = 0; half < kHalves; ++half) {
-      bytes += component.primal[half].size() * sizeof(Radiance);
+      bytes += component.primal[half].size() * sizeof(Radiance) + component.rough[half].size() * sizeof(RoughVertices);
       for (const auto& plane : component.gradient[half]) {
         bytes += plane.size() * sizeof(Radiance);
       }
@@ -53,6 +55,38 @@ uint64_t Frame::memory_bytes() const {
     bytes += (plane.values[0].size() + plane.values[1].size() + plane.weight.size()) * sizeof(float);
   }
   return bytes;
+}
+
+std::string component_names(const Frame& frame) {
+  std::string names;
+  for (const ComponentPlanes& planes : frame.components) add_item(&names, planes.name);
+  return names;
+}
+
+bool same_components(const Frame& a, const Frame& b) {
+  const auto same = [](const ComponentPlanes& p, const ComponentPlanes& q) { return p.name == q.name && p.expression == q.expression; };
+  return std::equal(a.components.begin(), a.components.end(), b.components.begin(), b.components.end(), same);
+}
+
+int find_component(const Frame& frame, std::string_view name) {
+  const auto& list = frame.components;
+  const auto found = std::find_if(list.begin(), list.end(), [&](const ComponentPlanes& planes) { return planes.name == name; });
+  return found != list.end() ? int(found - list.begin()) : -1;
+}
+
+void keep_component(std::string_view name, Frame* frame) {
+  const int place = find_component(*frame, name);
+  ComponentPlanes kept = std::move(frame->components[size_t(std::max(place, 0))]);
+  if (place < 0) {
+    kept.name = name;
+    for (int half = 0; half < kHalves; ++half) {
+      std::fill(kept.primal[half].begin(), kept.primal[half].end(), Radiance(0.0f));
+      for (auto& plane : kept.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));
+      std::fill(kept.rough[half].begin(), kept.rough[half].end(), RoughVertices{});
+    }
+  }
+  frame->components.clear();
+  frame->components.push_back(std::move(kept));
 }
 
 double mean_samples(const Frame& frame) {

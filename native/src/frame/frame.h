@@ -11,6 +11,8 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/types.h"
@@ -38,10 +40,20 @@ struct Region {
 // Radiance (RGB) and, with a transparent film, alpha as the fourth channel; 0 otherwise.
 using Radiance = Vec4;
 
+// Of the first rough vertices of a component's paths: sums over the samples that have come to one.
+struct RoughVertices {
+  Rgb reflectance = Rgb(0.0f);
+  Vec3 normal = Vec3(0.0f);  // in the world, as shaded
+  float depth = 0.0f;        // length of the path
+  float samples = 0.0f;
+};
+
 // One component of the decomposition: primal sums and gradient sums of both halves. Row-major over Frame::region.
 struct ComponentPlanes {
+  std::string name, expression;  // path/components.h
   std::array<std::vector<Radiance>, kHalves> primal;
   std::array<std::array<std::vector<Radiance>, kOffsets>, kHalves> gradient;  // empty where the integrator makes none
+  std::array<std::vector<RoughVertices>, kHalves> rough;                      // empty unless asked for
 };
 
 // A data or light pass: sums over samples, `channels` per pixel.
@@ -109,6 +121,13 @@ class Frame {
   int32_t frame_number = 0;
 };
 
+// For people: "Diffuse, Residual".
+std::string component_names(const Frame& frame);
+bool same_components(const Frame& a, const Frame& b);
+// -1: there is none.
+int find_component(const Frame& frame, std::string_view name);
+// As if no other had been sampled; black where the frame has none of that name.
+void keep_component(std::string_view name, Frame* frame);
 // Samples of the pixel with this index.
 inline uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
 // Samples of a pixel, on average over the region.

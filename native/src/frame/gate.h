@@ -35,6 +35,17 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
   }
 }
 
+// A vertex of one sample.
+inline void add_rough(const RoughVertices& vertex, RoughVertices* sum, Counters* counters) {
+  const RoughVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal, sum->depth + vertex.depth,
+                           sum->samples + vertex.samples};
+  if (fits(Radiance(next.reflectance, next.depth)) && fits(Radiance(next.normal, next.samples))) {
+    *sum = next;
+  } else {
+    ++counters->nonfinite_feature;
+  }
+}
+
 // Values of a pass: added to its sums, or kept as they are where only the first sample counts.
 inline void add_feature(const float* values, float weight, size_t pixel, int half, PassPlane* plane, Counters* counters) {
   float* sum = plane->of_half(half).data() + pixel * plane->channels;

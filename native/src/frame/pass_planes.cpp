@@ -21,6 +21,12 @@ std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
   return planes;
 }
 
+void keep_rough_vertices(Frame* frame) {
+  for (ComponentPlanes& planes : frame->components) {
+    for (auto& half : planes.rough) half.assign(size_t(frame->region.area()), RoughVertices{});
+  }
+}
+
 uint64_t kept_passes(const Frame& frame) {
   uint64_t passes = 0;
   for (const PassPlane& plane : frame.passes) passes |= uint64_t{1} << plane.pass;
@@ -32,9 +38,10 @@ const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
   return plane != frame.passes.end() ? &*plane : nullptr;
 }
 
-uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes) {
+uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, bool rough) {
   const uint64_t offsets = gradients ? uint64_t{kOffsets} : 0, radiances = uint64_t(components) * (1 + offsets);
-  const uint64_t half = radiances * sizeof(Radiance) + sizeof(uint32_t) + offsets * sizeof(float);
+  const uint64_t features = rough ? uint64_t(components) * sizeof(RoughVertices) : 0;
+  const uint64_t half = radiances * sizeof(Radiance) + features + sizeof(uint32_t) + offsets * sizeof(float);
   return kHalves * half + pass_bytes_per_pixel(passes) + (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
 }
 

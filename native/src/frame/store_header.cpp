@@ -19,7 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 6;
+constexpr int kFormat = 7;
+constexpr size_t kMostComponents = 64;
 constexpr int kMaxSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
 
@@ -71,12 +72,26 @@ SharedSamples shared_from_json(const json& j, const Region& region) {
   return shared;
 }
 
+json components_to_json(const Frame& frame) {
+  json list = json::array();
+  for (const ComponentPlanes& planes : frame.components) list.push_back({planes.name, planes.expression});
+  return list;
+}
+
+void name_components(const json& list, Frame* frame) {
+  for (size_t i = 0; i < frame->components.size(); ++i) {
+    frame->components[i].name = list.at(i).at(0);
+    frame->components[i].expression = list.at(i).at(1);
+  }
+}
+
 json describe_samples(const Frame& frame) {
   return {{"format", kFormat},
           {"version", gradus_version_text()},
           {"frame", frame.frame_number},
           {"channels", frame.channels},
-          {"components", frame.components.size()},
+          {"components", components_to_json(frame)},
+          {"rough", !frame.components[0].rough[0].empty()},
           {"gradients", frame.gradients},
           {"sampling_key", hex(sampling_key(frame.settings))},
           {"scene_key", hex(frame.scene_key)},
@@ -154,6 +169,7 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   if (frame.channels != 3 && frame.channels != 4) throw damaged("its planes are wrong");
   frame.gradients = description.at("gradients");
   frame.planes = description.at("planes");
+  frame.rough = description.at("rough");
   frame.settings = settings_from_json(description.at("settings"));
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
@@ -180,17 +196,20 @@ FrameHeader read_header(const Imf::Header& header) { return read_header(header, 
 Frame make_frame(const Imf::Header& header, StoredContent content) {
   const json description = description_of(header);
   const FrameHeader known = read_header(header, description);
-  const int components = description.at("components");
-  if (components < 1 || components > 64) throw damaged("its planes are wrong");
-  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
+  const json& names = description.at("components");
+  if (!names.is_array() || names.empty() || names.size() > kMostComponents) throw damaged("its planes are wrong");
+  const int components = int(names.size());
+  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients, rough = is_whole && known.rough;
   const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
   const bool has_fallback = is_whole && wants(known.settings.passes, GRADUS_PASS_FALLBACK);
   const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
-  const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes) * pixels, available = machine_memory_bytes();
+  const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes, rough) * pixels, available = machine_memory_bytes();
   if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   const Imath::V2i last = header.displayWindow().max;
   Frame frame(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, components, gradients);
+  name_components(names, &frame);
+  if (rough) keep_rough_vertices(&frame);
   frame.settings = known.settings;
   frame.frame_number = known.frame_number;
   frame.scene_key = known.scene_key;

@@ -23,6 +23,13 @@ class PlaneList {
       add(layer + "." + (width == 1 ? "V" : kVectorNames[c]), false, plane->data() + c, width * sizeof(float));
     }
   }
+  void rough(const std::string& layer, std::vector<RoughVertices>* plane) {
+    if (plane->empty()) return;
+    for (int c = 0; c < 3; ++c) add(layer + ".reflectance." + kColorNames[c], false, &(*plane)[0].reflectance[c], sizeof(RoughVertices));
+    for (int c = 0; c < 3; ++c) add(layer + ".normal." + kVectorNames[c], false, &(*plane)[0].normal[c], sizeof(RoughVertices));
+    add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(RoughVertices));
+    add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(RoughVertices));
+  }
   void links(const std::string& layer, std::vector<int32_t>* plane) {
     if (!plane->empty()) add(layer + ".V", true, plane->data(), sizeof(int32_t));
   }
@@ -95,6 +102,14 @@ std::vector<StoredPlane> feature(PassPlane* plane) {
   return list.take();
 }
 
+std::vector<StoredPlane> rough(Frame* frame) {
+  PlaneList list;
+  for (int half = 0; half < kHalves; ++half) {
+    for (size_t c = 0; c < frame->components.size(); ++c) list.rough(layer_of(c, half), &frame->components[c].rough[half]);
+  }
+  return list.take();
+}
+
 std::vector<StoredPlane> passes(Frame* frame) {
   PlaneList list;
   for (PassPlane& plane : frame->passes) {
@@ -109,8 +124,11 @@ std::vector<StoredPlane> passes(Frame* frame) {
 }  // namespace
 
 std::vector<StoredPart> stored_parts(Frame* frame) {
-  std::vector<StoredPart> parts = {
-      {"samples", samples(frame)}, {"counts", counts(frame)}, {"gradients", gradients(frame)}, {"pairs", pairs(frame)}};
+  std::vector<StoredPart> parts = {{"samples", samples(frame)},
+                                   {"counts", counts(frame)},
+                                   {"gradients", gradients(frame)},
+                                   {"pairs", pairs(frame)},
+                                   {"rough", rough(frame)}};
   for (PassPlane& plane : frame->passes) {
     if (plane.in_halves) parts.push_back({layer_of(plane), feature(&plane)});
   }

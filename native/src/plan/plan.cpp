@@ -136,6 +136,32 @@ void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* 
   if (plan->channels == 3) plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
 }
 
+// Bits of the classes by which some surface may scatter.
+uint32_t letters_of(const GradusSettings& settings, const SceneFeatures& features) {
+  const float sharp = std::max(settings.roughness_threshold, kSmallestAlpha);
+  const auto bit = [](ScatterClass c) { return 1u << uint32_t(c); };
+  return bit(ScatterClass::Diffuse) | (features.min_alpha < sharp ? bit(ScatterClass::Reflection) : 0) |
+         (features.min_refracting_alpha < sharp ? bit(ScatterClass::Transmission) : 0);
+}
+
+bool shows_light(const SceneFeatures& features) {
+  return features.world_shines || features.has_lamps_with_extent || !features.only_lights_shine;
+}
+
+void choose_components(const GradusSettings& settings, const SceneFeatures& features, Plan* plan) {
+  if (settings.use_decomposition == 0) return;
+  const std::string text = get_text(settings, *find_option("components"));
+  const ComponentSet all = ComponentSet::parse(text);
+  const uint32_t seen = shows_light(features) ? 1u << all.component(PathWord{0}) : 0;
+  plan->rough_vertices = wants_rough_vertices(settings.component_passes);
+  const uint32_t kept = all.reached(letters_of(settings, features)) | seen;
+  plan->components = all.without_empty(kept);
+  std::string names, absent;
+  for (int i = 0; i < all.count(); ++i) add_item(plan->components.find(all[i].name) >= 0 ? &names : &absent, all[i].name);
+  plan->chosen.emplace_back("components " + names, text.empty() ? "automatic: the default set" : "set by the user");
+  if (!absent.empty()) plan->skipped.emplace_back("components " + absent, "by the scene's surfaces and lights no path is of their kind");
+}
+
 void choose_passes(const GradusSettings& settings, Plan* plan) {
   plan->passes = settings.passes;
   if (!features_wanted(*plan)) return;
@@ -182,6 +208,7 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const H
   const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
   plan.unbiased = !plan.adaptive && !clamps;
   list_scene(settings, snapshot, &plan);
+  choose_components(settings, snapshot.features, &plan);
   choose_passes(settings, &plan);
   list_passes(&plan);
   return plan;
@@ -277,11 +304,12 @@ uint64_t quarter_bytes(const Plan& plan) {
 }  // namespace
 
 uint64_t planned_bytes(const Plan& plan) {
-  uint64_t bytes = frame_bytes_per_pixel(1, plan.gradients, plan.passes);
+  uint64_t bytes = frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices);
   bytes += 4 * sizeof(float);  // the noisy image that is shown meanwhile
   uint64_t floats = reconstruction_floats(plan);
   if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is
   if (wants(plan.passes, GRADUS_PASS_ERROR)) floats = std::max(floats, error_floats(plan)) + 1;
+  if (plan.components.count() > 1) bytes += (uint64_t(plan.channels) + 3 * uint64_t(plan.components.count())) * sizeof(float);
   // A reconstruction that is shown stays until the next one is there.
   if (reconstructs(plan)) bytes += (wants(plan.passes, GRADUS_PASS_ERROR) ? 5 : 4) * sizeof(float);
   if (plan.adaptive) {

@@ -1,6 +1,7 @@
 #include "render/combine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "reconstruct/reconstruct_frame.h"
@@ -24,10 +25,15 @@ std::vector<float> crop_error(const Frame& frame, const std::vector<float>& erro
 }
 
 std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
-                           SolveReport* report, std::vector<float>* error) {
+                           SolveReport* report, std::vector<float>* error, std::vector<std::vector<float>>* components) {
   const bool solves = reconstruction != GRADUS_RECONSTRUCTION_NONE;
   Reconstructed solved;
-  if (solves || error != nullptr) solved = reconstruct_frame(frame, reconstruction, alpha, error != nullptr, cancel, report);
+  if (solves || error != nullptr || components != nullptr) {
+    solved = reconstruct_frame(frame, reconstruction, alpha, error != nullptr, cancel, report, components);
+  }
+  if (components != nullptr) {
+    for (std::vector<float>& image : *components) image = crop_component(frame, reconstruction, image, region);
+  }
   if (error != nullptr) *error = crop_error(frame, solved.error, region);
   if (!solves) {
     std::vector<float> rgba(size_t(region.area()) * 4);
@@ -35,6 +41,29 @@ std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float al
     return rgba;
   }
   return crop_picture(frame, reconstruction, solved.image, region);
+}
+
+std::vector<float> crop_component(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
+  const std::vector<float> rgba = crop_picture(frame, reconstruction, image, region);
+  std::vector<float> rgb;
+  rgb.reserve(rgba.size() / 4 * 3);
+  for (size_t i = 0; i < rgba.size(); i += 4) rgb.insert(rgb.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
+  return rgb;
+}
+
+void follow_picture(const std::vector<float>& before, const std::vector<float>& after, std::vector<std::vector<float>>* components) {
+  if (components->empty()) return;
+  for (size_t i = 0; i < before.size() / 4 * 3; ++i) {
+    const size_t value = i / 3 * 4 + i % 3;
+    float light = 0.0f;
+    for (const std::vector<float>& component : *components) light += std::fabs(component[i]);
+    const float change = after[value] - before[value];
+    if (light > 0.0f) {
+      for (std::vector<float>& component : *components) component[i] += change * (std::fabs(component[i]) / light);
+    } else {
+      components->back()[i] += change;
+    }
+  }
 }
 
 std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {

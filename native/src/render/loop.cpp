@@ -8,6 +8,7 @@
 #include "frame/pass_planes.h"
 #include "render/batches.h"
 #include "render/combine.h"
+#include "render/component_read.h"
 #include "render/denoise_and_bill.h"
 #include "render/pass_read.h"
 #include "render/require_memory.h"
@@ -31,16 +32,25 @@ void read_error_of_noisy(const Frame& frame, const Region& region, float* pixels
   std::copy(error.begin(), error.end(), pixels);
 }
 
+void name_planes(const ComponentSet& set, Frame* frame) {
+  for (int c = 0; c < set.count(); ++c) {
+    frame->components[size_t(c)].name = set[c].name;
+    frame->components[size_t(c)].expression = set[c].expression;
+  }
+}
+
 // From here on every pixel has samples of both halves: there is something to reconstruct.
 constexpr uint32_t kBothHalves = 2;
 
 }  // namespace
 
-std::unique_ptr<Integrator> LoopInput::make_integrator(const GradusSettings& its_settings, uint32_t integrator) const {
+std::unique_ptr<Integrator> LoopInput::make_integrator(const GradusSettings& its_settings, uint32_t integrator,
+                                                       ComponentSet components) const {
   IntegratorContext context;
   context.snapshot = snapshot;
   context.camera = Camera(snapshot->camera, its_settings.width, its_settings.height);
   context.settings = its_settings;
+  context.components = std::move(components);
   return factory(context, integrator);
 }
 
@@ -103,7 +113,10 @@ void RenderLoop::prepare() {
     check_gradients(*input_.resumed, !gradients_.none());
     frame = std::make_shared<Frame>(*input_.resumed);
   } else {
-    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, 1, !gradients_.none());
+    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, plan_.components.count(),
+                                    !gradients_.none());
+    name_planes(plan_.components, frame.get());
+    if (plan_.rough_vertices) keep_rough_vertices(frame.get());
     frame->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
     if (wants(plan_.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
@@ -119,7 +132,7 @@ void RenderLoop::prepare() {
   if (input_.replay) frame->replayed = input_.replay->sources;
   stats_.warnings = input_.snapshot->warnings;
 
-  integrator_ = input_.make_integrator(frame->settings, integrator);
+  integrator_ = input_.make_integrator(frame->settings, integrator, plan_.components);
   picture_.expect_tiles();
   if (input_.resumed) picture_.show_tile(*frame, plan_.delivered);
   const std::lock_guard lock(mutex_);
@@ -279,6 +292,28 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   if (frame && pass == GRADUS_PASS_ERROR && wants(plan_.passes, pass)) return read_error_of_noisy(*frame, plan_.delivered, pixels);
   if (frame) return read_frame_pass(*frame, pass, plan_.delivered, pixels);
   std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
+}
+
+void RenderLoop::read_component(const std::string& name, uint32_t pass, float* pixels) const {
+  const GradusSettings& settings = input_.settings;
+  check_component(settings, name);
+  std::shared_ptr<const Frame> frame;
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_sampling()) throw invalid_operation("component " + name + " comes when sampling has ended");
+    frame = frame_;
+  }
+  const int component = plan_.components.find(name);
+  if (!frame || component < 0) {
+    return static_cast<void>(std::fill_n(pixels, size_t(plan_.delivered.area()) * component_pass_info(pass).channels, 0.0f));
+  }
+  if (!wants(settings.component_passes, pass))
+    throw invalid_operation("pass " + std::string(component_pass_info(pass).name) + " of components was not asked for");
+  std::vector<float> color = picture_.component(component);
+  if (color.empty() && is_of_picture(pass)) {  // it was cancelled
+    color = crop_component(*frame, GRADUS_RECONSTRUCTION_NONE, read_images(*frame, component).primal, plan_.delivered);
+  }
+  read_component_pass(*frame, component, pass, plan_.delivered, color, pixels);
 }
 
 std::string RenderLoop::stats() const {

@@ -35,6 +35,7 @@ class RenderLoop final : public RenderTask {
 
   const Region& delivered() const override { return plan_.delivered; }
   void read_pass(uint32_t pass, float* pixels) const override;
+  void read_component(const std::string& name, uint32_t pass, float* pixels) const override;
   std::string stats() const override;
   std::shared_ptr<const Frame> frame() const override;
 

@@ -40,7 +40,7 @@ struct LoopInput {
     return planned;
   }
   // An integrator of the snapshot's camera, for settings that may differ from the render's.
-  std::unique_ptr<Integrator> make_integrator(const GradusSettings& its_settings, uint32_t integrator) const;
+  std::unique_ptr<Integrator> make_integrator(const GradusSettings& its_settings, uint32_t integrator, ComponentSet components = {}) const;
 };
 
 }  // namespace gradus

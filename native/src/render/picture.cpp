@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "frame/cells.h"
+#include "render/combine.h"
 #include "render/pass_read.h"
 
 namespace gradus {
@@ -26,14 +27,16 @@ void Picture::show_tile(const Frame& frame, const Region& tile) {
   }
 }
 
-void Picture::show(std::vector<float> rgba, std::vector<float> error) {
+void Picture::show(std::vector<float> rgba, std::vector<float> error, std::vector<std::vector<float>> components) {
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
   error_ = std::move(error);
+  components_ = std::move(components);
 }
 
 void Picture::show_denoised(std::vector<float> rgba, float error) {
   const std::lock_guard lock(mutex_);
+  follow_picture(combined_, rgba, &components_);
   combined_ = std::move(rgba);
   for (float& value : error_) value *= error;
 }
@@ -59,9 +62,16 @@ bool Picture::read(uint32_t pass, float* pixels) const {
   return true;
 }
 
+std::vector<float> Picture::component(int number) const {
+  const std::lock_guard lock(mutex_);
+  return size_t(number) < components_.size() ? components_[size_t(number)] : std::vector<float>();
+}
+
 size_t Picture::memory_bytes() const {
   const std::lock_guard lock(mutex_);
-  return (noisy_.size() + combined_.size() + error_.size()) * sizeof(float);
+  size_t values = noisy_.size() + combined_.size() + error_.size();
+  for (const std::vector<float>& component : components_) values += component.size();
+  return values * sizeof(float);
 }
 
 }  // namespace gradus

@@ -20,7 +20,8 @@ class Picture {
   // What the tile has now becomes what is seen of it in the noisy image.
   void show_tile(const Frame& frame, const Region& tile);
   // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
-  void show(std::vector<float> rgba, std::vector<float> error);
+  // components: RGB of each, or none.
+  void show(std::vector<float> rgba, std::vector<float> error, std::vector<std::vector<float>> components = {});
   // In place of what was shown. error: its squared error, over that of what was shown.
   void show_denoised(std::vector<float> rgba, float error);
   // From now on the frame tells what the noisy image is.
@@ -31,6 +32,8 @@ class Picture {
   const std::vector<float>& combined() const { return combined_; }
   // False: there is nothing of this pass.
   bool read(uint32_t pass, float* pixels) const;
+  // Of a component; empty where there is none.
+  std::vector<float> component(int number) const;
   size_t memory_bytes() const;
 
  private:
@@ -38,6 +41,7 @@ class Picture {
   mutable std::mutex mutex_;
   std::vector<float> noisy_, combined_;  // RGBA; empty where there is none
   std::vector<float> error_;
+  std::vector<std::vector<float>> components_;
 };
 
 }  // namespace gradus

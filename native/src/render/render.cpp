@@ -90,6 +90,15 @@ void Render::read_pass(uint32_t pass, float* pixels, size_t count) const {
   state_->task->read_pass(pass, pixels);
 }
 
+void Render::read_component(const std::string& name, uint32_t pass, float* pixels, size_t count) const {
+  const size_t expected = size_t(state_->task->delivered().area()) * component_pass_info(pass).channels;
+  if (count != expected) {
+    throw invalid_argument("pass " + std::string(component_pass_info(pass).name) + " has " + std::to_string(expected) + " floats, " +
+                           std::to_string(count) + " were given");
+  }
+  state_->task->read_component(name, pass, pixels);
+}
+
 std::string Render::stats_json() const { return state_->task->stats(); }
 std::shared_ptr<const Frame> Render::frame() const { return state_->task->frame(); }
 

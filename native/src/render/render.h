@@ -41,6 +41,8 @@ class Render {
   // first one; so is Combined until its reader, a watcher, is shown more (render/live_view.h). Never waits. Others: invalid_operation until
   // then.
   void read_pass(uint32_t pass, float* pixels, size_t count) const;
+  // Of a component, once sampling has ended: invalid_operation until then.
+  void read_component(const std::string& name, uint32_t pass, float* pixels, size_t count) const;
   // Throw invalid_operation while running.
   std::string stats_json() const;
   std::shared_ptr<const Frame> frame() const;

@@ -36,6 +36,8 @@ class RenderTask {
   // What read_pass() gives.
   virtual const Region& delivered() const = 0;
   virtual void read_pass(uint32_t pass, float* pixels) const = 0;
+  // Of a component.
+  virtual void read_component(const std::string& name, uint32_t pass, float* pixels) const = 0;
   virtual std::string stats() const = 0;
   virtual std::shared_ptr<const Frame> frame() const = 0;
 

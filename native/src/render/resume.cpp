@@ -4,7 +4,9 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/text_list.h"
 #include "frame/cells.h"
+#include "frame/gate.h"
 #include "frame/pass_planes.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
@@ -31,6 +33,7 @@ void add_planes(PassPlane* to, const PassPlane& from) {
 }
 
 bool same_planes(const Frame& a, const Frame& b) {
+  if (a.components[0].rough[0].size() != b.components[0].rough[0].size()) return false;
   if (a.passes.size() != b.passes.size() || a.fallback.size() != b.fallback.size()) return false;
   for (size_t i = 0; i < a.passes.size(); ++i) {
     if (a.passes[i].pass != b.passes[i].pass) return false;
@@ -75,9 +78,15 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
   if (frame.region != plan.sampled || frame.settings.first_sample != settings.first_sample) {
     throw invalid_argument("the frame has another region or first sample");
   }
+  std::string wanted;
+  for (int c = 0; c < plan.components.count(); ++c) add_item(&wanted, plan.components[c].name);
+  if (component_names(frame) != wanted)
+    throw invalid_argument("the frame holds the components " + component_names(frame) + ", and the render has " + wanted);
   const std::string gap = frame.samples.first_gap(settings.first_sample);
   if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
   if (frame.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
+  if (plan.rough_vertices && frame.components[0].rough[0].empty())
+    throw invalid_argument("the frame was sampled without the passes of components");
   const uint64_t kept = kept_passes(frame);
   for (const PassInfo& info : stored_passes(plan.passes)) {
     if (!wants(kept, info.pass)) throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
@@ -90,6 +99,9 @@ void add_sums(Frame* frame, const Frame& other) {
   for (int half = 0; half < kHalves; ++half) {
     for (size_t c = 0; c < frame->components.size(); ++c) {
       add(&frame->components[c].primal[half], other.components[c].primal[half]);
+      for (size_t i = 0; i < frame->components[c].rough[half].size(); ++i) {
+        add_rough(other.components[c].rough[half][i], &frame->components[c].rough[half][i], &frame->counters);
+      }
       for (int o = 0; o < kOffsets; ++o) add(&frame->components[c].gradient[half][o], other.components[c].gradient[half][o]);
     }
     add(&frame->count[half], other.count[half]);
@@ -105,9 +117,11 @@ void merge_frames(Frame* frame, const Frame& other) {
   if (sampling_key(frame->settings) != sampling_key(other.settings))
     throw invalid_argument("the frames were sampled with different settings");
   if (frame->region != other.region || frame->channels != other.channels || frame->gradients != other.gradients ||
-      frame->components.size() != other.components.size() || !same_planes(*frame, other)) {
+      !same_planes(*frame, other)) {
     throw invalid_argument("the frames differ in size or planes");
   }
+  if (!same_components(*frame, other))
+    throw invalid_argument("the frames hold different components: " + component_names(*frame) + ", and " + component_names(other));
   if (frame->samples.overlap(other.samples)) {
     const uint32_t end = std::max(frame->samples.list().back().end, other.samples.list().back().end);
     throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));

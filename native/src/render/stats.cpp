@@ -74,6 +74,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["reconstruction"] = choice_name(*find_option("reconstruction"), settings.reconstruction);
   j["denoiser"] = stats.denoiser.empty() ? json(nullptr) : json(stats.denoiser);
   j["unbiased"] = delivers_unbiased(plan, settings.reconstruction, settings.denoiser != GRADUS_DENOISER_NONE);
+  for (const ComponentPlanes& planes : frame.components) j["components"].push_back(planes.name);
   j["samples"] = mean_samples(frame);
   j["spp_base"] = mean_samples(frame) - stats.offset_samples;
   j["spp_offset"] = stats.offset_samples;

@@ -143,7 +143,9 @@ void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps
 
 void find_sharpest(Snapshot* snapshot) {
   const auto look_at = [&](uint32_t m) {
-    snapshot->features.min_alpha = std::min(snapshot->features.min_alpha, snapshot->materials[m]->min_alpha);
+    SceneFeatures& features = snapshot->features;
+    features.min_alpha = std::min(features.min_alpha, snapshot->materials[m]->min_alpha);
+    features.min_refracting_alpha = std::min(features.min_refracting_alpha, snapshot->materials[m]->min_refracting_alpha);
   };
   for (const InstanceData& instance : snapshot->instances) std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
 }

@@ -55,7 +55,8 @@ struct InstanceData : Placement {
 struct SceneFeatures {
   bool has_transparent_shadows = false;
   bool has_lamps_with_extent = false;
-  float min_alpha = 1.0f;  // roughness: surely no lobe is sharper
+  float min_alpha = 1.0f;                  // roughness: surely no lobe is sharper
+  float min_refracting_alpha = kInfinity;  // likewise, of those that refract; infinite: there are none
   bool has_emitters = false;
   bool only_lights_shine = false;  // no surface has anything to show to a ray that ends a path: it sees lamps and the world alone
   bool world_shines = true;

@@ -44,6 +44,20 @@ struct ComponentPassInfo {
 // Throws invalid_argument for a number that is none.
 const ComponentPassInfo& component_pass_info(uint32_t pass);
 
+// Those that are made of a component's picture, and of the first rough vertices of its paths.
+constexpr bool is_of_picture(uint32_t component_pass) {
+  return component_pass == GRADUS_COMPONENT_COLOR || component_pass == GRADUS_COMPONENT_IRRADIANCE;
+}
+// Some pass of the components' pictures is wanted.
+inline bool wants_pictures(const GradusSettings& settings) {
+  constexpr uint32_t of_pictures = 1u << GRADUS_COMPONENT_COLOR | 1u << GRADUS_COMPONENT_IRRADIANCE;
+  return settings.use_decomposition != 0 && (settings.component_passes & of_pictures) != 0;
+}
+constexpr bool wants_rough_vertices(uint32_t component_passes) {
+  return (component_passes >> GRADUS_COMPONENT_REFLECTANCE & 1) != 0 || (component_passes >> GRADUS_COMPONENT_IRRADIANCE & 1) != 0 ||
+         (component_passes >> GRADUS_COMPONENT_NORMAL & 1) != 0;
+}
+
 inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
 
 // `passes` plus what they need: the colours that light passes are divided by.

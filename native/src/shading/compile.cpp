@@ -94,6 +94,7 @@ class Analysis {
       sharpen_by_coat(i);
     }
     m_.may_transmit = m_.may_transmit || transmits;
+    if (transmits && rough >= 0) m_.min_refracting_alpha = std::min(m_.min_refracting_alpha, narrowest_alpha(i, rough));
   }
 
   const Program& p_;

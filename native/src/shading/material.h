@@ -30,11 +30,12 @@ struct MaterialData {
   bool transparent_shadow = true;  // 0: shadow rays take it for opaque
   bool sample_as_light = true;
   bool uses_fallback = false;
-  bool depends_on_ray = false;        // uses Light Path, or the direction it is seen from, in emission
-  bool values_look_at_ray = false;    // some value of `surface` does; closures aside
-  bool depends_on_kind = false;       // emission or transparency look at the kind of ray beyond camera or not, or at its depth
-  float min_alpha = 1.0f;             // of all lobes, where known; 0 where a texture decides
-  bool emission_is_constant = false;  // over points and directions; then:
+  bool depends_on_ray = false;             // uses Light Path, or the direction it is seen from, in emission
+  bool values_look_at_ray = false;         // some value of `surface` does; closures aside
+  bool depends_on_kind = false;            // emission or transparency look at the kind of ray beyond camera or not, or at its depth
+  float min_alpha = 1.0f;                  // of all lobes, where known; 0 where a texture decides
+  float min_refracting_alpha = kInfinity;  // likewise, of lobes that refract; infinite where there is none
+  bool emission_is_constant = false;       // over points and directions; then:
   Rgb constant_emission = Rgb(0.0f);
   bool transparency_is_constant = false;
   Rgb constant_transparency = Rgb(0.0f);

@@ -2,6 +2,7 @@
 
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "frame/read_pixels.h"
@@ -11,10 +12,21 @@ namespace gradus {
 
 namespace {
 
+// *sum is empty before the first.
+void add(GradientImages term, GradientImages* sum) {
+  if (sum->primal.empty()) return static_cast<void>(*sum = std::move(term));
+  for (auto plane : {&GradientImages::primal, &GradientImages::dx, &GradientImages::dy}) {
+    for (size_t i = 0; i < (sum->*plane).size(); ++i) (sum->*plane)[i] += (term.*plane)[i];
+  }
+}
+
 HalvedImages read_halved(const Frame& frame, TemporalContent content) {
-  HalvedImages images{content.gradients ? read_images(frame, 0) : read_pixels(frame, 0), {}};
-  if (!content.halves) return images;
-  images.half_differences = content.gradients ? read_half_differences(frame, 0) : read_half_differences_of_pixels(frame, 0);
+  HalvedImages images;
+  for (int c = 0; c < int(frame.components.size()); ++c) {
+    add(content.gradients ? read_images(frame, c) : read_pixels(frame, c), &images.values);
+    if (!content.halves) continue;
+    add(content.gradients ? read_half_differences(frame, c) : read_half_differences_of_pixels(frame, c), &images.half_differences);
+  }
   return images;
 }
 

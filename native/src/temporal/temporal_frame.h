@@ -28,7 +28,7 @@ struct TemporalFrame {
   SampleSources replayed;           // and whose the replay has
 };
 
-// Of their first components. Throws invalid_argument where the two do not belong together.
+// Of all their components together. Throws invalid_argument where the two do not belong together.
 TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content = {});
 // Of one of the two: all that differences over time from the frame to the next, or to the frame from the one before, read of it.
 TemporalFrame make_base(const Frame& base, TemporalContent content);

@@ -5,7 +5,9 @@
 #include "base/bill.h"
 #include "base/error.h"
 #include "frame/features.h"
+#include "reconstruct/reconstruct_frame.h"
 #include "render/combine.h"
+#include "render/component_read.h"
 #include "render/denoise_and_bill.h"
 #include "render/pass_read.h"
 #include "settings/options.h"
@@ -110,12 +112,20 @@ void FrameDelivery::reconstruct() {
   const bool with_error = wants(settings.passes, GRADUS_PASS_ERROR);
   const Region& region = record_.plan.delivered;
   Reconstructed picture;
+  std::vector<std::vector<float>> components;
   try {
-    SequencePictures* pictures = sequence_->pictures({settings.reconstruction, settings.reconstruction_alpha, with_error}, number_);
-    picture = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
-    stop_if_asked();
+    for (const ComponentPlanes& planes : frame_->components) {
+      const SequenceMethod method{settings.reconstruction, settings.reconstruction_alpha, with_error};
+      SequencePictures* pictures = sequence_->pictures(planes.name, method, number_);
+      Reconstructed part = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
+      stop_if_asked();
+      clamp_component(*frame_, settings.reconstruction, frame_->components.size(), &part.image);
+      if (wants_pictures(settings)) components.push_back(crop_component(*frame_, settings.reconstruction, part.image, region));
+      add_image(std::move(part.image), &picture.image);
+      add_image(std::move(part.error), &picture.error);
+    }
   } catch (...) {
-    sequence_->pictures_.reset();  // a window that was not solved has left no share in its frames
+    sequence_->pictures_.clear();  // a window that was not solved has left no share in its frames
     throw;
   }
   std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, picture.image, region);
@@ -124,6 +134,7 @@ void FrameDelivery::reconstruct() {
   const std::lock_guard lock(mutex_);
   combined_ = std::move(rgba);
   error_ = std::move(error);
+  components_ = std::move(components);
 }
 
 void FrameDelivery::denoise() {
@@ -136,6 +147,7 @@ void FrameDelivery::denoise() {
   std::vector<float> rgba = denoise_and_bill(*library, *frame_, record_.plan.delivered, threads, cancel, combined_, &record_.stats);
   if (rgba.empty()) return;
   const std::lock_guard lock(mutex_);
+  follow_picture(combined_, rgba, &components_);
   combined_ = std::move(rgba);
   for (float& value : error_) value *= denoised_error(frame_->settings.reconstruction);
 }
@@ -201,6 +213,18 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
     return;
   }
   read_frame_pass(*frame_, pass, region, pixels);
+}
+
+void FrameDelivery::read_component(const std::string& name, uint32_t pass, float* pixels) const {
+  const std::lock_guard lock(mutex_);
+  require_frame(frame_, "its passes come", kNotDelivered);
+  check_component(frame_->settings, name);
+  const Region& region = record_.plan.delivered;
+  const int place = find_component(*frame_, name);
+  if (place < 0 || size_t(place) >= components_.size()) {  // no path is of its kind, or nothing is known of its picture
+    return static_cast<void>(std::fill_n(pixels, size_t(region.area()) * component_pass_info(pass).channels, 0.0f));
+  }
+  read_component_pass(*frame_, place, pass, region, components_[size_t(place)], pixels);
 }
 
 std::string FrameDelivery::stats() const {

@@ -15,6 +15,7 @@ class FrameDelivery final : public RenderTask {
 
   const Region& delivered() const override;
   void read_pass(uint32_t pass, float* pixels) const override;
+  void read_component(const std::string& name, uint32_t pass, float* pixels) const override;
   std::string stats() const override;
   std::shared_ptr<const Frame> frame() const override;
 
@@ -34,8 +35,9 @@ class FrameDelivery final : public RenderTask {
   const std::optional<GradusSettings> changed_;
   FrameRecord record_;
   std::shared_ptr<Frame> frame_;
-  std::vector<float> combined_, error_;   // of the region: RGBA, and pass Error where it is asked for
-  std::vector<float> difference_, link_;  // to the next frame; three values per pixel of the region
+  std::vector<float> combined_, error_;         // of the region: RGBA, and pass Error where it is asked for
+  std::vector<std::vector<float>> components_;  // RGB of each
+  std::vector<float> difference_, link_;        // to the next frame; three values per pixel of the region
 };
 
 }  // namespace gradus

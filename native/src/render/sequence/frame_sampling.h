@@ -19,6 +19,7 @@ class FrameSampling final : public RenderTask {
   const Region& delivered() const override { return base_.delivered(); }
   // Of its own half.
   void read_pass(uint32_t pass, float* pixels) const override { base_.read_pass(pass, pixels); }
+  void read_component(const std::string& name, uint32_t pass, float* pixels) const override { base_.read_component(name, pass, pixels); }
   std::string stats() const override;
   std::shared_ptr<const Frame> frame() const override;
 

@@ -122,7 +122,7 @@ FrameRange Sequence::needs(int32_t frame) const {
 
 void Sequence::end_at(int32_t frame) {
   last_ = std::min(last_, frame);
-  if (pictures_) pictures_->end_at(place_of(last_));
+  for (auto& [component, pictures] : pictures_) pictures->end_at(place_of(last_));
 }
 
 std::unique_ptr<RenderTask> Sequence::sample(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
@@ -158,15 +158,18 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
   return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
 }
 
-LoadPart Sequence::load_part(FramePart part) const {
-  return [this, part](int place, const CancelTest& cancel) {
-    return read_or_name_the_way_out([&] { return folder_.load(frame_at(place), part, StoredContent::kAll, cancel); });
+LoadPart Sequence::load_part(FramePart part, const std::string& component) const {
+  return [this, part, component](int place, const CancelTest& cancel) {
+    const auto frame = read_or_name_the_way_out([&] { return folder_.load(frame_at(place), part, StoredContent::kAll, cancel); });
+    keep_component(component, frame.get());
+    return frame;
   };
 }
 
 void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
   if (base->count[0].size() != offset.count[0].size() || base->channels != offset.channels || base->gradients != offset.gradients ||
-      base->passes.size() != offset.passes.size() || sampling_key(base->settings) != sampling_key(offset.settings)) {
+      base->passes.size() != offset.passes.size() || !same_components(*base, offset) ||
+      sampling_key(base->settings) != sampling_key(offset.settings)) {
     throw invalid_argument("stored frame " + folder_.path(number, FramePart::kBase) + " and its offset do not belong together");
   }
   add_sums(base, offset);
@@ -176,8 +179,8 @@ void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
   base->shared = {};
 }
 
-SequenceSource Sequence::source(const SequenceMethod& method) const {
-  const LoadPart base = load_part(FramePart::kBase), offset = load_part(FramePart::kOffset);
+SequenceSource Sequence::source(const SequenceMethod& method, const std::string& component) const {
+  const LoadPart base = load_part(FramePart::kBase, component), offset = load_part(FramePart::kOffset, component);
   const auto merged = [this](int place, std::shared_ptr<Frame> frame, const Frame& replay) {
     merge(frame_at(place), frame.get(), replay);
     return frame;
@@ -189,22 +192,23 @@ SequenceSource Sequence::source(const SequenceMethod& method) const {
           [streamed](int place, const CancelTest& cancel) { return streamed->differences(place, cancel); }};
 }
 
-SequencePictures* Sequence::pictures(const SequenceMethod& method, int32_t frame) {
+SequencePictures* Sequence::pictures(const std::string& component, const SequenceMethod& method, int32_t frame) {
   const int place = place_of(frame);
-  if (!pictures_ || !(pictures_->method() == method) || !pictures_->has(place)) {
+  std::unique_ptr<SequencePictures>& pictures = pictures_[component];
+  if (!pictures || !(pictures->method() == method) || !pictures->has(place)) {
     FrameRange places = places_with_neighbours();
     const int begin = WindowGrid(places, settings_.windows).around(place).first;
     int first = place;
     while (first > begin && goes_on_at(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
-    pictures_ = std::make_unique<SequencePictures>(places, settings_.windows, source(method), method);
-    if (last_ < settings_.last) pictures_->end_at(place_of(last_));
+    pictures = std::make_unique<SequencePictures>(places, settings_.windows, source(method, component), method);
+    if (last_ < settings_.last) pictures->end_at(place_of(last_));
   }
   int last = place;
-  const int end = pictures_->around(place).last;
+  const int end = pictures->around(place).last;
   while (last < end && goes_on_at(last + 1, method.reconstruction)) ++last;
-  if (last < end) pictures_->end_at(last);
-  return pictures_.get();
+  if (last < end) pictures->end_at(last);
+  return pictures.get();
 }
 
 void Sequence::forget_before(int32_t frame) {

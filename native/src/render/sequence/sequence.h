@@ -69,12 +69,13 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
   bool goes_on_at(int place, uint32_t reconstruction);
   const FrameForm& form_at(int place);
-  LoadPart load_part(FramePart part) const;
+  // Of a component alone.
+  LoadPart load_part(FramePart part, const std::string& component) const;
   // All samples of a frame, in the place of its own half.
   void merge(int32_t frame, Frame* base, const Frame& offset) const;
-  SequenceSource source(const SequenceMethod& method) const;
-  // That have the picture of `frame`: begun anew where it was taken before, or by another method.
-  SequencePictures* pictures(const SequenceMethod& method, int32_t frame);
+  SequenceSource source(const SequenceMethod& method, const std::string& component) const;
+  // Of a component, that have the picture of `frame`: begun anew where it was taken before, or by another method.
+  SequencePictures* pictures(const std::string& component, const SequenceMethod& method, int32_t frame);
   // Those that no picture to come needs.
   void forget_before(int32_t frame);
 
@@ -88,7 +89,7 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   std::map<int32_t, FrameRecord> records_;
   std::map<int32_t, FrameForm> forms_;  // of frames that were sampled or looked at
   std::set<int32_t> passed_by_;
-  std::unique_ptr<SequencePictures> pictures_;
+  std::map<std::string, std::unique_ptr<SequencePictures>> pictures_;  // by component
 };
 
 }  // namespace gradus

@@ -1,0 +1,58 @@
+#include "render/component_read.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "path/components.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// Below this a surface tells nothing of the light that falls on it.
+constexpr float kLeastReflectance = 1e-3f;
+
+// Mean over the samples that have met a rough vertex; 0 where none has.
+RoughVertices mean_at(const ComponentPlanes& planes, size_t i) {
+  const RoughVertices &a = planes.rough[0][i], &b = planes.rough[1][i];
+  const float samples = a.samples + b.samples, factor = samples > 0.0f ? 1.0f / samples : 0.0f;
+  return {factor * (a.reflectance + b.reflectance), factor * (a.normal + b.normal), factor * (a.depth + b.depth), samples};
+}
+
+Vec3 value_of(uint32_t pass, const RoughVertices& mean, const Vec3& color) {
+  if (pass == GRADUS_COMPONENT_REFLECTANCE) return mean.reflectance;
+  if (pass == GRADUS_COMPONENT_NORMAL) return mean.normal;
+  Vec3 irradiance = color;
+  for (int c = 0; c < 3; ++c) irradiance[c] /= mean.reflectance[c] >= kLeastReflectance ? mean.reflectance[c] : 1.0f;
+  return irradiance;
+}
+
+}  // namespace
+
+void check_component(const GradusSettings& settings, const std::string& name) {
+  if (settings.use_decomposition == 0) throw invalid_argument("the picture was not taken apart into components: set use_decomposition");
+  const ComponentSet set = ComponentSet::parse(get_text(settings, *find_option("components")));
+  if (set.find(name) < 0) throw invalid_argument("there is no component " + name);
+}
+
+void read_component_pass(const Frame& frame, int component, uint32_t pass, const Region& region, const std::vector<float>& color,
+                         float* pixels) {
+  const ComponentPassInfo& info = component_pass_info(pass);
+  if (pass == GRADUS_COMPONENT_COLOR) return static_cast<void>(std::copy(color.begin(), color.end(), pixels));
+  if (pass == GRADUS_COMPONENT_MOTION || pass == GRADUS_COMPONENT_TRACKED) {
+    return static_cast<void>(std::fill_n(pixels, size_t(region.area()) * info.channels, 0.0f));
+  }
+  const ComponentPlanes& planes = frame.components[size_t(component)];
+  if (planes.rough[0].empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    for (int32_t x = region.x0; x < region.x1; ++x, pixels += 3) {
+      const size_t out = 3 * (size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0));
+      const Vec3 light = is_of_picture(pass) ? Vec3(color[out], color[out + 1], color[out + 2]) : Vec3(0.0f);
+      const Vec3 value = value_of(pass, mean_at(planes, frame.index(x, y)), light);
+      for (int c = 0; c < 3; ++c) pixels[c] = value[c];
+    }
+  }
+}
+
+}  // namespace gradus

@@ -1,0 +1,18 @@
+// Passes of components (contract 6.6).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// Throws invalid_argument: the settings have no component of that name.
+void check_component(const GradusSettings& settings, const std::string& name);
+// Pixels of `region`. color: the component's picture there, RGB, where the pass is made of it. Throws invalid_operation if the frame was
+// sampled without what the pass is made of.
+void read_component_pass(const Frame& frame, int component, uint32_t pass, const Region& region, const std::vector<float>& color,
+                         float* pixels);
+
+}  // namespace gradus
