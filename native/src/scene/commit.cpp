@@ -9,6 +9,7 @@
 #include "scene/emitter_table.h"
 #include "scene/lamp_scene.h"
 #include "scene/scene_state.h"
+#include "scene/snapshot_geometry.h"
 #include "scene/tangent_field.h"
 #include "shading/material.h"
 
@@ -29,44 +30,6 @@ void assign_materials(const InstanceArrays& arrays, const std::vector<size_t>& c
     slots.resize(arrays.material_count[chosen[k]]);
     for (size_t s = 0; s < slots.size(); ++s) slots[s] = index_of(indices, keys[s], 0);
   }
-}
-
-template <class Test>
-bool any_material(const Snapshot& snapshot, const InstanceData& instance, Test&& test) {
-  if (instance.materials.empty()) return test(*snapshot.materials[0]);
-  return std::any_of(instance.materials.begin(), instance.materials.end(), [&](uint32_t m) { return test(*snapshot.materials[m]); });
-}
-
-bool lets_shadows_through(const Snapshot& snapshot, const InstanceData& instance) {
-  return any_material(snapshot, instance, [](const MaterialData& m) { return m.may_be_transparent && m.transparent_shadow; });
-}
-
-uint32_t embree_mask(const InstanceData& instance, bool transparent) {
-  uint32_t mask = instance.visibility & kMaskVisibility;
-  if (mask & GRADUS_VISIBLE_SHADOW) mask |= transparent ? kMaskTransparentShadow : kMaskOpaqueShadow;
-  return mask;
-}
-
-void refer_to_triangles(const Accelerator::Part& part, Snapshot* snapshot) {
-  for (size_t k = 0; k < part.instances.size(); ++k) {
-    const FlatTriangles& flat = part.group->flat_triangles[k];
-    snapshot->instances[part.instances[k]].flat_triangles = flat.empty() ? nullptr : flat.data();
-  }
-}
-
-void build_geometry(const std::shared_ptr<Device>& device, const std::vector<size_t>& chosen, const BuildProgress& progress,
-                    Scene::State* state, Snapshot* snapshot) {
-  std::vector<uint32_t> masks(chosen.size());
-  for (size_t k = 0; k < chosen.size(); ++k) {
-    const bool transparent = lets_shadows_through(*snapshot, snapshot->instances[k]);
-    masks[k] = embree_mask(snapshot->instances[k], transparent);
-    snapshot->features.has_transparent_shadows |= transparent && (masks[k] & kMaskTransparentShadow);
-  }
-  const auto exact = [&](size_t k) { return internal_matrix(state->instances.matrices[chosen[k]], snapshot->origin); };
-  state->accelerator = build_accelerator(device, {&snapshot->instances, &masks, exact}, progress, state->accelerator);
-  snapshot->accelerator = state->accelerator;
-  refer_to_triangles(snapshot->accelerator->resting, snapshot);
-  refer_to_triangles(snapshot->accelerator->moving, snapshot);
 }
 
 void move_matrix(float* matrix, const Vec3& origin) {
@@ -209,7 +172,9 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     assign_materials(state_->instances, chosen, materials, snapshot.get());
     add_tangents(state_->current.get(), snapshot.get());
     monitor.check();
-    build_geometry(device_, chosen, monitor.step(0.25f, 0.8f), state_.get(), snapshot.get());
+    const auto exact = [&](size_t k) { return internal_matrix(state_->instances.matrices[chosen[k]], snapshot->origin); };
+    build_geometry(device_, exact, monitor.step(0.25f, 0.8f), state_->accelerator, snapshot.get());
+    state_->accelerator = snapshot->accelerator;
     place_camera(*state_, snapshot.get());
     find_motion(snapshot.get());
     place_world(*state_, materials, snapshot.get());

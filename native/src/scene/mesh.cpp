@@ -36,15 +36,21 @@ Vec3 turned_with_vertex(const MeshData& mesh, uint32_t vertex, float time, const
 
 std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle) { return positions_of_key(mesh, triangle, mesh.rest_key); }
 
-std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangle, float time) {
+MeshMoment mesh_moment(const MeshData& mesh, float time) {
   const auto& times = mesh.key_times;
-  if (times.size() < 2 || time <= times.front()) return positions_of_key(mesh, triangle, 0);
-  if (time >= times.back()) return positions_of_key(mesh, triangle, uint32_t(times.size()) - 1);
+  const auto last = uint32_t(times.size()) - 1;
+  if (last == 0 || time <= times.front()) return {0, 0, 0.0f};
+  if (time >= times.back()) return {last, last, 0.0f};
   const auto after = uint32_t(std::upper_bound(times.begin(), times.end(), time) - times.begin());
-  const float f = (time - times[after - 1]) / (times[after] - times[after - 1]);
-  std::array<Vec3, 3> a = positions_of_key(mesh, triangle, after - 1);
-  const std::array<Vec3, 3> b = positions_of_key(mesh, triangle, after);
-  for (size_t i = 0; i < 3; ++i) a[i] += (b[i] - a[i]) * f;
+  return {after - 1, after, (time - times[after - 1]) / (times[after] - times[after - 1])};
+}
+
+std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangle, float time) {
+  const MeshMoment moment = mesh_moment(mesh, time);
+  std::array<Vec3, 3> a = positions_of_key(mesh, triangle, moment.before);
+  if (moment.after == moment.before) return a;
+  const std::array<Vec3, 3> b = positions_of_key(mesh, triangle, moment.after);
+  for (size_t i = 0; i < 3; ++i) a[i] += (b[i] - a[i]) * moment.share;
   return a;
 }
 

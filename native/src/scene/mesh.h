@@ -70,6 +70,12 @@ T interpolate(const std::array<T, 3>& v, const Vec2& barycentric) {
   return v[0] * (1.0f - barycentric.x - barycentric.y) + v[1] * barycentric.x + v[2] * barycentric.y;
 }
 
+// Place of a time (frames relative to the one rendered) among a mesh's keys: the share of the second.
+struct MeshMoment {
+  uint32_t before = 0, after = 0;
+  float share = 0.0f;
+};
+MeshMoment mesh_moment(const MeshData& mesh, float time);
 // Local vertex positions of a triangle at a time (frames relative to the one rendered), linear between keys.
 std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle);
 std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangle, float time);

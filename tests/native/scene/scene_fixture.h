@@ -178,6 +178,7 @@ class TestScene {
     instances.meshes = meshes_.data();
     instances.matrices = matrices_.empty() ? nullptr : &matrices_[0][0][0];
     if (matrices_before.size() == matrices_.size()) instances.matrices_previous = &matrices_before[0][0][0];
+    if (matrices_after.size() == matrices_.size()) instances.matrices_next = &matrices_after[0][0][0];
     instances.visibility = visibility_.data();
     instances.material_first = first_.data();
     instances.material_count = count_.data();
@@ -195,6 +196,7 @@ class TestScene {
 
   Scene scene;
   std::vector<Mat4> matrices_before;      // one frame earlier, of all instances; of another number: at rest
+  std::vector<Mat4> matrices_after;       // one frame later, likewise
   float shadow_terminator_offset = 0.0f;  // of the instances that follow
   std::vector<Mat4> way;                  // theirs while the shutter is open, times their matrix; empty: at rest
 

@@ -1,0 +1,16 @@
+// The scene one frame earlier or later, as far as vectors know it.
+#pragma once
+
+#include <memory>
+
+#include "base/cancel_test.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+// when: Previous or Next. Objects, shapes and the camera are where they are then, at rest; materials and lights are those of the frame.
+// What does not move is shared. Throws Error CANCELLED or OUT_OF_MEMORY.
+std::shared_ptr<const Snapshot> moved_snapshot(
+    const Snapshot& snapshot, Moment when, const CancelTest& is_cancelled = [] { return false; });
+
+}  // namespace gradus

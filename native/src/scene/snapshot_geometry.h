@@ -1,0 +1,16 @@
+// What rays meet of a snapshot: built of its instances and their materials.
+#pragma once
+
+#include <memory>
+
+#include "scene/accelerator.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+// Fills accelerator, the instances' flat triangles and has_transparent_shadows. before: of another snapshot, or nullptr.
+// Throws Error CANCELLED or OUT_OF_MEMORY.
+void build_geometry(const std::shared_ptr<Device>& device, const ExactMatrices& to_internal, const BuildProgress& progress,
+                    const std::shared_ptr<const Accelerator>& before, Snapshot* snapshot);
+
+}  // namespace gradus
