@@ -1,0 +1,28 @@
+// The chains of a component at all pixel centres of a frame: at the same time a map from the film to what is seen through smooth surfaces.
+#pragma once
+
+#include <vector>
+
+#include "base/cancel_test.h"
+#include "motion/specular_chain.h"
+#include "temporal/pixel_links.h"
+
+namespace gradus {
+
+struct ChainView {
+  const CentreView* centres = nullptr;
+  const GradusSettings* settings = nullptr;
+  std::vector<int32_t> places;  // by pixels of the region: in `chains`; -1: the component has no chain there
+  std::vector<SpecularChain> chains;
+
+  const Region& region() const { return centres->region; }
+  // nullptr: there is none, or the pixel is outside of the region.
+  const SpecularChain* at(int32_t x, int32_t y) const;
+  ChainTracer tracer() const { return {*centres->snapshot, centres->camera, *settings}; }
+};
+// All that is given lives as long as the view. Cancelled: chains are missing.
+ChainView view_chains(
+    const CentreView& centres, const GradusSettings& settings, const ComponentSet& components, int component,
+    const CancelTest& is_cancelled = [] { return false; });
+
+}  // namespace gradus

@@ -1,0 +1,221 @@
+#include "motion/film_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/turn.h"
+
+namespace gradus {
+
+namespace {
+
+constexpr int kMostSteps = 24;
+constexpr int kMostHalvings = 6;
+constexpr float kLongestStep = 64.0f;                                    // pixels
+constexpr float kDifference = 0.125f;                                    // pixels: below the width of what a pixel sees, far above rounding
+constexpr float kLeastDeterminant = 1e-4f;                               // of unit columns: below, the picture folds
+constexpr float kFirstAdvance = 0.25f, kSmallestAdvance = 1.0f / 64.0f;  // of a frame
+// Of the Jacobian, relative to itself, over a step in time. As long as it changes by less than 1 no fold lies in between.
+constexpr float kLargestChange = 0.5f;
+constexpr float kRounding = 2e-6f;   // of the distance to the target
+constexpr float kRoughness = 2e-5f;  // likewise: of normals that are differences themselves, those of bumps
+// Pixels: a place that is found so near to where it was expected is the one that was meant.
+constexpr float kNear = 0.25f;
+// Pixels: over longer ways the Jacobian is found anew, not carried along.
+constexpr float kFar = 1.0f;
+
+bool newton_step(const glm::mat2& jacobian, const Vec2& miss, Vec2* step) {
+  const float lengths = glm::length(jacobian[0]) * glm::length(jacobian[1]);
+  if (!(std::fabs(glm::determinant(jacobian)) > kLeastDeterminant * lengths)) return false;
+  *step = -glm::inverse(jacobian) * miss;
+  return is_finite(step->x) && is_finite(step->y);
+}
+
+Vec2 limited(const Vec2& step) {
+  const float length = glm::length(step);
+  return length > kLongestStep ? step * (kLongestStep / length) : step;
+}
+
+// Whether the picture neither folds nor changes much from one place to another.
+bool is_same_image(const FilmJacobian& from, const FilmJacobian& to, const Aim& aim, bool near) {
+  const glm::mat2 change = glm::inverse(from.about(aim)) * to.about(aim), rest = change - glm::mat2(1.0f);
+  const float square = glm::dot(rest[0], rest[0]) + glm::dot(rest[1], rest[1]);
+  return square < kLargestChange * kLargestChange || (near && glm::determinant(change) > 0.0f);
+}
+
+}  // namespace
+
+glm::mat2 FilmJacobian::about(const Aim& aim) const {
+  return {aim.flat(turned(columns[0], axis, aim.axis())), aim.flat(turned(columns[1], axis, aim.axis()))};
+}
+
+// Where the iteration stands.
+struct FilmSearch::State {
+  float time;
+  Vec2 film;
+  SpecularChain chain;
+  Vec2 miss;
+  glm::mat2 jacobian;
+  bool fresh = false;  // the Jacobian is of this very place
+};
+
+Target FilmSearch::target(float time) const {
+  const Target &before = problem_.target_before, &after = problem_.target_after;
+  const Vec3 place = time < 1.0f ? glm::mix(before.place, after.place, time) : after.place;
+  return {after.in_sky ? glm::normalize(place) : place, after.in_sky};
+}
+
+// Between the frames: by the same point of the first surface in both.
+bool FilmSearch::look(float time, const Vec2& film, SpecularChain* chain) {
+  const Problem& p = problem_;
+  SpecularChain before;
+  ++counts_.traced;
+  if (time >= 1.0f) return p.after.follow(film, p.way, chain);
+  if (!p.before.follow(film - time * p.moved, p.way, time > 0.0f ? &before : chain)) return false;
+  if (time <= 0.0f) return true;
+  ++counts_.traced;
+  if (!p.after.follow(film + (1.0f - time) * p.moved, p.way, chain)) return false;
+  Ray& ray = chain->ray.ray;
+  ray.origin = glm::mix(before.ray.ray.origin, ray.origin, time);
+  ray.direction = glm::normalize(glm::mix(before.ray.ray.direction, ray.direction, time));
+  return true;
+}
+
+bool FilmSearch::miss(float time, const Aim& aim, const Vec2& film, SpecularChain* chain, Vec2* by) {
+  Vec3 miss;
+  if (!look(time, film, chain) || !aim.miss(chain->ray.ray, &miss)) return false;
+  *by = aim.flat(miss);
+  return true;
+}
+
+// One-sided, on the side where the way does not break.
+bool FilmSearch::differentiate(const Aim& aim, const State& state, glm::mat2* jacobian) {
+  for (int axis = 0; axis < 2; ++axis) {
+    bool found = false;
+    for (const float by : {kDifference, -kDifference}) {
+      Vec2 film = state.film, there;
+      film[axis] += by;
+      SpecularChain chain;
+      if (found || !miss(state.time, aim, film, &chain, &there)) continue;
+      (*jacobian)[axis] = (there - state.miss) / (film[axis] - state.film[axis]);
+      found = true;
+    }
+    if (!found) return false;
+  }
+  return true;
+}
+
+// A step, or half of it and so on, that brings the target nearer.
+SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
+  const Vec2 step = limited(newton);
+  const float before = glm::length(newton), length = glm::length(step);
+  SearchEnd end = SearchEnd::Broken;
+  float share = 1.0f;
+  // With a Jacobian that is only a guess, halving may be in vain.
+  for (int i = 0; i < (state->fresh ? kMostHalvings : 1); ++i, share *= 0.5f) {
+    const Vec2 film = state->film + share * step;
+    SpecularChain chain;
+    Vec2 by, left;
+    if (!miss(state->time, aim, film, &chain, &by)) continue;
+    end = SearchEnd::Stuck;
+    if (!newton_step(state->jacobian, by, &left) || !(glm::length(left) < before - 0.25f * share * length)) continue;
+    // Broyden's update.
+    const Vec2 moved = film - state->film;
+    const Vec2 unforeseen = (by - state->miss - state->jacobian * moved) / glm::dot(moved, moved);
+    state->jacobian += glm::outerProduct(unforeseen, moved);
+    state->film = film;
+    state->chain = chain;
+    state->miss = by;
+    state->fresh = false;
+    return SearchEnd::Found;
+  }
+  return end;
+}
+
+// The last correction, which tells whether the Jacobian is to be believed: at the edge of a facet a guess of it may be far too large, and
+// make everything seem near. What is there already, as what rests is, stays.
+bool FilmSearch::settle(const Aim& aim, const Vec2& step, State* state) {
+  const float before = glm::length(state->miss);
+  if (before < kRounding * aim.distance()) return true;
+  SpecularChain chain;
+  Vec2 by;
+  const bool is_there = miss(state->time, aim, state->film + step, &chain, &by);
+  const bool nearer = is_there && glm::length(by) < 0.5f * before;
+  if (!nearer) return state->fresh && before < kRoughness * aim.distance();
+  state->film += step;
+  state->chain = chain;
+  state->miss = by;
+  return true;
+}
+
+SearchEnd FilmSearch::solve(float time, FilmPlace* place) {
+  State state{time, place->film, {}, {}, {}};
+  if (!look(time, state.film, &state.chain)) return SearchEnd::Broken;
+  const Aim aim(target(time), state.chain.ray.ray.origin);
+  Vec3 by;
+  if (!aim.miss(state.chain.ray.ray, &by)) return SearchEnd::Stuck;
+  state.miss = aim.flat(by);
+  const auto refresh = [&] { return state.fresh = differentiate(aim, state, &state.jacobian); };
+  if (place->jacobian.known) {
+    state.jacobian = place->jacobian.about(aim);
+  } else if (!refresh()) {
+    return SearchEnd::Broken;
+  }
+  for (int i = 0; i < kMostSteps; ++i) {
+    Vec2 step;
+    if (!newton_step(state.jacobian, state.miss, &step)) {
+      if (state.fresh || !refresh()) return SearchEnd::Stuck;
+      continue;
+    }
+    if (glm::length(step) < kFilmTolerance) {
+      if (!settle(aim, step, &state)) {
+        if (state.fresh || !refresh()) return SearchEnd::Broken;
+        continue;
+      }
+      if (!state.fresh && glm::length(state.film - place->film) > kFar && !refresh()) return SearchEnd::Broken;
+      const Mat3 frame = aim.axes();
+      *place = {
+          state.film, state.chain, {true, aim.axis(), {frame * Vec3(state.jacobian[0], 0.0f), frame * Vec3(state.jacobian[1], 0.0f)}}};
+      return SearchEnd::Found;
+    }
+    ++counts_.space;
+    const SearchEnd end = take(aim, step, &state);
+    if (end != SearchEnd::Found && (state.fresh || !refresh())) return end;
+  }
+  return SearchEnd::Stuck;
+}
+
+bool FilmSearch::complete(FilmPlace* place) { return place->jacobian.known || solve(0.0f, place) == SearchEnd::Found; }
+
+SearchEnd FilmSearch::step(float time, const FilmPlace& from, const Vec2& guess, FilmPlace* place) {
+  ++counts_.time;
+  *place = from;
+  place->film = guess;
+  const SearchEnd end = solve(time, place);
+  if (end != SearchEnd::Found) return end;
+  const Aim aim(target(time), place->chain.ray.ray.origin);
+  const bool near = glm::length(place->film - guess) < kNear;
+  return is_same_image(from.jacobian, place->jacobian, aim, near) ? SearchEnd::Found : SearchEnd::Turned;
+}
+
+SearchEnd FilmSearch::leap(const FilmPlace& from, const Vec2& guess, FilmPlace* place) { return step(1.0f, from, guess, place); }
+
+SearchEnd FilmSearch::march(const FilmPlace& from, FilmPlace* place) {
+  FilmPlace at = from;
+  SearchEnd end = SearchEnd::Stuck;
+  Vec2 speed = problem_.moved;
+  float done = 0.0f, advance = kFirstAdvance;
+  while (done < 1.0f && advance >= kSmallestAdvance) {
+    const float next = std::min(1.0f, done + advance);
+    end = step(next, at, at.film + speed * (next - done), place);
+    if (end == SearchEnd::Found) {
+      speed = (place->film - at.film) / (next - done);
+      at = *place;
+      done = next;
+    }
+    advance *= end == SearchEnd::Found ? 2.0f : 0.5f;
+  }
+  return end;
+}
+
+}  // namespace gradus

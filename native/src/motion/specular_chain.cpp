@@ -1,0 +1,170 @@
+#include "motion/specular_chain.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/hash.h"
+#include "bsdf/frame.h"
+#include "bsdf/lobe.h"
+#include "path/scatter.h"
+#include "shading/material.h"
+
+namespace gradus {
+
+namespace {
+
+// Surfaces that a search for a chain may look at, where the stronger way leads nowhere.
+constexpr int kMostLooks = 24;
+
+// The strongest lobe of a class, taken for perfectly smooth.
+struct SmoothScattering {
+  Vec3 wi = Vec3(0.0f);
+  float strength = 0.0f;
+  LightPass pass = LightPass::Glossy;
+};
+
+SmoothScattering smooth_scattering(const Closures& closures, ScatterClass letter, const Vec3& wo) {
+  const bool transmitted = letter == ScatterClass::Transmission;
+  SmoothScattering best;
+  for (int i = 0; i < closures.count(); ++i) {
+    const Lobe& lobe = closures.lobe(i);
+    if (lobe.scatter_class == ScatterClass::Diffuse) continue;
+    const Frame3 frame = make_frame(lobe.normal, lobe.tangent);
+    Vec3 local;
+    Rgb coefficient;
+    if (!dirac_direction(lobe, frame.to_local(wo), transmitted, &local, &coefficient)) continue;
+    const float strength = mean_component(coefficient);
+    if (strength > best.strength) best = {glm::normalize(frame.to_world(local)), strength, lobe.pass};
+  }
+  return best;
+}
+
+}  // namespace
+
+void ChainWay::add(ScatterClass letter, uint64_t instance_id) {
+  letters = uint16_t(letters | unsigned(letter) << (2 * length));
+  surfaces = mix_bits(3 * surfaces + instance_id + 1);
+  ++length;
+}
+
+ChainTracer::ChainTracer(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings)
+    : snapshot_(snapshot), camera_(camera), settings_(settings), time_(snapshot.shutter.time_of_frame()) {}
+
+PathRay ChainTracer::camera_ray(const Vec2& film) const { return {camera_.ray({film, Vec2(0.0f), time_}), GRADUS_VISIBLE_CAMERA, {}}; }
+
+// To the next surface that stops the ray. False: it leaves the scene.
+bool ChainTracer::advance(const Hit* known, PathRay* ray, Vertex* vertex) const {
+  vertex->wo = -ray->ray.direction;
+  Ray part = ray->ray;
+  for (;;) {
+    Hit hit;
+    if (known != nullptr) {
+      hit = *std::exchange(known, nullptr);
+    } else {
+      snapshot_.intersect(part, ray->visibility, &hit);
+    }
+    if (!hit.valid()) return false;
+    ray->state.length = glm::length(part.origin + part.direction * hit.t - ray->ray.origin);
+    snapshot_.place(hit, &vertex->point);
+    shade_surface(snapshot_, vertex->point, vertex->wo, ray->state, settings_.roughness_threshold, &vertex->shade);
+    const bool passes = mean_component(vertex->shade.transparency) > 0.5f;
+    if (!passes || ray->state.transparent_depth >= settings_.transparent_max_bounces) return true;
+    ++ray->state.transparent_depth;
+    pass_surface(vertex->point, &part);
+  }
+}
+
+// How much goes that way; 0: nothing, and the ray stays what it was.
+float ChainTracer::scatter(const Vertex& vertex, ScatterClass letter, PathRay* ray) const {
+  const bool transmitted = letter == ScatterClass::Transmission;
+  const SmoothScattering scattering = smooth_scattering(vertex.shade.closures, letter, vertex.wo);
+  const bool crosses = glm::dot(vertex.facing_normal(), scattering.wi) < 0.0f;
+  if (!(scattering.strength > 0.0f) || crosses != transmitted) return 0.0f;
+  ray->ray = spawn_ray(vertex.point, scattering.wi);
+  ray->visibility = bounce_visibility(scattering.pass, transmitted);
+  ray->state = next_ray_state(ray->state, false, transmitted, true);
+  return scattering.strength;
+}
+
+struct ChainTracer::Search {
+  const ComponentSet& components;
+  int component;
+  int looks = 0;
+
+  bool reaches(PathWord word) const { return (components.ahead(word) >> component & 1) != 0; }
+  bool is_lit(PathWord word) const { return components.component(word) == component; }
+  // A rough surface or one that shines, where that belongs to the component.
+  bool ends_at(const Vertex& vertex, PathWord word) const {
+    const bool rough = vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
+    return (rough && reaches(components.next(word, ScatterClass::Diffuse))) || (!is_black(vertex.shade.emission) && is_lit(word));
+  }
+};
+
+// The stronger one first.
+std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, const Vertex& vertex, const PathRay& ray,
+                                                         PathWord word) const {
+  std::array<Branch, 2> found{{{ScatterClass::Reflection, 0.0f, ray}, {ScatterClass::Transmission, 0.0f, ray}}};
+  for (Branch& branch : found) {
+    if (search.reaches(search.components.next(word, branch.letter))) branch.strength = scatter(vertex, branch.letter, &branch.ray);
+  }
+  if (found[1].strength > found[0].strength) std::swap(found[0], found[1]);
+  return found;
+}
+
+bool ChainTracer::extend(Search* search, const Hit* known, PathRay ray, PathWord word, SpecularChain* chain) const {
+  if (++search->looks > kMostLooks) return false;
+  Vertex vertex;
+  chain->ray = ray;
+  if (!advance(known, &ray, &vertex)) {
+    chain->end = ChainEnd::Sky;
+    return snapshot_.features.world_shines && search->is_lit(word);
+  }
+  if (search->ends_at(vertex, word)) {
+    chain->end = ChainEnd::Surface;
+    chain->last = vertex.point.hit;
+    return true;
+  }
+  if (chain->way.length == kLongestChain) return false;
+  for (const Branch& branch : branches(*search, vertex, ray, word)) {
+    if (!(branch.strength > 0.0f)) continue;
+    SpecularChain longer = *chain;
+    if (longer.way.length == 0) longer.first = vertex.point.hit;
+    longer.way.add(branch.letter, snapshot_.instances[vertex.point.hit.instance].id);
+    if (!extend(search, nullptr, branch.ray, search->components.next(word, branch.letter), &longer)) continue;
+    *chain = longer;
+    return true;
+  }
+  return false;
+}
+
+bool ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSet& components, int component, SpecularChain* chain) const {
+  const PathRay ray = camera_ray(film);
+  Search search{components, component};
+  *chain = SpecularChain{};
+  return !is_none(ray.ray) && extend(&search, &known, ray, PathWord{0}, chain);
+}
+
+bool ChainTracer::follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const {
+  PathRay ray = camera_ray(film);
+  if (is_none(ray.ray)) return false;
+  *chain = SpecularChain{};
+  thread_local Vertex vertex;
+  for (int i = 0; i < way.length; ++i) {
+    if (!advance(nullptr, &ray, &vertex) || !(scatter(vertex, way.letter(i), &ray) > 0.0f)) return false;
+    if (i == 0) chain->first = vertex.point.hit;
+    chain->way.add(way.letter(i), snapshot_.instances[vertex.point.hit.instance].id);
+  }
+  chain->ray = ray;
+  return chain->way == way;
+}
+
+bool ChainTracer::finish(const SpecularChain& chain, Hit* hit) const {
+  PathRay ray = chain.ray;
+  thread_local Vertex vertex;
+  const bool found = advance(nullptr, &ray, &vertex);
+  *hit = found ? vertex.point.hit : Hit();
+  hit->t = found ? ray.state.length : kInfinity;
+  return found;
+}
+
+}  // namespace gradus

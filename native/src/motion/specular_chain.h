@@ -1,0 +1,73 @@
+// Representative paths (Zimmer et al. 2015, section 4.1): from the camera through smooth surfaces to the first thing that they show.
+//
+// A sharp lobe counts as perfectly smooth about its shading normal. Surfaces of which more goes straight through than stays are passed.
+#pragma once
+
+#include "path/components.h"
+#include "path/segment.h"
+#include "scene/camera.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+// Smooth vertices of a chain.
+inline constexpr int kLongestChain = 8;
+
+enum class ChainEnd : uint8_t { None, Surface, Sky };
+
+// The way through the smooth surfaces: how it scatters, and on which objects.
+struct ChainWay {
+  uint8_t length = 0;
+  uint16_t letters = 0;   // ScatterClass of each vertex, two bits each
+  uint64_t surfaces = 0;  // hash of the instances' ids: the same in every frame
+
+  ScatterClass letter(int vertex) const { return ScatterClass(letters >> (2 * vertex) & 3); }
+  void add(ScatterClass letter, uint64_t instance_id);
+  bool operator==(const ChainWay&) const = default;
+};
+
+struct SpecularChain {
+  ChainWay way;
+  ChainEnd end = ChainEnd::None;
+  Hit first;    // its first smooth vertex; not valid where there is none
+  Hit last;     // what it shows, if that is a surface
+  PathRay ray;  // the last
+};
+
+class ChainTracer {
+ public:
+  // camera: at rest, without a lens (CentreView's). What is referred to lives as long as the tracer.
+  ChainTracer(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings);
+
+  // The chain of a component at a place of the film. Where surfaces both reflect and transmit, the stronger way that leads to the
+  // component; it ends on the first surface that is rough or shines as the component asks, or in the sky. known: what its camera ray meets.
+  // False: there is none.
+  bool find(const Vec2& film, const Hit& known, const ComponentSet& components, int component, SpecularChain* chain) const;
+  // Goes a way from another place of the film, up to its last ray, which is not traced. False: the way breaks.
+  bool follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const;
+  // What its last ray meets; t: from where that ray begins. False: it ends in the sky.
+  bool finish(const SpecularChain& chain, Hit* hit) const;
+
+  const Snapshot& snapshot() const { return snapshot_; }
+  const Camera& camera() const { return camera_; }
+
+ private:
+  struct Search;
+  PathRay camera_ray(const Vec2& film) const;
+  bool advance(const Hit* known, PathRay* ray, Vertex* vertex) const;
+  float scatter(const Vertex& vertex, ScatterClass letter, PathRay* ray) const;
+  struct Branch {
+    ScatterClass letter;
+    float strength;
+    PathRay ray;
+  };
+  std::array<Branch, 2> branches(const Search& search, const Vertex& vertex, const PathRay& ray, PathWord word) const;
+  bool extend(Search* search, const Hit* known, PathRay ray, PathWord word, SpecularChain* chain) const;
+
+  const Snapshot& snapshot_;
+  const Camera& camera_;
+  const GradusSettings& settings_;
+  float time_;
+};
+
+}  // namespace gradus

@@ -1,0 +1,191 @@
+#include "motion/specular_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "motion/chain_jacobian.h"
+#include "motion/snapshot_motion.h"
+#include "path/context.h"
+
+namespace gradus {
+
+namespace {
+
+// Pixels are tracked in small tiles, row by row: each begins where its neighbour's motion leads to.
+constexpr int32_t kTile = 16;
+// Of the distance: what is no nearer than this before a target may be its own surface.
+constexpr float kOwnSurface = 1e-3f;
+struct Track {
+  Tracking tracking = Tracking::NoPath;
+  Vec2 film{0.0f};
+  const SpecularChain* chain = nullptr;  // in the first frame
+  FilmJacobian jacobian;
+};
+
+class Tracker {
+ public:
+  Tracker(const ChainView& from, const ChainTracer& to)
+      : from_(from), here_(from.tracer()), to_(to), motion_(here_.snapshot(), to.snapshot()) {}
+
+  // before: a neighbour's, or nullptr.
+  Track track(int32_t x, int32_t y, const Track* before, TrackingCounts* counts) const {
+    Track result;
+    result.film = pixel_centre(x, y);
+    result.chain = from_.at(x, y);
+    if (result.chain == nullptr) return result;
+    Target target;
+    if (!find_target(*result.chain, &target)) {
+      result.tracking = Tracking::Gone;
+    } else if (result.chain->way.length == 0) {
+      straight(target, &result);
+    } else {
+      search(target, x, y, before, &result, counts);
+    }
+    const Vec2 way = glm::abs(to_.camera().way(pixel_centre(x, y), result.film));
+    const bool inside = way.x <= float(from_.region().width()) && way.y <= float(from_.region().height());
+    if (result.tracking == Tracking::Tracked && !inside) result.tracking = Tracking::Outside;
+    if (result.tracking != Tracking::Tracked) result.film = pixel_centre(x, y);
+    return result;
+  }
+
+ private:
+  // In the other frame.
+  bool find_target(const SpecularChain& chain, Target* target) const {
+    target->in_sky = chain.end == ChainEnd::Sky;
+    target->place = chain.ray.ray.direction;
+    return target->in_sky || motion_.position(chain.last, &target->place);
+  }
+  // In the first frame.
+  Target own_target(const SpecularChain& chain) const {
+    const bool in_sky = chain.end == ChainEnd::Sky;
+    return {in_sky ? chain.ray.ray.direction : here_.snapshot().surface_point(chain.last).position, in_sky};
+  }
+
+  // What is seen directly.
+  void straight(const Target& target, Track* track) const {
+    // What is at infinity looks the same all over an orthographic film: it rests.
+    const bool rests = target.in_sky && here_.snapshot().camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
+    const bool seen = rests || (target.in_sky ? to_.camera().project_direction(target.place, Moment::Now, &track->film)
+                                              : to_.camera().project(target.place, Moment::Now, &track->film));
+    SpecularChain chain;
+    const bool found = seen && to_.follow(track->film, ChainWay{}, &chain);
+    track->tracking = !found ? Tracking::Outside : is_occluded(target, chain) ? Tracking::Occluded : Tracking::Tracked;
+  }
+
+  bool is_occluded(const Target& target, const SpecularChain& chain) const {
+    Hit hit;
+    if (!to_.finish(chain, &hit)) return false;
+    if (target.in_sky) return true;
+    const float distance = glm::dot(target.place - chain.ray.ray.origin, chain.ray.ray.direction);
+    return hit.t < distance * (1.0f - kOwnSurface);
+  }
+
+  // In one step of time from guesses in turn, then in smaller ones.
+  void search(const Target& target, int32_t x, int32_t y, const Track* before, Track* track, TrackingCounts* counts) const {
+    const SpecularChain& chain = *track->chain;
+    const Vec2 centre = pixel_centre(x, y);
+    const Target own = own_target(chain);
+    Vec2 first = centre;
+    const bool is_there = first_vertex(chain, &first);
+    const FilmSearch::Problem problem{here_, to_, chain.way, own, target, first - centre};
+    SearchCounts searched;
+    FilmSearch newton(problem, &searched);
+    FilmPlace start{centre, chain, chain_jacobian(from_, own, x, y)}, found;
+    track->tracking = Tracking::Broken;
+    if (!newton.complete(&start)) return;
+    const auto attempt = [&](SearchEnd end) {
+      const Tracking tracking = judge(end, target, found);
+      if (track->tracking == Tracking::Tracked || (track->tracking != Tracking::Broken && tracking != Tracking::Tracked)) return;
+      track->tracking = tracking;
+      if (tracking != Tracking::Tracked) return;
+      track->film = found.film;
+      track->jacobian = found.jacobian;
+    };
+    const bool follows = before != nullptr && before->tracking == Tracking::Tracked && before->chain->way == chain.way;
+    if (follows) attempt(newton.leap(start, before->film, &found));
+    if (track->tracking != Tracking::Tracked && is_there) attempt(newton.leap(start, first, &found));
+    if (track->tracking != Tracking::Tracked) attempt(newton.march(start, &found));
+    if (track->tracking != Tracking::Tracked) return;
+    counts->search.traced += searched.traced;
+    counts->search.space += searched.space;
+    counts->search.time += searched.time;
+    ++counts->searched;
+  }
+
+  // Where the point of the first smooth surface is in the other frame; to the bit where it was, if it rests.
+  bool first_vertex(const SpecularChain& chain, Vec2* film) const {
+    Vec3 position;
+    Vec2 there;
+    if (!motion_.position(chain.first, &position) || !to_.camera().project(position, Moment::Now, &there)) return false;
+    if (glm::length(there - *film) > FilmSearch::kFilmTolerance) *film = there;
+    return true;
+  }
+
+  Tracking judge(SearchEnd end, const Target& target, const FilmPlace& place) const {
+    if (end == SearchEnd::Broken) return Tracking::Broken;
+    if (end == SearchEnd::Stuck) return Tracking::NotConverged;
+    if (end == SearchEnd::Turned) return Tracking::Elsewhere;
+    return is_occluded(target, place.chain) ? Tracking::Occluded : Tracking::Tracked;
+  }
+
+  const ChainView& from_;
+  ChainTracer here_;
+  const ChainTracer& to_;
+  SnapshotMotion motion_;
+};
+
+}  // namespace
+
+void TrackingCounts::add(const TrackingCounts& other) {
+  for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += other.pixels[i];
+  search.traced += other.search.traced;
+  search.space += other.search.space;
+  search.time += other.search.time;
+  searched += other.searched;
+}
+
+ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const CancelTest& is_cancelled) {
+  const Region& region = from.region();
+  const auto width = size_t(region.width()), pixels = size_t(region.area());
+  ChainMotion motion{std::vector<Vec2>(pixels), std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
+  for (size_t i = 0; i < pixels; ++i) motion.film[i] = pixel_centre(region.x0 + int32_t(i % width), region.y0 + int32_t(i / width));
+  if (is_cut(from.centres->snapshot->camera, to.snapshot().camera)) {
+    std::fill(motion.tracking.begin(), motion.tracking.end(), Tracking::Cut);
+    motion.counts.pixels[size_t(-int(Tracking::Cut))] = pixels;
+    return motion;
+  }
+  const Tracker tracker(from, to);
+  tbb::enumerable_thread_specific<TrackingCounts> counts;
+  const auto track_row = [&](int32_t y, int32_t begin, int32_t end, std::vector<Track>* below) {
+    for (int32_t x = begin; x < end; ++x) {
+      Track& own = (*below)[size_t(x - begin)];
+      const bool beside = x > begin && (*below)[size_t(x - begin) - 1].tracking == Tracking::Tracked;
+      Track before = beside ? (*below)[size_t(x - begin) - 1] : own;
+      const Vec2 moved = before.tracking == Tracking::Tracked ? (beside ? Vec2(1, 0) : Vec2(0, 1)) : Vec2(0.0f);
+      before.film += moved;
+      own = tracker.track(x, y, &before, &counts.local());
+      const size_t pixel = size_t(y - region.y0) * width + size_t(x - region.x0);
+      motion.film[pixel] = own.film;
+      motion.tracking[pixel] = own.tracking;
+      ++counts.local().pixels[own.tracking == Tracking::Tracked ? 0 : size_t(-int(own.tracking))];
+    }
+  };
+  const auto tiles = [](int32_t length) { return (length + kTile - 1) / kTile; };
+  tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(region.height()), 1, 0, tiles(region.width()), 1), [&](const auto& range) {
+    for (int32_t ty = range.rows().begin(); ty < range.rows().end(); ++ty)
+      for (int32_t tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
+        const int32_t x0 = region.x0 + tx * kTile, x1 = std::min(x0 + kTile, region.x1);
+        std::vector<Track> below(kTile);
+        for (int32_t y = region.y0 + ty * kTile; y < std::min(region.y0 + (ty + 1) * kTile, region.y1) && !is_cancelled(); ++y)
+          track_row(y, x0, x1, &below);
+      }
+  });
+  for (const TrackingCounts& c : counts) motion.counts.add(c);
+  return motion;
+}
+
+}  // namespace gradus

@@ -1,0 +1,45 @@
+// Specular motion: where on the film of another frame is what a component shows in a pixel (Zimmer et al. 2015, section 4.1). See
+// docs/method.md, "Specular motion".
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "motion/chain_view.h"
+#include "motion/film_search.h"
+
+namespace gradus {
+
+// Of a pixel: 1, or why it has no motion. Values of the pass Path <Component> Tracked (contract 6.6).
+enum class Tracking : int8_t {
+  Tracked = 1,
+  NoPath = -1,        // the component shows nothing here
+  Gone = -2,          // what it shows is not in the other frame, or is another mesh there
+  NotConverged = -3,  // no place on the film was found
+  Occluded = -4,      // something stands before it
+  Broken = -5,        // no way leads there any more: an edge, total reflection, another object
+  Outside = -6,       // further away than the film is wide or high
+  Elsewhere = -7,     // it is seen at several places, and what was found is not what this image of it becomes
+  Cut = -8,           // the two frames are not one shot
+};
+inline constexpr int kTrackingCauses = 8;
+
+struct TrackingCounts {
+  std::array<uint64_t, kTrackingCauses + 1> pixels{};  // by -cause; 0: tracked
+  SearchCounts search;                                 // of the tracked pixels with smooth vertices
+  uint64_t searched = 0;                               // those pixels
+
+  void add(const TrackingCounts& other);
+};
+
+// By pixels of the region.
+struct ChainMotion {
+  std::vector<Vec2> film;  // the place in the other frame; of an untracked pixel its own centre
+  std::vector<Tracking> tracking;
+  TrackingCounts counts;
+};
+// Of the view `from` in the frame that `to` sees, which may be at another time or by another camera. Cancelled: pixels are NotConverged.
+ChainMotion track_chains(
+    const ChainView& from, const ChainTracer& to, const CancelTest& is_cancelled = [] { return false; });
+
+}  // namespace gradus

@@ -1,0 +1,141 @@
+// The passes' vectors, from the keys of one snapshot: previous − now, now − next.
+#include "motion/component_motion.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "base/error.h"
+#include "motion/motion_scene.h"
+
+namespace gradus::test {
+namespace {
+
+class ComponentMotionTest : public MotionTest {
+ protected:
+  static constexpr Region kRegion{0, 0, kSize, kSize};
+
+  std::vector<ComponentMotion> find(const IntegratorContext& context, const char* component) const {
+    return component_motion(*context.snapshot, context.settings, components_, 1u << components_.find(component), kRegion);
+  }
+  // Moves instance 3 of the scene.
+  void key(const Mat4& before, const Mat4& now, const Mat4& after) {
+    const size_t count = scene_.scene.instance_count();
+    scene_.scene.move(3, now);
+    scene_.scene.matrices_before.assign(count, Mat4(1.0f));
+    scene_.scene.matrices_after = scene_.scene.matrices_before;
+    scene_.scene.matrices_before[3] = before;
+    scene_.scene.matrices_after[3] = after;
+  }
+};
+
+// The keys of one snapshot say what three snapshots do.
+TEST_F(ComponentMotionTest, IsThatOfTheFramesAround) {
+  add_room();
+  scene_.ball(Vec3(0, 0, 0), 0.8f, mirror(), 32, true);
+  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  const Mat4 before = translation(Vec3(-0.05f, 0.01f, 0.02f)), now(1.0f),
+             after = glm::rotate(translation(Vec3(0.03f, 0, 0)), 0.1f, Vec3(0, 1, 0));
+  key(before, now, after);
+  const MotionFrame* middle = frame("Reflection");
+  const ComponentMotion found = find(middle->context, "Reflection").at(0);
+  std::array<ChainMotion, 2> around;
+  for (const int i : {0, 1}) {
+    scene_.scene.move(3, i == 0 ? before : after);
+    around[size_t(i)] = motion(middle, frame("Reflection"));
+  }
+  size_t tracked = 0;
+  for (size_t i = 0; i < found.vectors.size(); ++i) {
+    const bool both = around[0].tracking[i] == Tracking::Tracked && around[1].tracking[i] == Tracking::Tracked;
+    EXPECT_EQ(found.tracked[i] == 1.0f, both);
+    if (!both) {
+      EXPECT_EQ(found.vectors[i], Vec4(0.0f));
+      EXPECT_LT(found.tracked[i], 0.0f);
+      continue;
+    }
+    ++tracked;
+    const Vec2 centre(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
+    const Vec4 expected(around[0].film[i] - centre, centre - around[1].film[i]);
+    EXPECT_LT(glm::length(found.vectors[i] - expected), 5e-3f);
+  }
+  EXPECT_GT(tracked, 500u);
+}
+
+TEST_F(ComponentMotionTest, OfAMeshThatDeforms) {
+  add_room();
+  const Sheet now{48, 0.05f, 0.0f}, before{48, 0.05f, -0.1f}, after{48, 0.06f, 0.05f};
+  const uint64_t material = mirror();
+  set_sheet(&scene_, 900, now, &before, &after);
+  scene_.scene.instance(900, Mat4(1.0f), GRADUS_VISIBLE_ALL, material);
+  scene_.camera(Vec3(0.5f, 0.5f, 4), Vec3(0, 0, 0), 0.6f);
+  const MotionFrame* middle = frame("Reflection");
+  const ComponentMotion found = find(middle->context, "Reflection").at(0);
+  std::array<ChainMotion, 2> around;
+  for (const int i : {0, 1}) {
+    set_sheet(&scene_, 900, i == 0 ? before : after);
+    around[size_t(i)] = motion(middle, frame("Reflection"));
+  }
+  size_t tracked = 0, lost = 0;
+  for (size_t i = 0; i < found.vectors.size(); ++i) {
+    const bool both = around[0].tracking[i] == Tracking::Tracked && around[1].tracking[i] == Tracking::Tracked;
+    lost += both && found.tracked[i] != 1.0f;
+    if (found.tracked[i] != 1.0f || around[0].tracking[i] != Tracking::Tracked || around[1].tracking[i] != Tracking::Tracked) continue;
+    ++tracked;
+    const Vec2 centre(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
+    EXPECT_LT(glm::length(found.vectors[i] - Vec4(around[0].film[i] - centre, centre - around[1].film[i])), 0.02f);
+  }
+  EXPECT_GT(float(tracked), 0.75f * float(middle->chains.chains.size()));
+  EXPECT_LT(float(lost), 0.01f * float(tracked));
+}
+
+// What is seen directly: surface motion, in the signs of Blender's pass.
+TEST_F(ComponentMotionTest, OfWhatIsRoughIsSurfaceMotion) {
+  add_room();
+  scene_.quad(Vec3(-1, -0.5f, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), grey());
+  scene_.camera(Vec3(0, 0, 4), Vec3(0, 0, 0), 4.0f / 4.0f);
+  const float pixel = 4.0f / float(kSize);
+  key(translation(Vec3(-2 * pixel, 0, 0)), Mat4(1.0f), translation(Vec3(0, 3 * pixel, 0)));
+  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  const ComponentMotion found = find(context, "Diffuse").at(0);
+  const size_t middle = size_t(kSize) * (kSize / 2) + kSize / 2, above = size_t(kSize) * (kSize - 4) + kSize / 2;
+  EXPECT_LT(glm::length(found.vectors[middle] - Vec4(-2, 0, 0, -3)), 1e-3f);
+  EXPECT_EQ(found.tracked[middle], 1.0f);
+  EXPECT_EQ(found.vectors[above], Vec4(0.0f)) << "the wall rests";
+  EXPECT_EQ(found.tracked[above], 1.0f);
+}
+
+TEST_F(ComponentMotionTest, OnlyWhatIsAskedForIsFound) {
+  add_room();
+  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  EXPECT_TRUE(component_motion(*context.snapshot, context.settings, components_, 0, kRegion).empty());
+  const std::vector<ComponentMotion> two = component_motion(*context.snapshot, context.settings, components_, 0b110, kRegion);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[1].counts.pixels[1], 2u * kSize * kSize) << "nothing is reflected";
+}
+
+// A part of the film is the same as cut out of all of it.
+TEST_F(ComponentMotionTest, OfARegionIsThatOfTheWholeFilm) {
+  add_room();
+  scene_.ball(Vec3(0, 0, 0), 0.8f, mirror(), 32, true);
+  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  key(translation(Vec3(-0.02f, 0, 0)), Mat4(1.0f), translation(Vec3(0.02f, 0.01f, 0)));
+  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  const ComponentMotion whole = find(context, "Reflection").at(0);
+  const Region part{10, 12, 38, 36};
+  const ComponentMotion cut =
+      component_motion(*context.snapshot, context.settings, components_, 1u << components_.find("Reflection"), part).at(0);
+  for (int32_t y = part.y0; y < part.y1; ++y)
+    for (int32_t x = part.x0; x < part.x1; ++x) {
+      const size_t i = size_t((y - part.y0) * part.width() + x - part.x0), j = size_t(y * kSize + x);
+      EXPECT_LT(glm::length(cut.vectors[i] - whole.vectors[j]), 5e-3f) << x << ' ' << y;
+    }
+}
+
+TEST_F(ComponentMotionTest, CanBeCancelled) {
+  add_room();
+  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  EXPECT_THROW(component_motion(*context.snapshot, context.settings, components_, 2, kRegion, [] { return true; }), Error);
+}
+
+}  // namespace
+}  // namespace gradus::test
