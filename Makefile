@@ -3,11 +3,12 @@ SCENE ?=
 FRAMES ?=
 OUT ?= out
 ARGS ?=
+COMPONENTS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-addon stress faults compilers package format lint clean
-.PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture
+.PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture picture-components
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -15,8 +16,8 @@ help:           ## this list
 build:          ## the library (into addon/gradus/lib) and the tool
 	@tools/build.sh
 
-render:         ## a picture: SCENE=sample_blends/hero.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 32" BLENDER=/path/to/blender
-	@SCENE='$(SCENE)' FRAMES='$(FRAMES)' OUT='$(OUT)' ARGS='$(ARGS)' BLENDER='$(BLENDER)' tools/render.sh
+render:         ## a picture: SCENE=sample_blends/hero.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 32" COMPONENTS=default BLENDER=/path/to/blender
+	@SCENE='$(SCENE)' FRAMES='$(FRAMES)' OUT='$(OUT)' ARGS='$(ARGS)' COMPONENTS='$(COMPONENTS)' BLENDER='$(BLENDER)' tools/render.sh
 
 render-animation: ## frames by blender -b -a, and a film strip: SCENE=sample_blends/animated.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 16"
 	@SCENE='$(or $(SCENE),sample_blends/animated.blend)' FRAMES='$(or $(FRAMES),1-24)' OUT='$(OUT)' ARGS='$(or $(ARGS),--gradus-samples 16)' \
@@ -86,6 +87,11 @@ bench-report:   ## docs/benchmark/report.html and README.md from the stored resu
 picture:        ## docs/images/hero.png, the picture of the README
 	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 64' BLENDER='$(BLENDER)' tools/render.sh
 	@install -D -m 644 out/picture/hero_0001.png docs/images/hero.png
+
+picture-components: ## docs/images/components.webp, a frame taken apart, of the user guide
+	@tools/setup/setup bpy
+	@SCENE=sample_blends/components.blend FRAMES=12 OUT=out/picture ARGS='--gradus-samples 128' COMPONENTS=default BLENDER='$(BLENDER)' tools/render.sh
+	@.venv/bpy45/bin/python3 tools/component_sheet.py out/picture/components_0012.exr docs/images/components.webp
 
 package:        ## dist/gradus-<version>.zip, for Blender 3.4 to 5.0
 	@tools/build.sh package

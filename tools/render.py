@@ -1,6 +1,7 @@
 """`make render`: renders frames of a .blend with Gradus in Blender, and says where the pictures are and what they took.
 
-Reads SCENE, FRAMES (1, 1-24 or 1,5,9-12), OUT, ARGS (options of the add-on, as after "--") and BLENDER from the environment.
+Reads SCENE, FRAMES (1, 1-24 or 1,5,9-12), OUT, ARGS (options of the add-on, as after "--"), COMPONENTS (default, or Name=EXPRESSION;…:
+each with all of its passes) and BLENDER from the environment.
 With --check it only looks at these. Exit code 1 unless every picture is there.
 """
 
@@ -84,6 +85,14 @@ def timing(frames: int, wall: float, stats: list[dict]) -> str:
     return line + (f" ({', '.join(phases)} s{counts})" if stats else "")
 
 
+def component_options(text: str) -> list[str]:
+    """Of the add-on, for COMPONENTS; ARGS come after them and win."""
+    if not text:
+        return []
+    own = "" if text.lower() == "default" else text
+    return ["--gradus-use-decomposition", "1", f"--gradus-components={own}", "--gradus-passes", "components"]
+
+
 @dataclass(frozen=True)
 class Request:
     """What the user asks for."""
@@ -101,7 +110,7 @@ def request() -> Request:
     ranges = frame_ranges(os.environ.get("FRAMES") or "1")
     text = os.environ.get("ARGS") or ""
     try:
-        arguments = shlex.split(text)
+        arguments = component_options(os.environ.get("COMPONENTS") or "") + shlex.split(text)
     except ValueError as error:
         raise RenderError(f"ARGS={text}: {error}") from error
     out = Path(os.environ.get("OUT") or "out").absolute()

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import os
 import shutil
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from . import file_check
 from .failure import Failure
+from .passes import PassInfo
 
 MARGIN_BYTES = 1 << 20
 """Metadata, and what else writes to the disk meanwhile."""
+
+LONGEST_CHANNEL = 64
+"""Bytes of a channel's name that Blender before 5.0 writes into an OpenEXR file: of channels that are called the same then, one is left."""
 
 
 def make_folder(path: str) -> Path:
@@ -36,6 +41,19 @@ def require_space(path: str, needed: int) -> None:
         raise Failure(f"output folder {folder}: {error.strerror}") from error
     if free < needed + MARGIN_BYTES:
         raise Failure(f"not enough space in {folder}: {free >> 20} MiB free, {(needed + MARGIN_BYTES) >> 20} MiB needed")
+
+
+def cut_names(settings: Any, layer: str, views: Iterable[str], infos: Iterable[PassInfo], version: tuple[int, ...]) -> list[str]:
+    """A warning about the passes of a layer that a file of these image settings will lose."""
+    if version >= (5, 0, 0) or settings.file_format != "OPEN_EXR_MULTILAYER":
+        return []
+    longest_view = max((len(f".{view}".encode()) for view in views if view and settings.views_format == "MULTIVIEW"), default=0)
+    room = LONGEST_CHANNEL - longest_view - len(".X")
+    cut = [name for name in (info.blender_name(version) for info in infos) if len(f"{layer}.{name}".encode()) > room]
+    if not cut:
+        return []
+    others = f" and {len(cut) - 1} others" if len(cut) > 1 else ""
+    return [f"OpenEXR files of this Blender lose pass '{cut[0]}'{others} of layer '{layer}': their names are too long"]
 
 
 def require_whole(path: str) -> None:

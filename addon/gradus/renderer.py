@@ -166,6 +166,7 @@ class Job:
         self.shot.settings = self.new_settings()
         self.warn(cycles_settings.warnings(self.scene, {name for name, _ in self.overrides.native}))
         self.warn_of_simulations()
+        self.warn(output.cut_names(self.scene.render.image_settings, self.layer.name, self.views, self.infos, compat.VERSION))
         self.animation = animation.of_job(self)
         if self.animation is None:
             self.show_simulations()

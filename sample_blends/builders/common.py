@@ -55,7 +55,8 @@ def settings(width: int, height: int, samples: int = 64, bounces: int = 8) -> bp
     render.engine = "CYCLES"
     if hasattr(scene, "gradus"):
         render.engine = "GRADUS"
-        for name, value in (("samples", samples), ("max_bounces", bounces), ("diffuse_bounces", bounces), ("glossy_bounces", bounces)):
+        limits = dict.fromkeys(("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces"), bounces)
+        for name, value in {"samples": samples, **limits}.items():
             if hasattr(scene.gradus, name):
                 setattr(scene.gradus, name, value)
     return scene

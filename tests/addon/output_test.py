@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from gradus import file_check, frame_store, output, stats
+from gradus import file_check, frame_store, output, passes, stats
 from gradus.failure import Failure, user_text
 from support import images
 
@@ -107,3 +107,24 @@ def test_texts_for_people_are_one_line_and_never_empty() -> None:
     assert user_text(MemoryError()) == "out of memory"
     assert user_text(ValueError()) == "ValueError"
     assert user_text(KeyError("x")) == "KeyError: 'x'"
+
+
+@pytest.mark.parametrize(
+    ("layer", "views", "version", "lost"),
+    [
+        (20, ("",), (4, 5, 0), 0),
+        (21, ("",), (4, 5, 0), 1),
+        (21, ("",), (5, 0, 0), 0),
+        (20, ("left", "right"), (4, 5, 0), 1),
+        (63, ("",), (3, 4, 1), 6),
+    ],
+)
+def test_names_that_blender_cuts_in_files_are_told(layer: int, views: tuple[str, ...], version: tuple[int, ...], lost: int) -> None:
+    """Channels were gone without a word where a layer and a component both have long names."""
+    parts = [part.of("Abcdefghijklmnopqrstuvwx") for part in passes.PARTS]
+    settings = SimpleNamespace(file_format="OPEN_EXR_MULTILAYER", views_format="MULTIVIEW")
+    longest = [info for info in parts if info.name.endswith("Reflectance")] if lost < 2 else parts
+    found = output.cut_names(settings, "L" * layer, views, longest, version)
+    others = f" and {lost - 1} others" if lost > 1 else ""
+    assert [others in text and f"'{'L' * layer}'" in text for text in found] == [True] * min(lost, 1)
+    assert output.cut_names(SimpleNamespace(file_format="PNG", views_format="MULTIVIEW"), "L" * layer, views, longest, version) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import runpy
 import subprocess
 
 import pytest
@@ -40,3 +41,20 @@ def refused(name: str, value: str, message: str, *options: str) -> None:
     assert result.returncode == 1
     assert message in result.stderr
     assert result.stdout == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "options"),
+    [
+        ("", []),
+        ("Default", ["--gradus-use-decomposition", "1", "--gradus-components=", "--gradus-passes", "components"]),
+        ("A=ED(T|R)*L;B=EL", ["--gradus-use-decomposition", "1", "--gradus-components=A=ED(T|R)*L;B=EL", "--gradus-passes", "components"]),
+    ],
+)
+def test_components_are_asked_for_with_all_of_their_passes(monkeypatch: pytest.MonkeyPatch, text: str, options: list[str]) -> None:
+    monkeypatch.setenv("COMPONENTS", text)
+    monkeypatch.setenv("ARGS", "--gradus-samples 4")
+    monkeypatch.setenv("OUT", "/tmp")
+    monkeypatch.chdir(ROOT)
+    wanted = runpy.run_path(str(ROOT / "tools" / "render.py"))["request"]()
+    assert wanted.arguments == [*options, "--gradus-samples", "4"]

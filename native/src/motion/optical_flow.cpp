@@ -77,10 +77,10 @@ std::shared_ptr<const FlowLibrary> find_flow_library(const std::string& folder, 
   }
 }
 
-std::shared_ptr<const FlowLibrary> flow_library(Warnings* warnings) {
-  static std::string why_not;
-  static const std::shared_ptr<const FlowLibrary> library = find_flow_library(flow_library_folder(), &why_not);
-  if (!library && warnings) warnings->add("no motion of shadows and of reflections on rough surfaces (" + why_not + ")");
+std::shared_ptr<const FlowLibrary> flow_library_or_warning(const std::string& folder, Warnings* warnings) {
+  std::string why_not;
+  auto library = find_flow_library(folder, &why_not);
+  if (!library) warnings->add("no motion of shadows and of reflections on rough surfaces (" + why_not + ")");
   return library;
 }
 

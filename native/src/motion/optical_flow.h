@@ -26,8 +26,8 @@ struct FlowLibrary {
 std::string flow_library_folder();
 // nullptr where there is none that works, and why. What was loaded stays for the life of the process.
 std::shared_ptr<const FlowLibrary> find_flow_library(const std::string& folder, std::string* why_not);
-// That of flow_library_folder(); where it is missing, `warnings` (which may be nullptr) say what is not there without it.
-std::shared_ptr<const FlowLibrary> flow_library(Warnings* warnings);
+// The same; where there is none, `warnings` say what is not there without it.
+std::shared_ptr<const FlowLibrary> flow_library_or_warning(const std::string& folder, Warnings* warnings);
 
 // By pixels of `from`: how far away `to`, an image of the same size, shows the same; x along a row, y from row to row. Finite, no vector
 // longer than the image. Levels that are not finite count as 0. Throws Error UNKNOWN with the library's text.

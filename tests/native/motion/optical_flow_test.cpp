@@ -119,6 +119,17 @@ TEST(FlowLibrary, IsRefusedWithAReason) {
   EXPECT_TRUE(has(refusal(StandIn(kTests + "libfake_flow_old.so").folder()), "it has interface 0 in place of 1"));
 }
 
+TEST(FlowLibrary, IsMissedOnceAndByName) {
+  Warnings warnings;
+  std::string text;
+  EXPECT_NE(flow_library_or_warning(kReal, &warnings), nullptr);
+  EXPECT_FALSE(warnings.take(&text));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(flow_library_or_warning("/no/such/folder", &warnings), nullptr);
+  ASSERT_TRUE(warnings.take(&text));
+  EXPECT_EQ(text, "no motion of shadows and of reflections on rough surfaces (/no/such/folder/libgradus_flow.so: there is no such file)");
+  EXPECT_FALSE(warnings.take(&text));
+}
+
 class FakeFlow : public ::testing::Test {
  protected:
   void TearDown() override { unsetenv("FAKE_FLOW"); }

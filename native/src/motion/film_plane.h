@@ -1,0 +1,56 @@
+// Values between the pixels of a plane. Positions count pixels from the middle of the first one; beyond the outermost these go on.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "base/types.h"
+
+namespace gradus {
+
+template <class T>
+struct FilmPlane {
+  int width = 0, height = 0;
+  std::span<const T> values;  // row by row
+
+  const T& at(int x, int y) const {
+    return values[size_t(std::clamp(y, 0, height - 1)) * size_t(width) + size_t(std::clamp(x, 0, width - 1))];
+  }
+};
+
+// The nearest position whose neighbours are pixels of the plane.
+inline Vec2 clamped_to(const Vec2& p, int width, int height) {
+  return glm::clamp(p, Vec2(0.0f), Vec2(float(width - 1), float(height - 1)));
+}
+
+// Catmull and Rom's, of the four pixels around.
+inline std::array<float, 4> cubic_weights(float u) {
+  return {u * (-0.5f + u * (1.0f - 0.5f * u)), 1.0f + u * u * (-2.5f + 1.5f * u), u * (0.5f + u * (2.0f - 1.5f * u)),
+          u * u * (-0.5f + 0.5f * u)};
+}
+
+template <class T>
+T linear_at(const FilmPlane<T>& plane, const Vec2& position) {
+  const Vec2 p = clamped_to(position, plane.width, plane.height), first = glm::floor(p), u = p - first;
+  const auto x = int(first.x), y = int(first.y);
+  const T upper = (1.0f - u.x) * plane.at(x, y) + u.x * plane.at(x + 1, y);
+  const T lower = (1.0f - u.x) * plane.at(x, y + 1) + u.x * plane.at(x + 1, y + 1);
+  return (1.0f - u.y) * upper + u.y * lower;
+}
+
+template <class T>
+T cubic_at(const FilmPlane<T>& plane, const Vec2& position) {
+  const Vec2 p = clamped_to(position, plane.width, plane.height), first = glm::floor(p);
+  const std::array<float, 4> across = cubic_weights(p.x - first.x), down = cubic_weights(p.y - first.y);
+  T result(0.0f);
+  for (int j = 0; j < 4; ++j) {
+    T row(0.0f);
+    for (int i = 0; i < 4; ++i) row += across[size_t(i)] * plane.at(int(first.x) + i - 1, int(first.y) + j - 1);
+    result += down[size_t(j)] * row;
+  }
+  return result;
+}
+
+}  // namespace gradus

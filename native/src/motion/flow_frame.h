@@ -1,0 +1,43 @@
+// A frame before any flow: what it shows on one scale with the other, and what is known of its surfaces.
+#pragma once
+
+#include "motion/film_plane.h"
+#include "motion/irradiance_motion.h"
+
+namespace gradus {
+
+class FlowFrame {
+ public:
+  // Both live as long as it.
+  FlowFrame(const GreyImage& image, const ComponentFrame& frame);
+
+  const GreyImage& image() const { return image_; }
+  int width() const { return image_.width; }
+  int height() const { return image_.height; }
+  size_t count() const { return surface_.size(); }
+
+  FilmPlane<float> levels() const { return plane(image_.levels); }
+  const std::vector<Vec2>& surface() const { return surface_; }  // finite, no longer than the film
+  std::span<const float> tracked() const { return tracked_; }
+  const std::vector<int32_t>& object() const { return object_; }  // all of them 0 where they are not known
+  bool shows_edge(size_t pixel) const { return edges_[pixel] != 0; }
+
+  Vec2 place(size_t pixel) const { return Vec2(float(pixel % size_t(width())), float(pixel / size_t(width()))); }
+  size_t nearest(const Vec2& place) const;
+  bool holds(const Vec2& place) const;
+  Vec2 bounded(const Vec2& vector) const;
+
+  template <class T>
+  FilmPlane<T> plane(const std::vector<T>& values) const {
+    return {width(), height(), values};
+  }
+
+ private:
+  const GreyImage& image_;
+  std::vector<Vec2> surface_;
+  std::span<const float> tracked_;
+  std::vector<int32_t> object_;
+  std::vector<uint8_t> edges_;
+};
+
+}  // namespace gradus

@@ -1,0 +1,155 @@
+#include "motion/refine_flow.h"
+
+#include <numeric>
+
+#include "reconstruct/rows.h"
+
+namespace gradus {
+namespace {
+
+constexpr int kWarps = 5, kSweeps = 10;
+constexpr int kWindow = 3;               // pixels around one, Gaussian of half that
+constexpr float kSmoothness = 5.0f;      // per pixel of difference between neighbours, against squares of data by its noise
+constexpr float kAlike = 0.1f;           // pixels: differences below it count by their squares
+constexpr float kOutlier = 3.0f;         // standard deviations: data beyond it counts by its magnitude
+constexpr float kRestsAlone = 1e-4f;     // weight of no rest, for where nothing else says anything
+constexpr float kOverRelaxation = 1.7f;  // of Gauss and Seidel's steps
+constexpr float kLongestStep = 1.0f;     // pixels, for which a gradient is good
+
+// What quadratic terms ask of a vector: (xx xy; xy yy) vector = right.
+struct Normal {
+  float xx = 0.0f, xy = 0.0f, yy = 0.0f;
+  Vec2 right{0.0f};
+
+  void add(float weight, const Normal& other) {
+    xx += weight * other.xx, xy += weight * other.xy, yy += weight * other.yy, right += weight * other.right;
+  }
+  // Pulls towards a vector.
+  void pull(float weight, const Vec2& vector) { xx += weight, yy += weight, right += weight * vector; }
+  Vec2 solution() const {
+    const float determinant = xx * yy - xy * xy;
+    return determinant > 0.0f ? Vec2(yy * right.x - xy * right.y, xx * right.y - xy * right.x) / determinant : Vec2(0.0f);
+  }
+};
+
+std::array<float, 2 * kWindow + 1> window_weights() {
+  std::array<float, 2 * kWindow + 1> weights{};
+  for (int i = -kWindow; i <= kWindow; ++i) weights[size_t(i + kWindow)] = std::exp(-2.0f * float(i * i) / float(kWindow * kWindow));
+  const float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
+  for (float& weight : weights) weight /= sum;
+  return weights;
+}
+
+class Refinement {
+ public:
+  Refinement(const FlowPair& pair, std::vector<Vec2>* rest)
+      : pair_(pair),
+        width_(pair.from.width),
+        height_(pair.from.height),
+        rest_(*rest),
+        step_(rest->size()),
+        warped_(rest->size()),
+        pixels_(rest->size()),
+        rows_(rest->size()),
+        data_(rest->size()),
+        right_(rest->size()),
+        below_(rest->size()) {}
+
+  void run() {
+    for (int i = 0; i < kWarps; ++i) {
+      each_pixel([this](int x, int y, size_t p) { warped_[p] = warped(x, y, p); });
+      each_pixel([this](int x, int y, size_t p) { pixels_[p] = pixel_data(x, y, p); });
+      sum_windows();
+      each_pixel([this](int x, int y, size_t p) {
+        right_[p] = x + 1 < width_ ? likeness(p, p + 1) : 0.0f;
+        below_[p] = y + 1 < height_ ? likeness(p, p + size_t(width_)) : 0.0f;
+      });
+      std::fill(step_.begin(), step_.end(), Vec2(0.0f));
+      for (int k = 0; k < 2 * kSweeps; ++k) {
+        for_rows(height_, [this, k](int y) { relax(y, k & 1); });
+      }
+      each_pixel([this](int, int, size_t p) { rest_[p] += glm::clamp(step_[p], -kLongestStep, kLongestStep); });
+    }
+  }
+
+ private:
+  size_t index(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
+  template <class Body>
+  void each_pixel(const Body& body) {
+    for_rows(height_, [&](int y) { row(y, body); });
+  }
+  // Rows are no part of what calls them: a compiler that makes two variants of them rounds differently in each, and which one a row gets
+  // would depend on the threads.
+  template <class Body>
+  [[gnu::noinline]] void row(int y, const Body& body) {
+    for (int x = 0; x < width_; ++x) body(x, y, index(x, y));
+  }
+
+  // The other image where the vectors lead to. Where it cannot show the same: this one, with which nothing is wrong.
+  float warped(int x, int y, size_t p) const {
+    return pair_.seen[p] ? cubic_at(pair_.to, Vec2(float(x), float(y)) + pair_.bootstrap[p] + rest_[p]) : pair_.from.values[p];
+  }
+
+  // What one pixel asks of the step: change + gradient · step = 0, the gradient that of the mean of both images.
+  Normal pixel_data(int x, int y, size_t p) const {
+    if (!pair_.seen[p]) return {};
+    const FilmPlane<float> warped{width_, height_, warped_};
+    const auto mean = [&](int i, int j) { return 0.5f * (pair_.from.at(i, j) + warped.at(i, j)); };
+    const Vec2 gradient = 0.5f * Vec2(mean(x + 1, y) - mean(x - 1, y), mean(x, y + 1) - mean(x, y - 1));
+    const float change = warped_[p] - pair_.from.values[p], variance = 2.0f * pair_.noise * pair_.noise;
+    const float weight = 1.0f / (variance * std::max(1.0f, std::abs(change) / (kOutlier * std::sqrt(variance))));
+    return {weight * gradient.x * gradient.x, weight * gradient.x * gradient.y, weight * gradient.y * gradient.y,
+            -weight * change * gradient};
+  }
+
+  void sum_windows() {
+    each_pixel([this](int x, int y, size_t p) {
+      Normal sum;
+      for (int i = std::max(x - kWindow, 0); i <= std::min(x + kWindow, width_ - 1); ++i) sum.add(weight(i - x), pixels_[index(i, y)]);
+      rows_[p] = sum;
+    });
+    each_pixel([this](int x, int y, size_t p) {
+      Normal sum;
+      for (int j = std::max(y - kWindow, 0); j <= std::min(y + kWindow, height_ - 1); ++j) sum.add(weight(j - y), rows_[index(x, j)]);
+      sum.pull(kRestsAlone, -rest_[p]);
+      data_[p] = sum;
+    });
+  }
+  float weight(int offset) const { return weights_[size_t(offset + kWindow)]; }
+
+  // How strongly the rests of two neighbours are held together.
+  float likeness(size_t p, size_t q) const {
+    if (pair_.object[p] != pair_.object[q]) return 0.0f;
+    const Vec2 difference = rest_[q] - rest_[p];
+    return kSmoothness / std::sqrt(glm::dot(difference, difference) + kAlike * kAlike);
+  }
+
+  // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each other.
+  [[gnu::noinline]] void relax(int y, int colour) {
+    for (int x = (y + colour) & 1; x < width_; x += 2) {
+      const size_t p = index(x, y), row = size_t(width_);
+      Normal normal = data_[p];
+      const auto pull = [&](size_t q, float weight) { normal.pull(weight, rest_[q] + step_[q] - rest_[p]); };
+      if (x > 0) pull(p - 1, right_[p - 1]);
+      if (x + 1 < width_) pull(p + 1, right_[p]);
+      if (y > 0) pull(p - row, below_[p - row]);
+      if (y + 1 < height_) pull(p + row, below_[p]);
+      step_[p] += kOverRelaxation * (normal.solution() - step_[p]);
+    }
+  }
+
+  const FlowPair& pair_;
+  const int width_, height_;
+  std::vector<Vec2>& rest_;
+  std::vector<Vec2> step_;  // from one warp to the next
+  std::vector<float> warped_;
+  std::vector<Normal> pixels_, rows_, data_;  // of each alone, summed along rows, summed over windows
+  std::vector<float> right_, below_;          // likeness of a pixel and its neighbours
+  const std::array<float, 2 * kWindow + 1> weights_ = window_weights();
+};
+
+}  // namespace
+
+void refine_flow(const FlowPair& pair, std::vector<Vec2>* rest) { Refinement(pair, rest).run(); }
+
+}  // namespace gradus

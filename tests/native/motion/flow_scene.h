@@ -1,0 +1,51 @@
+// Two frames of a film whose motion is known, made by formulas: light on surfaces, each of which moves, with shadows that move otherwise.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "motion/irradiance_motion.h"
+
+namespace gradus {
+
+struct FlowSample {
+  float light = 1.0f;
+  int32_t object = 1;
+  float depth = 10.0f;
+};
+
+struct FlowScene {
+  int width = 160, height = 120;
+  std::function<FlowSample(const Vec2& place, int frame)> sample;
+  std::function<Vec2(const Vec2& place, int32_t object)> surface = [](const Vec2&, int32_t) {
+    return Vec2(0.0f);
+  };                   // of frame 0; the other: back
+  float noise = 0.0f;  // standard deviation, as a share of the light
+};
+
+// The planes of a frame, each pixel the mean of 4 × 4 points.
+class FlowFilm {
+ public:
+  FlowFilm(const FlowScene& scene, int frame);
+  ComponentFrame view() const { return {light, surface, tracked, object, depth}; }
+
+  std::vector<Rgb> light;
+  std::vector<Vec2> surface;
+  std::vector<float> tracked, depth;
+  std::vector<int32_t> object;
+};
+
+// Smooth, and different everywhere.
+float flow_pattern(const Vec2& place);
+// 1 in the light, `dark` in the shadow of a disc, between them over about four times `softness` pixels.
+float disc_shadow(const Vec2& place, const Vec2& centre, float radius, float softness, float dark = 0.12f);
+// Turned about `centre`, by degrees.
+Vec2 turned(const Vec2& place, const Vec2& centre, float degrees);
+
+std::shared_ptr<const FlowLibrary> flow_library_of_the_build();
+std::array<PixelMotion, 2> motion_of(const FlowScene& scene, FlowDomain domain = FlowDomain::Logarithmic);
+
+// The share's smallest part of the values is no larger than this.
+float quantile(std::vector<float> values, float share);
+
+}  // namespace gradus

@@ -1,0 +1,82 @@
+"""Pictures of a frame's components side by side: a column for each, a row for each of its passes.
+
+    component_sheet.py FRAME.exr SHEET.webp
+
+Motion is shown by its direction as hue and its length as brightness; grey is not tracked.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+from PIL import Image, ImageDraw
+
+GAP, HEADER = 2, 14  # pixels between pictures, and for the line of text above each
+BRIGHTEST = 98.0  # percentile that is shown as white
+
+Passes = dict[str, np.ndarray]
+Shower = Callable[[Passes, str, float], np.ndarray]
+
+
+def read(path: Path) -> Passes:
+    """Pass → (height, width, channels), top row first, without the name of the layer."""
+    planes: dict[str, dict[str, np.ndarray]] = {}
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        for part in file.parts:
+            for name, channel in part.channels.items():
+                full, _, letter = name.rpartition(".")
+                planes.setdefault(full.partition(".")[2], {})[letter] = channel.pixels
+    return {name: np.stack([found[letter] for letter in sorted(found, key="RGBXYZWVA".find)], axis=2) for name, found in planes.items()}
+
+
+def components(passes: Passes) -> list[str]:
+    """Names in the order of the file's first pass of each."""
+    return [name.removeprefix("Path ").removesuffix(" Motion") for name in passes if name.startswith("Path ") and name.endswith(" Motion")]
+
+
+def light(image: np.ndarray, white: float) -> np.ndarray:
+    return np.clip(image[..., :3] / white, 0.0, 1.0) ** (1.0 / 2.2)
+
+
+def motion(passes: Passes, component: str) -> np.ndarray:
+    """From the frame before to this one, for all components on one scale."""
+    longest = max(np.abs(image[..., :2]).max() for name, image in passes.items() if name.endswith(" Motion"))
+    vectors, tracked = passes[f"Path {component} Motion"], passes[f"Path {component} Tracked"][..., 0] > 0.0
+    length = np.clip(np.hypot(vectors[..., 0], vectors[..., 1]) / max(float(longest), 1e-6), 0.0, 1.0)
+    hue = np.arctan2(-vectors[..., 1], -vectors[..., 0]) / (2.0 * np.pi)
+    wheel = np.clip(np.abs((hue[..., None] * 6.0 + np.array((0.0, 4.0, 2.0))) % 6.0 - 3.0) - 1.0, 0.0, 1.0)
+    return np.where(tracked[..., None], wheel * np.sqrt(length)[..., None], 0.25)
+
+
+ROWS: dict[str, Shower] = {
+    "": lambda passes, name, white: light(passes[f"Path {name}"], white),
+    "Reflectance": lambda passes, name, _: light(passes[f"Path {name} Reflectance"], 1.0),
+    "Irradiance": lambda passes, name, white: light(passes[f"Path {name} Irradiance"], 2.0 * white),
+    "Normal": lambda passes, name, _: 0.5 + 0.5 * np.clip(passes[f"Path {name} Normal"], -1.0, 1.0),
+    "Motion": lambda passes, name, _: motion(passes, name),
+}
+"""Row → what it shows of a component; light by one exposure for all."""
+
+
+def sheet(passes: Passes) -> Image.Image:
+    names = components(passes)
+    white = max(float(np.percentile(passes["Combined"][..., :3], BRIGHTEST)), 1e-6)
+    height, width = passes["Combined"].shape[:2]
+    made = Image.new("RGB", (len(names) * (width + GAP) - GAP, len(ROWS) * (height + HEADER) - GAP), "white")
+    text = ImageDraw.Draw(made)
+    for row, (suffix, show) in enumerate(ROWS.items()):
+        for column, name in enumerate(names):
+            left, top = column * (width + GAP), row * (height + HEADER)
+            text.text((left + 2, top), f"{name} {suffix}", fill="black")
+            made.paste(Image.fromarray(np.uint8(np.rint(255.0 * show(passes, name, white)))), (left, top + HEADER - GAP))
+    return made
+
+
+if __name__ == "__main__":
+    source, target = map(Path, sys.argv[1:])
+    target.parent.mkdir(parents=True, exist_ok=True)
+    sheet(read(source)).save(target, quality=90)
