@@ -36,18 +36,19 @@ def _scene() -> None:
 
 
 def _still_life() -> None:
-    """A glass ball, a glass slab with a box behind it, and something that shines by itself."""
+    """A glass ball, a glass slab, and something that shines by itself."""
     common.sphere("Glass", (0.95, -0.55, 0.32), 0.32, common.glass("Glass"))
     common.box("Slab", (-0.75, -0.45, 0.45), (0.7, 0.08, 0.9), common.glass("Slab", (0.9, 1.0, 0.96)), turn=20)
-    common.box("Box", (-0.85, 0.35, 0.35), (0.4, 0.4, 0.7), common.diffuse("Yellow", (0.7, 0.5, 0.1)), turn=-15)
     common.sphere("Lantern", (0.2, -0.95, 0.1), 0.1, common.emission("Lantern", (1.0, 0.6, 0.25), 6.0), segments=24)
 
 
 def _what_moves() -> None:
-    """The mirror ball rolls to the right, the lamp swings to the left: the shadows go where neither goes."""
+    """The mirror ball rolls to the right, a box slides by behind the slab, the lamp swings to the left: shadows go elsewhere."""
     mirror = common.principled("Mirror", (0.95, 0.95, 0.96), 0.02, 1.0)
     ball = common.sphere("Mirror Ball", (-0.3, 0.15, 0.42), 0.42, mirror, segments=64)
     common.key(ball, "location", [(1, (-0.3, 0.15, 0.42)), (FRAMES, (0.5, 0.15, 0.42))])
+    box = common.box("Box", (-1.05, 0.35, 0.35), (0.4, 0.4, 0.7), common.diffuse("Yellow", (0.7, 0.5, 0.1)), turn=-15)
+    common.key(box, "location", [(1, (-1.05, 0.35, 0.35)), (FRAMES, (-0.65, 0.35, 0.35))])
     lamp = common.area_lamp("Lamp", (0.9, -0.6, 2.1), (0.0, 0.0, 0.3), (0.35, 0.35), 70.0, (1.0, 0.95, 0.88))
     common.key(lamp, "location", [(1, (0.9, -0.6, 2.1)), (FRAMES, (-0.9, -0.6, 2.1))])
 

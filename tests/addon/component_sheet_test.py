@@ -1,0 +1,55 @@
+"""`make picture-components` puts a frame's components side by side."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from support import images
+
+ROOT = Path(__file__).resolve().parents[2]
+pytestmark = pytest.mark.module  # the application's Python has no Pillow
+HEIGHT, WIDTH = 9, 16
+
+
+@pytest.fixture
+def tool() -> dict[str, Any]:
+    return runpy.run_path(str(ROOT / "tools" / "component_sheet.py"))
+
+
+def passes_of(name: str, color: tuple[float, float, float], tracked: float) -> dict[str, np.ndarray]:
+    plane = np.ones((HEIGHT, WIDTH, 1), np.float32)
+    motion = plane * np.array((-4.0, 0.0, -4.0, 0.0), np.float32)
+    surface = {suffix: plane * np.array(color, np.float32) for suffix in ("", " Reflectance", " Irradiance", " Normal")}
+    return {f"Path {name}{suffix}": image for suffix, image in (surface | {" Motion": motion, " Tracked": plane * tracked}).items()}
+
+
+def test_a_column_for_each_component_and_a_row_for_each_pass(tool: dict[str, Any]) -> None:
+    passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)}
+    passes |= passes_of("Diffuse", (1.0, 0.0, 0.0), 1.0) | passes_of("Reflection", (0.0, 0.0, 1.0), -3.0)
+    made = np.asarray(tool["sheet"](passes))
+    gap, header = tool["GAP"], tool["HEADER"]
+    assert made.shape == (5 * (HEIGHT + header) - gap, 2 * (WIDTH + gap) - gap, 3)
+
+    def shown(row: int, column: int) -> list[int]:
+        return made[row * (HEIGHT + header) + header - gap + HEIGHT // 2, column * (WIDTH + gap) + WIDTH // 2].tolist()
+
+    assert [shown(0, 0), shown(0, 1)] == [[255, 0, 0], [0, 0, 255]]
+    assert shown(4, 0) == [255, 0, 0], "to the right is red"
+    assert shown(4, 1) == [64, 64, 64], "not tracked"
+
+
+def test_it_reads_what_blender_writes(tool: dict[str, Any], tmp_path: Path) -> None:
+    bpy.ops.wm.open_mainfile(filepath=str(ROOT / "sample_blends" / "mirror_and_glass.blend"))
+    scene = bpy.context.scene
+    images.prepare(scene)
+    images.use_exr(scene, tmp_path / "frame.exr")
+    bpy.ops.render.render(write_still=True, scene=scene.name)
+    found, expected = tool["read"](tmp_path / "frame.exr"), images.read(tmp_path / "frame.exr")
+    assert sorted(tool["components"](found)) == ["Diffuse", "Emission", "Reflection", "Residual", "Transmission"]
+    for name in ("Combined", "Path Diffuse", "Path Diffuse Motion"):
+        np.testing.assert_array_equal(found[name], np.flipud(expected[f"ViewLayer.{name}"]))

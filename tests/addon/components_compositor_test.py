@@ -1,0 +1,63 @@
+"""The sample whose compositor grades the reflection, blurs each component by its own motion and sums up, rendered in background."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from support import images
+
+SAMPLE = Path(__file__).resolve().parents[2] / "sample_blends" / "components.blend"
+COMPOSITE, COMBINED = "Composite.Combined", "ViewLayer.Combined"
+NAMES = ("Emission", "Diffuse", "Reflection", "Transmission", "Residual")
+BLURS = tuple(f"Blur {name}" for name in NAMES)
+WARM = np.array((1.6, 0.9, 0.5), np.float32)
+
+
+@pytest.fixture(scope="module")
+def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Passes]:
+    """render("Grade"): all passes of the sample and its composite, with these nodes muted."""
+    done: dict[tuple[str, ...], images.Passes] = {}
+
+    def passes(*muted: str) -> images.Passes:
+        if muted not in done:
+            bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
+            scene = bpy.context.scene
+            assert (scene.render.engine, scene.render.use_compositing) == ("GRADUS", True)
+            scene.render.resolution_percentage = 50
+            for name in muted:
+                tree(scene).nodes[name].mute = True
+            done[muted] = images.render(scene, tmp_path_factory.mktemp("composite"), frame=12, samples=4, noise_threshold=0.0)
+        return done[muted]
+
+    return passes
+
+
+def tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
+    """Since 5.0 a group that scenes may share."""
+    return getattr(scene, "compositing_node_group", None) or scene.node_tree
+
+
+def rgb(passes: images.Passes, name: str) -> np.ndarray:
+    return passes[name][..., :3]
+
+
+def test_without_grade_and_blur_the_sum_is_the_render(render: Callable[..., images.Passes]) -> None:
+    plain = render("Grade", *BLURS)
+    np.testing.assert_allclose(rgb(plain, COMPOSITE), rgb(plain, COMBINED), rtol=1e-5, atol=1e-5)
+
+
+def test_the_grade_changes_the_reflection_alone(render: Callable[..., images.Passes]) -> None:
+    graded = render(*BLURS)
+    reflection = rgb(graded, "ViewLayer.Path Reflection")
+    change = rgb(graded, COMPOSITE) - rgb(graded, COMBINED)
+    assert (reflection > 0.05).any(axis=-1).mean() > 0.02
+    np.testing.assert_allclose(change, reflection * (WARM - 1.0), atol=2e-5 * max(1.0, float(reflection.max())))
+    assert np.abs(change[reflection.max(axis=-1) == 0.0]).max() < 1e-5
+
+
+def test_the_composite_is_finite(render: Callable[..., images.Passes]) -> None:
+    assert all(np.isfinite(image).all() for image in render().values())

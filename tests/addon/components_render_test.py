@@ -1,0 +1,281 @@
+"""Components as Blender gets them: their sum, their names in files and nodes, layers, views, borders, animations, refusals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from gradus import passes, renderer
+from support import application, images
+
+SAMPLE = Path(__file__).resolve().parents[2] / "sample_blends" / "mirror_and_glass.blend"
+DEFAULT = ("Emission", "Diffuse", "Reflection", "Transmission", "Residual")
+
+
+@pytest.fixture
+def sample() -> bpy.types.Scene:
+    """A mirror ball, glass, a lantern and a textured floor, small; every pass of every component."""
+    bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
+    scene = bpy.context.scene
+    images.prepare(scene)
+    show_all(scene.view_layers[0])
+    return scene
+
+
+def show_all(layer: bpy.types.ViewLayer) -> None:
+    for part in passes.PARTS:
+        setattr(layer.gradus, part.switch.removeprefix("gradus."), True)
+
+
+def part(rendered: images.Passes, name: str, suffix: str = "", layer: str = "ViewLayer") -> np.ndarray:
+    return rendered[f"{layer}.Path {name}{suffix}"]
+
+
+def require_sum(rendered: images.Passes, names: tuple[str, ...], layer: str = "ViewLayer") -> None:
+    """1e-5 of what was added up: L2 has parts below 0."""
+    parts = [part(rendered, name, "", layer).astype(np.float64) for name in names]
+    combined = rendered[f"{layer}.Combined"][..., :3]
+    scale = np.maximum(sum(np.abs(image) for image in parts), 1e-3)
+    assert np.abs(sum(parts) - combined).max() > 0.0 or len(parts) == 1 or combined.max() > 0.0
+    np.testing.assert_array_less(np.abs(sum(parts) - combined) / scale, 1e-5)
+
+
+# ------------------------------------------------------------------------------------------------ sums
+
+
+@pytest.mark.parametrize("reconstruction", ["NONE", "AUTO", "L2", "L1", "WEIGHTED"])
+def test_components_add_up_to_combined(sample: bpy.types.Scene, render: Callable[..., images.Passes], reconstruction: str) -> None:
+    rendered = render(sample, frame=12, reconstruction=reconstruction, integrator="AUTO")
+    require_sum(rendered, DEFAULT)
+    combined = rendered["ViewLayer.Combined"][..., :3].sum()
+    assert all(part(rendered, name).sum() > 0.0005 * combined for name in DEFAULT)
+    assert all(part(rendered, name).sum() < 0.95 * combined for name in DEFAULT)
+
+
+def test_own_components_add_up_and_are_what_their_expressions_say(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    rendered = render(sample, components="Direct=EDL;Indirect=ED.+L;Seen=EL")
+    names = ("Direct", "Indirect", "Seen", "Residual")
+    require_sum(rendered, names)
+    by_default = render(sample, components="")
+    both = part(rendered, "Direct") + part(rendered, "Indirect")
+    diffuse = part(by_default, "Diffuse")
+    assert both.sum() == pytest.approx(diffuse.sum(), rel=0.1)
+    assert part(rendered, "Direct").sum() > 0.0
+    assert part(rendered, "Indirect").sum() > 0.0
+
+
+def test_what_a_scene_does_not_have_is_black(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    """The plan leaves it out; its passes are there all the same."""
+    bpy.data.objects.remove(bpy.data.objects["Glass"])
+    bpy.data.objects.remove(bpy.data.objects["Slab"])
+    rendered = render(sample)
+    assert all(not part(rendered, "Transmission", info.suffix).any() for info in passes.PARTS if info.suffix != " Tracked")
+    require_sum(rendered, DEFAULT)
+
+
+def test_irradiance_times_reflectance_is_the_component(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    rendered = render(sample)
+    for name in DEFAULT:
+        color, reflectance, irradiance = (part(rendered, name, suffix) for suffix in ("", " Reflectance", " Irradiance"))
+        expected = np.where(reflectance >= 1e-3, irradiance * reflectance, irradiance)
+        np.testing.assert_allclose(color, expected, rtol=1e-4, atol=1e-6)
+    floor = part(rendered, "Diffuse", " Normal")[1, 1:30]
+    np.testing.assert_allclose(np.linalg.norm(floor, axis=-1), 1.0, atol=0.02)
+    np.testing.assert_allclose(floor[:, 2], 1.0, atol=0.05)
+
+
+# ------------------------------------------------------------------------------------------------ names
+
+
+def path_passes(rendered: images.Passes, layer: str = "ViewLayer") -> set[str]:
+    head = f"{layer}.Path "
+    return {name.removeprefix(f"{layer}.") for name in rendered if name.startswith(head)}
+
+
+def test_names_registered_are_names_in_the_file(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    """With names of 24 letters, the longest: file formats and nodes have room for 64 bytes."""
+    names = ("Abcdefghijklmnopqrstuvwx", "B")
+    rendered = render(sample, components=f"{names[0]}=ED.*L;{names[1]}=ERDL")
+    expected = {info.of(name).name: info for name in (*names, "Residual") for info in passes.PARTS}
+    assert path_passes(rendered) == set(expected)
+    for name, info in expected.items():
+        assert rendered[f"ViewLayer.{name}"].shape[2] == len(info.ids), name
+    require_sum(rendered, (*names, "Residual"))
+
+
+def test_the_longest_name_that_is_not_cut_is_64_bytes(scene: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    """The limit as this Blender has it: Abc…x is a component's longest name, and 20 letters are left for the layer."""
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.collection.objects.link(scene.camera)
+    layer = scene.view_layers[0]
+    scene.gradus.use_decomposition, scene.gradus.components = True, "Abcdefghijklmnopqrstuvwx=ED.*L"
+    layer.gradus.use_pass_component_reflectance = True
+    for letters, whole in ((20, True), (21, bpy.app.version >= (5, 0, 0))):
+        layer.name = "L" * letters
+        rendered = render(scene)
+        channels = rendered.get(f"{layer.name}.Path Abcdefghijklmnopqrstuvwx Reflectance", np.zeros((1, 1, 0))).shape[2]
+        assert (channels == 3) == whole
+
+
+def test_layers_have_their_own_switches(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    second = sample.view_layers.new("Second")
+    second.gradus.use_pass_components = False
+    second.gradus.use_pass_component_normal = True
+    rendered = render(sample)
+    assert path_passes(rendered) == {info.of(name).name for name in DEFAULT for info in passes.PARTS}
+    assert path_passes(rendered, "Second") == {f"Path {name} Normal" for name in DEFAULT}
+
+
+def test_a_border_is_the_crop_of_the_whole(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    whole = render(sample, reconstruction="NONE")
+    sample.render.use_border = sample.render.use_crop_to_border = True
+    sample.render.border_min_x, sample.render.border_max_x, sample.render.border_min_y, sample.render.border_max_y = 0.25, 0.75, 0.25, 0.75
+    crop = render(sample)
+    for name in DEFAULT:
+        np.testing.assert_array_equal(part(crop, name), part(whole, name)[9:27, 16:48])
+
+
+def test_each_eye_has_its_components(sample: bpy.types.Scene, tmp_path: Path) -> None:
+    sample.render.use_multiview = True
+    sample.camera.data.stereo.interocular_distance = 0.4
+    images.use_exr(sample, tmp_path / "eye.exr")
+    sample.render.image_settings.views_format = "INDIVIDUAL"
+    bpy.ops.render.render(write_still=True, scene=sample.name)
+    left, right = (images.read(tmp_path / f"eye_{side}.exr") for side in "LR")
+    for eye in (left, right):
+        assert path_passes(eye) == {info.of(name).name for name in DEFAULT for info in passes.PARTS}
+        require_sum(eye, DEFAULT)
+    assert not np.array_equal(part(left, "Diffuse"), part(right, "Diffuse"))
+
+
+@pytest.mark.parametrize("temporal", [True, False])
+def test_frames_of_an_animation_have_them(sample: bpy.types.Scene, tmp_path: Path, temporal: bool) -> None:
+    sample.frame_start, sample.frame_end = 1, 3
+    sample.gradus.use_temporal = temporal
+    images.use_exr(sample, tmp_path / "f_####.exr")
+    bpy.ops.render.render(animation=True, scene=sample.name)
+    frames = [images.read(tmp_path / f"f_{frame:04d}.exr") for frame in (1, 2, 3)]
+    for rendered in frames:
+        assert path_passes(rendered) == {info.of(name).name for name in DEFAULT for info in passes.PARTS}
+        require_sum(rendered, DEFAULT)
+    assert not np.array_equal(part(frames[0], "Reflection"), part(frames[2], "Reflection"))
+
+
+def test_k5_a_cancelled_render_keeps_its_picture(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Components are there when all is sampled; that must not cost the picture so far."""
+    calls: list[int] = []
+    monkeypatch.setattr(renderer, "stop_requested", lambda engine: calls.append(1) or len(calls) > 4)
+    rendered = render(sample, samples=100000)
+    assert rendered["ViewLayer.Combined"][..., :3].any()
+    assert all(np.isfinite(image).all() for image in rendered.values())
+
+
+def test_decomposition_off_leaves_nothing_behind(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    assert path_passes(render(sample, use_decomposition=False)) == set()
+
+
+# ------------------------------------------------------------------------------------------------ refusals
+
+
+MALFORMED = "A=EDL;B=ED.*L"
+
+
+def test_a_malformed_set_ends_the_render_with_its_reason(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    with pytest.raises(RuntimeError, match="components A and B overlap: both match EDL"):
+        render(sample, components=MALFORMED)
+
+
+@pytest.mark.application
+def test_a_malformed_set_on_the_command_line_is_exit_code_1(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
+    arguments = ("--addons", "gradus", SAMPLE, "-o", tmp_path / "f_", "-f", "1", "--", "--gradus-use-decomposition", "1")
+    outcome = blender(*arguments, "--gradus-components", MALFORMED, "--gradus-samples", "1")
+    assert (outcome.code, list(tmp_path.glob("f_*"))) == (1, []), outcome.output
+    assert "overlap: both match EDL" in outcome.output
+
+
+@pytest.mark.application
+def test_the_command_line_takes_a_picture_apart(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
+    sample = SAMPLE.with_name("cornell.blend")
+    outcome = blender(
+        "--addons", "gradus", sample, "-o", tmp_path / "f_", "-F", "OPEN_EXR_MULTILAYER", "-f", "1", "--",
+        "--gradus-use-decomposition", "1", "--gradus-components", "Direct=EDL", "--gradus-passes", "components", "--gradus-samples", "1",
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.output
+    rendered = images.read(tmp_path / "f_0001.exr")
+    assert path_passes(rendered) == {info.of(name).name for name in ("Direct", "Residual") for info in passes.PARTS}
+
+
+# ------------------------------------------------------------------------------------------------ File Output
+
+
+def file_output(scene: bpy.types.Scene, names: list[str], folder: Path, dimensions: int | None = None) -> Callable[[], images.Passes]:
+    """A File Output node fed by passes of the render; what it has written."""
+    tree = compositor(scene)
+    render, node = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeOutputFile")
+    settings = node.format
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    if hasattr(node, "file_output_items"):
+        node.directory, node.file_name = str(folder), "out"
+        for name in names:
+            item = node.file_output_items.new({"VALUE": "FLOAT", "RGBA": "RGBA"}.get(render.outputs[name].type, "VECTOR"), name)
+            if dimensions is not None and item.socket_type == "VECTOR":
+                item.vector_socket_dimensions = dimensions
+    else:
+        node.base_path = str(folder / "out")
+        node.layer_slots.clear()
+        for name in names:
+            node.layer_slots.new(name)
+    for name in names:
+        tree.links.new(render.outputs[name], node.inputs[name])
+    scene.render.use_compositing = True
+    return lambda: images.read(next(folder.glob("out*")))
+
+
+def compositor(scene: bpy.types.Scene) -> bpy.types.NodeTree:
+    if hasattr(scene, "compositing_node_group"):
+        tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
+        tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        output = tree.nodes.new("NodeGroupOutput")
+    else:
+        scene.use_nodes = True
+        tree = scene.node_tree
+        tree.nodes.clear()
+        output = tree.nodes.new("CompositorNodeComposite")
+    render = tree.nodes.new("CompositorNodeRLayers")
+    tree.links.new(render.outputs["Image"], output.inputs[0])
+    scene.view_layers[0].update_render_passes()
+    return tree
+
+
+def test_a_file_output_node_writes_them(sample: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
+    names = [info.of(name).name for name in DEFAULT for info in passes.PARTS]
+    folder = tmp_path / "nodes"
+    folder.mkdir()
+    written = file_output(sample, names, folder)
+    rendered, found = render(sample), written()
+    for name in names:
+        expected = rendered[f"ViewLayer.{name}"]
+        image = next(image for full, image in found.items() if full == name or full.startswith(f"{name}."))
+        channels = min(expected.shape[2], image.shape[2], 3)
+        np.testing.assert_allclose(image[..., :channels], expected[..., :channels], rtol=1e-6, atol=1e-7, err_msg=name)
+
+
+def test_the_fourth_number_of_a_motion_in_a_file_output(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path
+) -> None:
+    """The user guide says which Blender writes it."""
+    keeps, asked = ((4, 0) <= bpy.app.version < (5, 0)), bpy.app.version >= (5, 0)
+    name = "Path Diffuse Motion"
+    for index, (dimensions, expected) in enumerate([(None, 4 if keeps else 3), (4, 4)] if asked else [(None, 4 if keeps else 3)]):
+        folder = tmp_path / f"nodes{index}"
+        folder.mkdir()
+        written = file_output(sample, [name], folder, dimensions)
+        render(sample)
+        assert next(image for full, image in written().items() if full.startswith(name)).shape[2] == expected
