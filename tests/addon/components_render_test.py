@@ -46,13 +46,29 @@ def require_sum(rendered: images.Passes, names: tuple[str, ...], layer: str = "V
 # ------------------------------------------------------------------------------------------------ sums
 
 
-@pytest.mark.parametrize("reconstruction", ["NONE", "AUTO", "L2", "L1", "WEIGHTED"])
+@pytest.mark.parametrize("reconstruction", ["NONE", "REGULARIZED", "L2", "L1", "WEIGHTED"])
 def test_components_add_up_to_combined(sample: bpy.types.Scene, render: Callable[..., images.Passes], reconstruction: str) -> None:
-    rendered = render(sample, frame=12, reconstruction=reconstruction, integrator="AUTO")
+    rendered = render(sample, frame=12, reconstruction=reconstruction, integrator="PATH" if reconstruction == "NONE" else "GRADIENT")
     require_sum(rendered, DEFAULT)
     combined = rendered["ViewLayer.Combined"][..., :3].sum()
     assert all(part(rendered, name).sum() > 0.0005 * combined for name in DEFAULT)
     assert all(part(rendered, name).sum() < 0.95 * combined for name in DEFAULT)
+
+
+@pytest.mark.parametrize("case", ["film", "holdout", "clamped", "denoised", "exposed"])
+def test_they_add_up_whatever_is_done_to_the_picture(sample: bpy.types.Scene, render: Callable[..., images.Passes], case: str) -> None:
+    """The denoiser, where this Blender has one, works on their sum."""
+    bpy.data.objects.remove(bpy.data.objects["Back"])
+    sample.render.film_transparent = case == "film"
+    bpy.data.objects["Glass"].is_holdout = case == "holdout"
+    settings = {
+        "clamped": {"clamp_direct": 1.0, "clamp_indirect": 0.5},
+        "denoised": {"denoiser": "AUTO"},
+        "exposed": {"film_exposure": 2.5},
+    }
+    rendered = render(sample, samples=8, **settings.get(case, {}))
+    assert (rendered["ViewLayer.Combined"][..., 3].min() == 0.0) == (case in ("film", "holdout"))
+    require_sum(rendered, DEFAULT)
 
 
 PLACES = {"Diffuse": (2, 3), "Reflection": (33, 15), "Transmission": (21, 15), "Emission": (36, 5)}
