@@ -84,7 +84,8 @@ std::vector<float> reconstruct_color(FrameObject* object, const Frame& frame, in
     const FlushDenormals flush;
     SolveReport report;
     const Reconstructed picture = reconstruct_component(
-        frame, component, reconstruction, frame.settings.reconstruction_alpha, false, [] { return false; }, &report);
+        frame, component, reconstruction, frame.settings.reconstruction_alpha, false, shared_features(frame, reconstruction),
+        [] { return false; }, &report);
     color = crop_component(frame, reconstruction, picture.image, delivered_region(frame));
   });
   return color;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
@@ -146,6 +147,85 @@ Field fuse(const GradientImages& images, float scale, float unknown, Field regre
   return solution;
 }
 
+// Beyond this, in pixels, nothing comes of a light: by the largest windows of both steps. A multiple of the largest square.
+constexpr int kFarthest = 64;
+constexpr int kLargestSquareSide = 16;
+
+// Of the image; whole squares of it.
+Region lit_part(const HalvedImage& image) {
+  const int w = image.mean.width(), h = image.mean.height();
+  Region lit{w, h, 0, 0};
+  for (const Field* field : {&image.mean, &image.half_difference}) {
+    for (int y = 0; y < h; ++y) {
+      for (int c = 0; c < 3; ++c) {
+        const float *begin = field->row(y, c), *end = begin + w;
+        const auto shines = [](float value) { return value != 0.0f; };
+        const float* const first = std::find_if(begin, end, shines);
+        if (first == end) continue;
+        const float* const last = std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), shines).base();
+        lit = {std::min(lit.x0, int(first - begin)), std::min(lit.y0, y), std::max(lit.x1, int(last - begin)),
+               y + 1 > lit.y1 ? y + 1 : lit.y1};
+      }
+    }
+  }
+  if (lit.x0 >= lit.x1) return {0, 0, std::min(w, kLargestSquareSide), std::min(h, kLargestSquareSide)};
+  const auto squared = [](int begin) { return std::max(0, begin - kFarthest) / kLargestSquareSide * kLargestSquareSide; };
+  return {squared(lit.x0), squared(lit.y0), std::min(w, lit.x1 + kFarthest), std::min(h, lit.y1 + kFarthest)};
+}
+
+Field crop(const Field& field, const Region& part) {
+  Field result(part.width(), part.height(), field.channels());
+  for_values(&result, [&](float& value, int x, int y, int c) { value = field.row(y + part.y0, c)[x + part.x0]; });
+  return result;
+}
+
+HalvedImage crop(const HalvedImage& image, const Region& part) {
+  return {crop(image.mean, part), crop(image.half_difference, part), image.is_light};
+}
+
+FeatureImage crop(const FeatureImage& image, int width, const Region& part) {
+  FeatureImage result{image.channels, {}, {}};
+  for (auto plane : {&FeatureImage::values, &FeatureImage::variance}) {
+    if ((image.*plane).empty()) continue;
+    for (int y = part.y0; y < part.y1; ++y) {
+      const auto row = (image.*plane).begin() + ptrdiff_t(image.channels) * (ptrdiff_t(y) * width + part.x0);
+      (result.*plane).insert((result.*plane).end(), row, row + ptrdiff_t(image.channels) * part.width());
+    }
+  }
+  return result;
+}
+
+Features crop(const Features& features, const Region& part) {
+  return {part.width(), part.height(), crop(features.normal, features.width, part), crop(features.albedo, features.width, part),
+          crop(features.depth, features.width, part)};
+}
+
+// Interleaved channels of three, and the error.
+Reconstructed regularize_part(HalvedImage image, float scale, const Features& features, const CancelTest& cancel) {
+  normalise(scale, &image);
+  const FeatureRegression regression(features, image, cancel);
+  Field solution = regression.image(), error = regression.error();
+  multiply(scale, &solution);
+  multiply(scale * scale, &error);
+  const size_t pixels = size_t(features.width) * size_t(features.height);
+  Reconstructed result{std::vector<float>(3 * pixels), std::vector<float>(pixels)};
+  for (int c = 0; c < 3; ++c) store_channel(solution, c, 3, result.image.data() + c);
+  store_channel(error, 0, 1, result.error.data());
+  return result;
+}
+
+// Into an image that is black elsewhere.
+Reconstructed paste(const Reconstructed& from, const Region& part, int w, int h) {
+  Reconstructed result{std::vector<float>(3 * size_t(w) * size_t(h)), std::vector<float>(size_t(w) * size_t(h))};
+  const auto width = size_t(part.width());
+  for (size_t y = 0; y < size_t(part.height()); ++y) {
+    const size_t to = (y + size_t(part.y0)) * size_t(w) + size_t(part.x0);
+    std::copy_n(from.image.begin() + ptrdiff_t(3 * width * y), 3 * width, result.image.begin() + ptrdiff_t(3 * to));
+    std::copy_n(from.error.begin() + ptrdiff_t(width * y), width, result.error.begin() + ptrdiff_t(to));
+  }
+  return result;
+}
+
 }  // namespace
 
 Reconstructed regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
@@ -156,6 +236,10 @@ Reconstructed regularize(const Frame& frame, int component, const Features& feat
   const int w = frame.region.width(), h = frame.region.height();
   HalvedImage image = read_halves(frame, component);
   const float scale = robust_scale(image.mean);
+  const Region part = lit_part(image);
+  if (frame.components.size() > 1 && part.area() < frame.region.area() && !frame.gradients && frame.channels == 3) {
+    return paste(regularize_part(crop(image, part), scale, crop(features, part), cancel), part, w, h);
+  }
   normalise(scale, &image);
   const FeatureRegression regression(features, image, cancel);
   Field solution = regress(frame, component, regression, cancel);

@@ -34,7 +34,8 @@ void add_terms(const Frame& frame, int component, uint32_t reconstruction, float
 }
 
 // L1, too: its weights are of the same kind as WEIGHTED's, and those of the noise are known without iterating.
-void add_weighted(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
+void add_weighted(const Frame& frame, int component, uint32_t reconstruction, float alpha, const Features&, const CancelTest& cancel,
+                  FrameNoise* sum) {
   GradientImages images = read_images(frame, component);
   read_deviations(frame, component, &images);
   NoiseLeft left = noise_left(images, read_half_differences(frame, component), alpha, cancel);
@@ -44,9 +45,10 @@ void add_weighted(const Frame& frame, int component, uint32_t reconstruction, fl
   add_image(std::move(left.noise), &sum->by_own_weights);
 }
 
-void add_other(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
+void add_other(const Frame& frame, int component, uint32_t reconstruction, float alpha, const Features& features, const CancelTest& cancel,
+               FrameNoise* sum) {
   SolveReport report;
-  Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, true, cancel, &report);
+  Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, true, features, cancel, &report);
   if (part.error.empty()) add_terms(frame, component, reconstruction, alpha, part.image, cancel, sum);
   add_image(std::move(part.image), &sum->image);
   add_image(std::move(part.error), &sum->error);
@@ -54,9 +56,10 @@ void add_other(const Frame& frame, int component, uint32_t reconstruction, float
 
 FrameNoise noise_of(const Frame& frame, uint32_t reconstruction, float alpha, const CancelTest& cancel) {
   FrameNoise sum;
+  const Features features = shared_features(frame, reconstruction);
   const auto add_component = follows_noise(reconstruction) ? add_weighted : add_other;
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    add_component(frame, component, reconstruction, alpha, cancel, &sum);
+    add_component(frame, component, reconstruction, alpha, features, cancel, &sum);
   }
   return sum;
 }
