@@ -473,5 +473,25 @@ TEST(BadInput_Regularized, ABlackImageIsBlack) {
   EXPECT_EQ(solve(make_feature_frame(description)), description.truth);
 }
 
+// A component that has light in one place only is regressed there and around it.
+TEST(B1_Regularized, OfAComponentThePartThatIsLitIsAsOfTheWhole) {
+  constexpr int w = 300, h = 260;
+  const auto is_lit = [](size_t i) { return i % w >= 150 && i % w < 190 && i / w >= 90 && i / w < 130; };
+  FeatureFrame description = room(w, h);
+  description.feature = [](int x, int y, int c, int half) { return c == 6 ? 3.0f : room_feature(x, y, c, half); };
+  description.sigma = [&](size_t i) { return is_lit(i) ? 0.4f : 0.0f; };
+  for (size_t i = 0; i < description.truth.size(); ++i) description.truth[i] *= is_lit(i / 3) ? 1.0f : 0.0f;
+  const Frame alone = make_feature_frame(description);
+  Frame beside = alone;
+  beside.components.push_back(beside.components[0]);
+  const Reconstructed whole = solve_with_error(alone), part = solve_with_error(beside);
+  for (size_t i = 0; i < whole.image.size(); ++i) ASSERT_NEAR(part.image[i], whole.image[i], 1e-4f) << i;
+  EXPECT_EQ(part.image[0], 0.0f);
+  EXPECT_EQ(part.error[0], 0.0f);
+  for (size_t i = 0; i < whole.error.size(); ++i) {
+    ASSERT_NEAR(part.error[i], is_lit(i) ? whole.error[i] : part.error[i], 1e-4f + 0.01f * whole.error[i]) << i;
+  }
+}
+
 }  // namespace
 }  // namespace gradus
