@@ -5,6 +5,7 @@
 #include "memory/allocations.h"
 #include "plan/plan.h"
 #include "render/fake_integrator.h"
+#include "settings/options.h"
 
 namespace gradus::memory {
 namespace {
@@ -16,6 +17,7 @@ struct Case {
   uint32_t integrator, reconstruction;
   bool adaptive, transparent, gaps, error = false;
   bool watched = false, denoised = false;
+  const char* components = nullptr;
 };
 
 // What the plan allows for the network: the stand-in takes nothing.
@@ -39,6 +41,11 @@ GradusSettings settings_of(const Case& c) {
   settings.noise_threshold = c.adaptive ? 1e-6f : 0.0f;
   settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | feature_passes();
   if (c.denoised) settings.denoiser = GRADUS_DENOISER_OIDN;
+  if (c.components != nullptr) {
+    settings.use_decomposition = 1;
+    settings.component_passes = 1u << GRADUS_COMPONENT_COLOR | 1u << GRADUS_COMPONENT_NORMAL;
+    set_text(&settings, *find_option("components"), c.components);
+  }
   if (c.error) settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
   return settings;
 }
@@ -92,6 +99,13 @@ INSTANTIATE_TEST_SUITE_P(All, PlannedBytes, ::testing::ValuesIn([] {
                            all.push_back({"WatchedL2", gradient, GRADUS_RECONSTRUCTION_L2, false, false, false, false, true});
                            all.push_back({"WatchedError", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, false, true, false, true, true});
                            all.push_back({"Watched", path, GRADUS_RECONSTRUCTION_REGULARIZED, false, false, false, false, true});
+                           const char* const bounces = "Once=EDL;Twice=EDDL;Thrice=EDDDL";
+                           Case apart{"Components", path, GRADUS_RECONSTRUCTION_REGULARIZED, false, false, false};
+                           apart.components = bounces;
+                           all.push_back(apart);
+                           apart = {"ComponentsOfL2", gradient, GRADUS_RECONSTRUCTION_L2, false, true, false};
+                           apart.components = bounces;
+                           all.push_back(apart);
                            return all;
                          }()),
                          [](const ::testing::TestParamInfo<Case>& info) {

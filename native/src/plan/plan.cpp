@@ -309,7 +309,9 @@ uint64_t planned_bytes(const Plan& plan) {
   uint64_t floats = reconstruction_floats(plan);
   if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is
   if (wants(plan.passes, GRADUS_PASS_ERROR)) floats = std::max(floats, error_floats(plan)) + 1;
-  if (plan.components.count() > 1) bytes += (uint64_t(plan.channels) + 3 * uint64_t(plan.components.count())) * sizeof(float);
+  // One component's picture, those of all where they are wanted, and those that are shown meanwhile.
+  const uint64_t channels = uint64_t(plan.channels), components = uint64_t(plan.components.count());
+  if (components > 1) bytes += (channels + (channels + 3) * components) * sizeof(float);
   // A reconstruction that is shown stays until the next one is there.
   if (reconstructs(plan)) bytes += (wants(plan.passes, GRADUS_PASS_ERROR) ? 5 : 4) * sizeof(float);
   if (plan.adaptive) {
