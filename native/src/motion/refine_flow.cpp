@@ -26,9 +26,11 @@ struct Normal {
   }
   // Pulls towards a vector.
   void pull(float weight, const Vec2& vector) { xx += weight, yy += weight, right += weight * vector; }
-  Vec2 solution() const {
+  // The same about the vector itself: vector = (xx xy; xy yy) right.
+  Normal inverse() const {
     const float determinant = xx * yy - xy * xy;
-    return determinant > 0.0f ? Vec2(yy * right.x - xy * right.y, xx * right.y - xy * right.x) / determinant : Vec2(0.0f);
+    if (!(determinant > 0.0f)) return {};
+    return {yy / determinant, -xy / determinant, xx / determinant, right};
   }
 };
 
@@ -64,6 +66,7 @@ class Refinement {
         right_[p] = x + 1 < width_ ? likeness(p, p + 1) : 0.0f;
         below_[p] = y + 1 < height_ ? likeness(p, p + size_t(width_)) : 0.0f;
       });
+      each_pixel([this](int x, int y, size_t p) { pixels_[p] = solved(x, y, p); });
       std::fill(step_.begin(), step_.end(), Vec2(0.0f));
       for (int k = 0; k < 2 * kSweeps; ++k) {
         for_rows(height_, [this, k](int y) { relax(y, k & 1); });
@@ -124,17 +127,29 @@ class Refinement {
     return kSmoothness / std::sqrt(glm::dot(difference, difference) + kAlike * kAlike);
   }
 
+  // What a pixel's step is while its neighbours make none.
+  Normal solved(int x, int y, size_t p) const {
+    Normal normal = data_[p];
+    const size_t row = size_t(width_);
+    if (x > 0) normal.pull(right_[p - 1], rest_[p - 1] - rest_[p]);
+    if (x + 1 < width_) normal.pull(right_[p], rest_[p + 1] - rest_[p]);
+    if (y > 0) normal.pull(below_[p - row], rest_[p - row] - rest_[p]);
+    if (y + 1 < height_) normal.pull(below_[p], rest_[p + row] - rest_[p]);
+    return normal.inverse();
+  }
+
   // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each other.
   [[gnu::noinline]] void relax(int y, int colour) {
     for (int x = (y + colour) & 1; x < width_; x += 2) {
       const size_t p = index(x, y), row = size_t(width_);
-      Normal normal = data_[p];
-      const auto pull = [&](size_t q, float weight) { normal.pull(weight, rest_[q] + step_[q] - rest_[p]); };
-      if (x > 0) pull(p - 1, right_[p - 1]);
-      if (x + 1 < width_) pull(p + 1, right_[p]);
-      if (y > 0) pull(p - row, below_[p - row]);
-      if (y + 1 < height_) pull(p + row, below_[p]);
-      step_[p] += kOverRelaxation * (normal.solution() - step_[p]);
+      const Normal& inverse = pixels_[p];
+      Vec2 right = inverse.right;
+      if (x > 0) right += right_[p - 1] * step_[p - 1];
+      if (x + 1 < width_) right += right_[p] * step_[p + 1];
+      if (y > 0) right += below_[p - row] * step_[p - row];
+      if (y + 1 < height_) right += below_[p] * step_[p + row];
+      const Vec2 step = {inverse.xx * right.x + inverse.xy * right.y, inverse.xy * right.x + inverse.yy * right.y};
+      step_[p] += kOverRelaxation * (step - step_[p]);
     }
   }
 
@@ -143,7 +158,7 @@ class Refinement {
   std::vector<Vec2>& rest_;
   std::vector<Vec2> step_;  // from one warp to the next
   std::vector<float> warped_;
-  std::vector<Normal> pixels_, rows_, data_;  // of each alone, summed along rows, summed over windows
+  std::vector<Normal> pixels_, rows_, data_;  // of each alone (then solved with its neighbours), summed along rows, over windows
   std::vector<float> right_, below_;          // likeness of a pixel and its neighbours
   const std::array<float, 2 * kWindow + 1> weights_ = window_weights();
 };
