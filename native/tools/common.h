@@ -19,6 +19,7 @@ void add_render(CLI::App* app, int* exit_code);
 void add_reconstruct(CLI::App* app, int* exit_code);
 void add_compare(CLI::App* app, int* exit_code);
 void add_info(CLI::App* app, int* exit_code);
+void add_motion(CLI::App* app, int* exit_code);
 
 // Render options from the library's own table: what the user gave overlays settings.
 class OptionFlags {

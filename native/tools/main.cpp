@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   add_reconstruct(&app, &exit_code);
   add_compare(&app, &exit_code);
   add_info(&app, &exit_code);
+  add_motion(&app, &exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -12,31 +12,49 @@ const SpecularChain* ChainView::at(int32_t x, int32_t y) const {
   return place < 0 ? nullptr : &chains[size_t(place)];
 }
 
-ChainView view_chains(const CentreView& centres, const GradusSettings& settings, const ComponentSet& components, int component,
-                      const CancelTest& is_cancelled) {
-  ChainView view{&centres, &settings, std::vector<int32_t>(centres.hits.size(), -1), {}};
+namespace {
+
+using Row = std::vector<SpecularChain>;
+
+void join(std::vector<Row>* rows, ChainView* view) {
+  const auto width = size_t(view->region().width());
+  for (size_t row = 0; row < rows->size(); ++row) {
+    const auto first = int32_t(view->chains.size());
+    for (size_t x = 0; x < width; ++x) {
+      int32_t& place = view->places[row * width + x];
+      if (place >= 0) place += first;
+    }
+    view->chains.insert(view->chains.end(), (*rows)[row].begin(), (*rows)[row].end());
+    (*rows)[row] = {};
+  }
+}
+
+}  // namespace
+
+std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettings& settings, const ComponentSet& components,
+                                   uint32_t wanted, const CancelTest& is_cancelled) {
   const Region& region = centres.region;
-  const auto width = size_t(region.width());
-  const ChainTracer tracer = view.tracer();
-  std::vector<std::vector<SpecularChain>> rows(size_t(region.height()));
-  tbb::parallel_for(size_t{0}, rows.size(), [&](size_t row) {
+  const auto width = size_t(region.width()), height = size_t(region.height());
+  std::vector<int> numbers;
+  for (int c = 0; c < components.count(); ++c)
+    if ((wanted >> c & 1) != 0) numbers.push_back(c);
+  std::vector<ChainView> views(numbers.size(), {&centres, &settings, std::vector<int32_t>(centres.hits.size(), -1), {}});
+  std::vector<std::vector<Row>> rows(numbers.size(), std::vector<Row>(height));
+  const ChainTracer tracer(*centres.snapshot, centres.camera, settings);
+  tbb::parallel_for(size_t{0}, height, [&](size_t y) {
+    std::array<SpecularChain, kMostComponents> chains;
     for (size_t x = 0; x < width && !is_cancelled(); ++x) {
-      const Vec2 film = pixel_centre(region.x0 + int32_t(x), region.y0 + int32_t(row));
-      SpecularChain chain;
-      if (!tracer.find(film, centres.hits[row * width + x], components, component, &chain)) continue;
-      view.places[row * width + x] = int32_t(rows[row].size());
-      rows[row].push_back(chain);
+      const Vec2 film = pixel_centre(region.x0 + int32_t(x), region.y0 + int32_t(y));
+      const uint32_t found = tracer.find(film, centres.hits[y * width + x], components, wanted, &chains);
+      for (size_t k = 0; k < numbers.size(); ++k) {
+        if ((found >> numbers[k] & 1) == 0) continue;
+        views[k].places[y * width + x] = int32_t(rows[k][y].size());
+        rows[k][y].push_back(chains[size_t(numbers[k])]);
+      }
     }
   });
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto first = int32_t(view.chains.size());
-    for (size_t x = 0; x < width; ++x) {
-      if (view.places[row * width + x] >= 0) view.places[row * width + x] += first;
-    }
-    view.chains.insert(view.chains.end(), rows[row].begin(), rows[row].end());
-    rows[row] = {};
-  }
-  return view;
+  for (size_t k = 0; k < views.size(); ++k) join(&rows[k], &views[k]);
+  return views;
 }
 
 }  // namespace gradus

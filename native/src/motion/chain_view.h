@@ -20,9 +20,9 @@ struct ChainView {
   const SpecularChain* at(int32_t x, int32_t y) const;
   ChainTracer tracer() const { return {*centres->snapshot, centres->camera, *settings}; }
 };
-// All that is given lives as long as the view. Cancelled: chains are missing.
-ChainView view_chains(
-    const CentreView& centres, const GradusSettings& settings, const ComponentSet& components, int component,
+// Of the components whose bits are set in `wanted`, in order. All that is given lives as long as the views. Cancelled: chains are missing.
+std::vector<ChainView> view_chains(
+    const CentreView& centres, const GradusSettings& settings, const ComponentSet& components, uint32_t wanted,
     const CancelTest& is_cancelled = [] { return false; });
 
 }  // namespace gradus

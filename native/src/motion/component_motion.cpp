@@ -1,5 +1,7 @@
 #include "motion/component_motion.h"
 
+#include <algorithm>
+#include <bit>
 #include <memory>
 
 #include "base/error.h"
@@ -23,34 +25,46 @@ struct OtherFrame {
   ChainTracer tracer;
 };
 
-ComponentMotion join(const ChainView& view, const ChainMotion& previous, const ChainMotion& next) {
-  const Region& region = view.region();
-  const auto width = size_t(region.width()), pixels = size_t(region.area());
-  const Camera& camera = view.centres->camera;
-  ComponentMotion joined{std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), previous.counts};
-  joined.counts.add(next.counts);
-  for (size_t i = 0; i < pixels; ++i) {
+// Rows of the film that are done together: chains of all pixels would take more memory than a frame.
+constexpr int32_t kBand = 64;
+
+// With the pixels around, whose chains tell how things change along the film.
+Region with_neighbours(const Region& band, const GradusSettings& settings) {
+  return {std::max(band.x0 - 1, 0), std::max(band.y0 - 1, 0), std::min(band.x1 + 1, int32_t(settings.width)),
+          std::min(band.y1 + 1, int32_t(settings.height))};
+}
+
+// pixel: the first of the band.
+void join(const Camera& camera, const Region& band, const ChainMotion& previous, const ChainMotion& next, size_t pixel,
+          ComponentMotion* joined) {
+  const auto width = size_t(band.width());
+  joined->counts.add(previous.counts);
+  joined->counts.add(next.counts);
+  for (size_t i = 0; i < previous.film.size(); ++i, ++pixel) {
     const Tracking tracking = previous.tracking[i] != Tracking::Tracked ? previous.tracking[i] : next.tracking[i];
-    joined.tracked[i] = float(tracking);
+    joined->tracked[pixel] = float(tracking);
     if (tracking != Tracking::Tracked) continue;
-    const Vec2 now = pixel_centre(region.x0 + int32_t(i % width), region.y0 + int32_t(i / width));
-    joined.vectors[i] = Vec4(camera.way(now, previous.film[i]), camera.way(next.film[i], now));
+    const Vec2 now = pixel_centre(band.x0 + int32_t(i % width), band.y0 + int32_t(i / width));
+    joined->vectors[pixel] = Vec4(camera.way(now, previous.film[i]), camera.way(next.film[i], now));
   }
-  return joined;
 }
 
 }  // namespace
 
 std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const GradusSettings& settings, const ComponentSet& components,
                                               uint32_t wanted, const Region& region, const CancelTest& is_cancelled) {
-  std::vector<ComponentMotion> motion;
+  const auto pixels = size_t(region.area()), width = size_t(region.width());
+  std::vector<ComponentMotion> motion(size_t(std::popcount(wanted)),
+                                      {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), {}});
   if (wanted == 0) return motion;
-  const CentreView centres = view_centres(snapshot, settings.width, settings.height, region, is_cancelled);
   const OtherFrame previous(snapshot, Moment::Previous, settings, is_cancelled), next(snapshot, Moment::Next, settings, is_cancelled);
-  for (int c = 0; c < components.count(); ++c) {
-    if ((wanted >> c & 1) == 0) continue;
-    const ChainView view = view_chains(centres, settings, components, c, is_cancelled);
-    motion.push_back(join(view, track_chains(view, previous.tracer, is_cancelled), track_chains(view, next.tracer, is_cancelled)));
+  for (int32_t y = region.y0; y < region.y1; y += kBand) {
+    const Region band{region.x0, y, region.x1, std::min(y + kBand, region.y1)};
+    const CentreView centres = view_centres(snapshot, settings.width, settings.height, with_neighbours(band, settings), is_cancelled);
+    const std::vector<ChainView> views = view_chains(centres, settings, components, wanted, is_cancelled);
+    for (size_t k = 0; k < views.size(); ++k)
+      join(centres.camera, band, track_chains(views[k], previous.tracer, band, is_cancelled),
+           track_chains(views[k], next.tracer, band, is_cancelled), width * size_t(y - region.y0), &motion[k]);
     if (is_cancelled()) throw cancelled();
   }
   return motion;

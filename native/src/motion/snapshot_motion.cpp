@@ -17,10 +17,17 @@ SnapshotMotion::SnapshotMotion(const Snapshot& from, const Snapshot& to) : to_(t
   }
 }
 
+bool SnapshotMotion::hit(const Hit& hit, Hit* there) const {
+  *there = hit;
+  there->instance = instance_[hit.instance];
+  there->time = to_.shutter.time_of_frame();
+  return there->valid();
+}
+
 bool SnapshotMotion::position(const Hit& hit, Vec3* position) const {
-  const uint32_t index = instance_[hit.instance];
-  if (index == UINT32_MAX) return false;
-  *position = interpolate(to_.corners(index, hit.triangle, to_.shutter.time_of_frame()), hit.barycentric);
+  Hit there;
+  if (!this->hit(hit, &there)) return false;
+  *position = interpolate(to_.corners(there.instance, there.triangle, there.time), there.barycentric);
   return true;
 }
 

@@ -15,6 +15,8 @@ class SnapshotMotion {
   // Where a surface point of `from` is at the moment of the frame of `to`, in the internal space of `to`. False: it is not there, or its
   // mesh has another topology.
   bool position(const Hit& hit, Vec3* position) const;
+  // The point itself, as a hit of `to`.
+  bool hit(const Hit& hit, Hit* there) const;
 
  private:
   const Snapshot& to_;

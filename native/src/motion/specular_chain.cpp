@@ -52,8 +52,14 @@ ChainTracer::ChainTracer(const Snapshot& snapshot, const Camera& camera, const G
 
 PathRay ChainTracer::camera_ray(const Vec2& film) const { return {camera_.ray({film, Vec2(0.0f), time_}), GRADUS_VISIBLE_CAMERA, {}}; }
 
+struct ChainTracer::Arrival {
+  Vertex vertex;
+  bool surely_rough = false;  // and dark: closures are missing
+};
+
 // To the next surface that stops the ray. False: it leaves the scene.
-bool ChainTracer::advance(const Hit* known, PathRay* ray, Vertex* vertex) const {
+bool ChainTracer::advance(Shades shades, const Hit* known, PathRay* ray, Arrival* arrival) const {
+  Vertex* vertex = &arrival->vertex;
   vertex->wo = -ray->ray.direction;
   Ray part = ray->ray;
   for (;;) {
@@ -66,6 +72,10 @@ bool ChainTracer::advance(const Hit* known, PathRay* ray, Vertex* vertex) const 
     if (!hit.valid()) return false;
     ray->state.length = glm::length(part.origin + part.direction * hit.t - ray->ray.origin);
     snapshot_.place(hit, &vertex->point);
+    const MaterialData& material = *snapshot_.materials[vertex->point.material];
+    const bool is_rough = material.has_bsdf && !material.emits && material.min_alpha >= settings_.roughness_threshold;
+    arrival->surely_rough = is_rough && !material.may_be_transparent;
+    if (arrival->surely_rough || (shades == Shades::Transparency && !material.may_be_transparent)) return true;
     shade_surface(snapshot_, vertex->point, vertex->wo, ray->state, settings_.roughness_threshold, &vertex->shade);
     const bool passes = mean_component(vertex->shade.transparency) > 0.5f;
     if (!passes || ray->state.transparent_depth >= settings_.transparent_max_bounces) return true;
@@ -94,7 +104,9 @@ struct ChainTracer::Search {
   bool reaches(PathWord word) const { return (components.ahead(word) >> component & 1) != 0; }
   bool is_lit(PathWord word) const { return components.component(word) == component; }
   // A rough surface or one that shines, where that belongs to the component.
-  bool ends_at(const Vertex& vertex, PathWord word) const {
+  bool ends_at(const Arrival& arrival, PathWord word) const {
+    if (arrival.surely_rough) return reaches(components.next(word, ScatterClass::Diffuse));
+    const Vertex& vertex = arrival.vertex;
     const bool rough = vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
     return (rough && reaches(components.next(word, ScatterClass::Diffuse))) || (!is_black(vertex.shade.emission) && is_lit(word));
   }
@@ -111,46 +123,69 @@ std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, c
   return found;
 }
 
-bool ChainTracer::extend(Search* search, const Hit* known, PathRay ray, PathWord word, SpecularChain* chain) const {
+// In the sky.
+bool ChainTracer::is_seen(const Search& search, PathWord word, SpecularChain* chain) const {
+  chain->end = ChainEnd::Sky;
+  return snapshot_.features.world_shines && search.is_lit(word);
+}
+
+bool ChainTracer::extend(Search* search, PathRay ray, PathWord word, SpecularChain* chain) const {
   if (++search->looks > kMostLooks) return false;
-  Vertex vertex;
+  Arrival arrival;
   chain->ray = ray;
-  if (!advance(known, &ray, &vertex)) {
-    chain->end = ChainEnd::Sky;
-    return snapshot_.features.world_shines && search->is_lit(word);
-  }
-  if (search->ends_at(vertex, word)) {
+  return advance(Shades::All, nullptr, &ray, &arrival) ? go_on(search, arrival, ray, word, chain) : is_seen(*search, word, chain);
+}
+
+// ray: as it arrived.
+bool ChainTracer::go_on(Search* search, const Arrival& arrival, const PathRay& ray, PathWord word, SpecularChain* chain) const {
+  const Vertex& vertex = arrival.vertex;
+  if (search->ends_at(arrival, word)) {
     chain->end = ChainEnd::Surface;
     chain->last = vertex.point.hit;
     return true;
   }
-  if (chain->way.length == kLongestChain) return false;
+  if (arrival.surely_rough || chain->way.length == kLongestChain) return false;
   for (const Branch& branch : branches(*search, vertex, ray, word)) {
     if (!(branch.strength > 0.0f)) continue;
     SpecularChain longer = *chain;
     if (longer.way.length == 0) longer.first = vertex.point.hit;
     longer.way.add(branch.letter, snapshot_.instances[vertex.point.hit.instance].id);
-    if (!extend(search, nullptr, branch.ray, search->components.next(word, branch.letter), &longer)) continue;
+    if (!extend(search, branch.ray, search->components.next(word, branch.letter), &longer)) continue;
     *chain = longer;
     return true;
   }
   return false;
 }
 
-bool ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSet& components, int component, SpecularChain* chain) const {
-  const PathRay ray = camera_ray(film);
-  Search search{components, component};
-  *chain = SpecularChain{};
-  return !is_none(ray.ray) && extend(&search, &known, ray, PathWord{0}, chain);
+uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted,
+                           std::array<SpecularChain, kMostComponents>* chains) const {
+  const PathRay start = camera_ray(film);
+  if (is_none(start.ray)) return 0;
+  PathRay ray = start;
+  thread_local Arrival arrival;
+  const bool is_surface = advance(Shades::All, &known, &ray, &arrival);
+  uint32_t found = 0;
+  for (int c = 0; c < components.count(); ++c) {
+    if ((wanted >> c & 1) == 0) continue;
+    Search search{components, c};
+    SpecularChain& chain = (*chains)[size_t(c)];
+    chain = {};
+    chain.ray = start;
+    const bool is_found = is_surface ? go_on(&search, arrival, ray, PathWord{0}, &chain) : is_seen(search, PathWord{0}, &chain);
+    found |= is_found ? 1u << c : 0u;
+  }
+  return found;
 }
 
 bool ChainTracer::follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const {
   PathRay ray = camera_ray(film);
   if (is_none(ray.ray)) return false;
   *chain = SpecularChain{};
-  thread_local Vertex vertex;
+  thread_local Arrival arrival;
+  const Vertex& vertex = arrival.vertex;
   for (int i = 0; i < way.length; ++i) {
-    if (!advance(nullptr, &ray, &vertex) || !(scatter(vertex, way.letter(i), &ray) > 0.0f)) return false;
+    if (!advance(Shades::All, nullptr, &ray, &arrival) || arrival.surely_rough || !(scatter(vertex, way.letter(i), &ray) > 0.0f))
+      return false;
     if (i == 0) chain->first = vertex.point.hit;
     chain->way.add(way.letter(i), snapshot_.instances[vertex.point.hit.instance].id);
   }
@@ -160,9 +195,9 @@ bool ChainTracer::follow(const Vec2& film, const ChainWay& way, SpecularChain* c
 
 bool ChainTracer::finish(const SpecularChain& chain, Hit* hit) const {
   PathRay ray = chain.ray;
-  thread_local Vertex vertex;
-  const bool found = advance(nullptr, &ray, &vertex);
-  *hit = found ? vertex.point.hit : Hit();
+  thread_local Arrival arrival;
+  const bool found = advance(Shades::Transparency, nullptr, &ray, &arrival);
+  *hit = found ? arrival.vertex.point.hit : Hit();
   hit->t = found ? ray.state.length : kInfinity;
   return found;
 }

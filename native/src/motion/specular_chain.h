@@ -39,10 +39,11 @@ class ChainTracer {
   // camera: at rest, without a lens (CentreView's). What is referred to lives as long as the tracer.
   ChainTracer(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings);
 
-  // The chain of a component at a place of the film. Where surfaces both reflect and transmit, the stronger way that leads to the
-  // component; it ends on the first surface that is rough or shines as the component asks, or in the sky. known: what its camera ray meets.
-  // False: there is none.
-  bool find(const Vec2& film, const Hit& known, const ComponentSet& components, int component, SpecularChain* chain) const;
+  // Chains at a place of the film: bits of the components of `wanted` that have one, which is put at their place in `chains`. Where
+  // surfaces both reflect and transmit, the stronger way that leads to the component; it ends on the first surface that is rough or shines
+  // as the component asks, or in the sky. known: what the camera ray meets.
+  uint32_t find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted,
+                std::array<SpecularChain, kMostComponents>* chains) const;
   // Goes a way from another place of the film, up to its last ray, which is not traced. False: the way breaks.
   bool follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const;
   // What its last ray meets; t: from where that ray begins. False: it ends in the sky.
@@ -50,19 +51,24 @@ class ChainTracer {
 
   const Snapshot& snapshot() const { return snapshot_; }
   const Camera& camera() const { return camera_; }
+  const GradusSettings& settings() const { return settings_; }
 
  private:
   struct Search;
-  PathRay camera_ray(const Vec2& film) const;
-  bool advance(const Hit* known, PathRay* ray, Vertex* vertex) const;
-  float scatter(const Vertex& vertex, ScatterClass letter, PathRay* ray) const;
+  struct Arrival;
   struct Branch {
     ScatterClass letter;
     float strength;
     PathRay ray;
   };
+  enum class Shades : uint8_t { All, Transparency };
+  PathRay camera_ray(const Vec2& film) const;
+  bool advance(Shades shades, const Hit* known, PathRay* ray, Arrival* arrival) const;
+  float scatter(const Vertex& vertex, ScatterClass letter, PathRay* ray) const;
   std::array<Branch, 2> branches(const Search& search, const Vertex& vertex, const PathRay& ray, PathWord word) const;
-  bool extend(Search* search, const Hit* known, PathRay ray, PathWord word, SpecularChain* chain) const;
+  bool extend(Search* search, PathRay ray, PathWord word, SpecularChain* chain) const;
+  bool go_on(Search* search, const Arrival& arrival, const PathRay& ray, PathWord word, SpecularChain* chain) const;
+  bool is_seen(const Search& search, PathWord word, SpecularChain* chain) const;
 
   const Snapshot& snapshot_;
   const Camera& camera_;

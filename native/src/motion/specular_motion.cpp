@@ -46,7 +46,7 @@ class Tracker {
       search(target, x, y, before, &result, counts);
     }
     const Vec2 way = glm::abs(to_.camera().way(pixel_centre(x, y), result.film));
-    const bool inside = way.x <= float(from_.region().width()) && way.y <= float(from_.region().height());
+    const bool inside = way.x <= float(to_.settings().width) && way.y <= float(to_.settings().height);
     if (result.tracking == Tracking::Tracked && !inside) result.tracking = Tracking::Outside;
     if (result.tracking != Tracking::Tracked) result.film = pixel_centre(x, y);
     return result;
@@ -148,11 +148,50 @@ void TrackingCounts::add(const TrackingCounts& other) {
   searched += other.searched;
 }
 
-ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const CancelTest& is_cancelled) {
-  const Region& region = from.region();
-  const auto width = size_t(region.width()), pixels = size_t(region.area());
+namespace {
+
+// The rows of a tile, one after the other.
+class Tile {
+ public:
+  Tile(const Tracker& tracker, const Region& part, int32_t x0, ChainMotion* motion, TrackingCounts* counts)
+      : tracker_(tracker), part_(part), x0_(x0), x1_(std::min(x0 + kTile, part.x1)), motion_(*motion), counts_(*counts) {}
+
+  void track_row(int32_t y) {
+    for (int32_t x = x0_; x < x1_; ++x) {
+      Track& own = below_[size_t(x - x0_)];
+      const Track guess = neighbour(x);
+      own = tracker_.track(x, y, &guess, &counts_);
+      const size_t pixel = size_t(y - part_.y0) * size_t(part_.width()) + size_t(x - part_.x0);
+      motion_.film[pixel] = own.film;
+      motion_.tracking[pixel] = own.tracking;
+      ++counts_.pixels[own.tracking == Tracking::Tracked ? 0 : size_t(-int(own.tracking))];
+    }
+  }
+
+ private:
+  // Where the motion of the pixel to the left, or of that below, leads this one.
+  Track neighbour(int32_t x) const {
+    const size_t i = size_t(x - x0_);
+    const bool beside = i > 0 && below_[i - 1].tracking == Tracking::Tracked;
+    Track guess = below_[beside ? i - 1 : i];
+    guess.film += beside ? Vec2(1, 0) : Vec2(0, 1);
+    return guess;
+  }
+
+  const Tracker& tracker_;
+  const Region& part_;
+  int32_t x0_, x1_;
+  ChainMotion& motion_;
+  TrackingCounts& counts_;
+  std::array<Track, kTile> below_;
+};
+
+}  // namespace
+
+ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled) {
+  const auto width = size_t(part.width()), pixels = size_t(part.area());
   ChainMotion motion{std::vector<Vec2>(pixels), std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
-  for (size_t i = 0; i < pixels; ++i) motion.film[i] = pixel_centre(region.x0 + int32_t(i % width), region.y0 + int32_t(i / width));
+  for (size_t i = 0; i < pixels; ++i) motion.film[i] = pixel_centre(part.x0 + int32_t(i % width), part.y0 + int32_t(i / width));
   if (is_cut(from.centres->snapshot->camera, to.snapshot().camera)) {
     std::fill(motion.tracking.begin(), motion.tracking.end(), Tracking::Cut);
     motion.counts.pixels[size_t(-int(Tracking::Cut))] = pixels;
@@ -160,28 +199,13 @@ ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Can
   }
   const Tracker tracker(from, to);
   tbb::enumerable_thread_specific<TrackingCounts> counts;
-  const auto track_row = [&](int32_t y, int32_t begin, int32_t end, std::vector<Track>* below) {
-    for (int32_t x = begin; x < end; ++x) {
-      Track& own = (*below)[size_t(x - begin)];
-      const bool beside = x > begin && (*below)[size_t(x - begin) - 1].tracking == Tracking::Tracked;
-      Track before = beside ? (*below)[size_t(x - begin) - 1] : own;
-      const Vec2 moved = before.tracking == Tracking::Tracked ? (beside ? Vec2(1, 0) : Vec2(0, 1)) : Vec2(0.0f);
-      before.film += moved;
-      own = tracker.track(x, y, &before, &counts.local());
-      const size_t pixel = size_t(y - region.y0) * width + size_t(x - region.x0);
-      motion.film[pixel] = own.film;
-      motion.tracking[pixel] = own.tracking;
-      ++counts.local().pixels[own.tracking == Tracking::Tracked ? 0 : size_t(-int(own.tracking))];
-    }
-  };
   const auto tiles = [](int32_t length) { return (length + kTile - 1) / kTile; };
-  tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(region.height()), 1, 0, tiles(region.width()), 1), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(part.height()), 1, 0, tiles(part.width()), 1), [&](const auto& range) {
     for (int32_t ty = range.rows().begin(); ty < range.rows().end(); ++ty)
       for (int32_t tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
-        const int32_t x0 = region.x0 + tx * kTile, x1 = std::min(x0 + kTile, region.x1);
-        std::vector<Track> below(kTile);
-        for (int32_t y = region.y0 + ty * kTile; y < std::min(region.y0 + (ty + 1) * kTile, region.y1) && !is_cancelled(); ++y)
-          track_row(y, x0, x1, &below);
+        Tile tile(tracker, part, part.x0 + tx * kTile, &motion, &counts.local());
+        const int32_t y0 = part.y0 + ty * kTile, y1 = std::min(y0 + kTile, part.y1);
+        for (int32_t y = y0; y < y1 && !is_cancelled(); ++y) tile.track_row(y);
       }
   });
   for (const TrackingCounts& c : counts) motion.counts.add(c);

@@ -32,14 +32,15 @@ struct TrackingCounts {
   void add(const TrackingCounts& other);
 };
 
-// By pixels of the region.
+// By pixels of a region.
 struct ChainMotion {
   std::vector<Vec2> film;  // the place in the other frame; of an untracked pixel its own centre
   std::vector<Tracking> tracking;
   TrackingCounts counts;
 };
-// Of the view `from` in the frame that `to` sees, which may be at another time or by another camera. Cancelled: pixels are NotConverged.
+// Of a part of the view `from` in the frame that `to` sees, which may be at another time or by another camera. Cancelled: pixels are
+// NotConverged.
 ChainMotion track_chains(
-    const ChainView& from, const ChainTracer& to, const CancelTest& is_cancelled = [] { return false; });
+    const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled = [] { return false; });
 
 }  // namespace gradus

@@ -160,7 +160,7 @@ TEST_F(HardMotion, BrokenGeometryIsNoTrap) {
 TEST_F(HardMotion, ACancelledSearchFindsNothing) {
   add_ball(mirror());
   const MotionFrame *a = frame("Reflection"), *b = frame("Reflection");
-  const ChainMotion m = track_chains(a->chains, b->chains.tracer(), [] { return true; });
+  const ChainMotion m = track_chains(a->chains, b->chains.tracer(), a->chains.region(), [] { return true; });
   EXPECT_EQ(count(m, Tracking::Tracked), 0u);
   expect_bounded(m);
 }

@@ -30,7 +30,7 @@ inline std::unique_ptr<MotionFrame> motion_frame(const IntegratorContext& contex
   frame->centres = view_centres(*frame->context.snapshot, s.width, s.height, region);
   const int component = components.find(name);
   EXPECT_GE(component, 0) << name;
-  frame->chains = view_chains(frame->centres, s, components, component);
+  frame->chains = view_chains(frame->centres, s, components, 1u << component).at(0);
   return frame;
 }
 
@@ -154,7 +154,9 @@ class MotionTest : public testing::Test {
   void add_room();
   // What was built up to now, as a frame.
   const MotionFrame* frame(const char* component);
-  static ChainMotion motion(const MotionFrame* from, const MotionFrame* to) { return track_chains(from->chains, to->chains.tracer()); }
+  static ChainMotion motion(const MotionFrame* from, const MotionFrame* to) {
+    return track_chains(from->chains, to->chains.tracer(), from->chains.region());
+  }
   // Moves the scene from 0 to 1; the motion of the component must pass the bars of issue 7 against the truth. Gives the motion.
   ChainMotion expect_motion(const char* component, const std::function<void(float)>& at);
   // Whatever happens: every motion is finite and bounded by the film, and what is not tracked does not move.

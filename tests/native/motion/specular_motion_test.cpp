@@ -1,6 +1,7 @@
 // Where reflections and refractions go from frame to frame, against brute force: a dense search of the film.
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "motion/flat_mirror.h"
 #include "motion/motion_scene.h"
 
 namespace gradus::test {
@@ -43,6 +44,42 @@ TEST_F(SpecularMotion, AMovingPlaneMirrorShowsMirrorImages) {
     Vec2 film;
     ASSERT_TRUE(b.context.camera.project(p, Moment::Now, &film));
     EXPECT_LT(glm::length(film - m.film[i]), 1e-3f);
+  }
+}
+
+// The formula to compare with is right where mirrors are flat, and nowhere else.
+TEST_F(SpecularMotion, TheFlatMirrorIsRightOfFlatMirrors) {
+  for (const bool flat : {true, false}) {
+    add_room();
+    const uint64_t material = mirror();
+    const size_t number = scene_.scene.instance_count();
+    if (flat)
+      scene_.quad(Vec3(-1, -0.8f, 0), Vec3(2, 0, 0), Vec3(0, 2, 0.3f), material);
+    else
+      scene_.ball(Vec3(0, 0, 0), 0.8f, material, 48, true);
+    scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+    const MotionFrame* a = frame("Reflection");
+    scene_.scene.move(number, translation(Vec3(0.03f, 0.02f, 0.05f)));
+    const MotionFrame* b = frame("Reflection");
+    const ChainMotion found = motion(a, b);
+    const SnapshotMotion surface(*a->context.snapshot, *b->context.snapshot);
+    float worst = 0.0f;
+    size_t told = 0;
+    for (size_t i = 0; i < found.film.size(); ++i) {
+      if (found.tracking[i] != Tracking::Tracked) continue;
+      Vec2 film;
+      const SpecularChain& chain = a->chains.chains[size_t(a->chains.places[i])];
+      if (!flat_mirror_motion(a->chains.tracer(), b->chains.tracer(), surface, chain, FlatMirror::MovesAlong, &film)) continue;
+      ++told;
+      worst = std::max(worst, glm::length(film - found.film[i]));
+    }
+    EXPECT_GT(told, 300u);
+    if (flat) {
+      EXPECT_LT(worst, 2e-3f);
+    } else {
+      EXPECT_GT(worst, 1.0f);
+    }
+    for (size_t i = scene_.scene.instance_count(); i > 0; --i) scene_.scene.remove_last();
   }
 }
 

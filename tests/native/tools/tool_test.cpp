@@ -154,6 +154,13 @@ TEST_F(Tool, TellsWhatFilesHold) {
   EXPECT_NE(run(std::string("info --json ") + kStored).out.find("\"kind\":\"frame\""), std::string::npos);
 }
 
+TEST_F(Tool, MeasuresMotion) {
+  const Outcome measured = run("motion good.gradus");
+  EXPECT_EQ(measured.code, 0) << measured.err;
+  EXPECT_NE(measured.out.find("\"steps_in_space\""), std::string::npos) << measured.out;
+  EXPECT_NE(run("motion good.gradus --components 'Sky=EL;Light=EL'").err.find("overlap"), std::string::npos);
+}
+
 // They were lost on the way from the file: a picture without its objects, and not a word.
 TEST_F(Tool, NamesWhatASceneHasLost) {
   save_scene("broken.gradus", true);
