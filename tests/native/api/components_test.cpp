@@ -37,6 +37,7 @@ TEST(ComponentsApi, ClassifiesAPath) {
 }
 
 TEST(ComponentsApi, RefusesWithATextForTheUser) {
+  gradus_error(nullptr);  // that a test before has left: the first one stays
   uint32_t count = 0;
   EXPECT_NE(refusal(gradus_components_check("A=ED.*L;B=EDDL", &count)).find("overlap"), std::string::npos);
   EXPECT_NE(refusal(gradus_components_check(nullptr, &count)).find("components is NULL"), std::string::npos);
