@@ -119,7 +119,7 @@ def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
         if job.animation is not None and (width, height) != (x1 - x0, y1 - y0):
             raise Failure("the size of the picture changes in the animation: switch Temporal off")
         settings.region[:] = [x0, y0, x0 + width, y0 + height]
-        job.buffer.prepare(result.layers[0].passes, passes.by_name(job.infos, compat.VERSION), width, height)
+        job.buffer.prepare(result.layers[0].passes, passes.by_name(job.filled(), compat.VERSION), width, height)
         yield result
     finally:
         # Also after a failure, which the caller reports: an open result would stay in memory.

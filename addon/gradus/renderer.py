@@ -179,7 +179,8 @@ class Job:
         """Those of the frame that the depsgraph shows."""
         settings = native_settings(native.load(), self.scene, self.layer, self.overrides)
         settings.width, settings.height = self.engine.resolution_x, self.engine.resolution_y  # by which plans are made before the export
-        settings.passes, settings.component_passes = passes.mask(self.infos), passes.component_mask(self.infos)
+        infos = self.filled()
+        settings.passes, settings.component_passes = passes.mask(infos), passes.component_mask(infos)
         if self.is_preview:
             limit_preview(settings, self.host_value("preview_samples"))
         return settings
@@ -251,11 +252,20 @@ class Job:
         shutter = shutter_of(self.scene, self.layer)
         return max(int(self.wants_vectors()), math.ceil(shutter.close) if shutter is not None else 0)
 
-    def wants_vectors(self) -> bool:
+    def filled(self) -> list[passes.PassInfo]:
+        """Passes that the library is asked for; the others stay 0. Without vectors all would seem to rest, and to be tracked."""
+        if self.may_have_vectors():
+            return self.infos
+        return [info for info in self.infos if not (info.is_motion and isinstance(info.plane, passes.Part))]
+
+    def may_have_vectors(self) -> bool:
         """Under motion blur they are 0 unless they are asked for, as in Cycles: whoever blurs by them would blur twice."""
+        return shutter_of(self.scene, self.layer) is None or self.host_value("vector_with_motion_blur")
+
+    def wants_vectors(self) -> bool:
         if not any(info.is_motion for info in self.infos):
             return False
-        if shutter_of(self.scene, self.layer) is None or self.host_value("vector_with_motion_blur"):
+        if self.may_have_vectors():
             return True
         self.warn(["Passes of motion are 0: the picture has motion blur (Motion Blur > Vector Pass gives them all the same)"])
         return False

@@ -47,8 +47,8 @@ def _what_moves() -> None:
     mirror = common.principled("Mirror", (0.95, 0.95, 0.96), 0.02, 1.0)
     ball = common.sphere("Mirror Ball", (-0.3, 0.15, 0.42), 0.42, mirror, segments=64)
     common.key(ball, "location", [(1, (-0.3, 0.15, 0.42)), (FRAMES, (0.5, 0.15, 0.42))])
-    box = common.box("Box", (-1.05, 0.35, 0.35), (0.4, 0.4, 0.7), common.diffuse("Yellow", (0.7, 0.5, 0.1)), turn=-15)
-    common.key(box, "location", [(1, (-1.05, 0.35, 0.35)), (FRAMES, (-0.65, 0.35, 0.35))])
+    box = common.box("Box", (-1.25, 0.35, 0.35), (0.4, 0.4, 0.7), common.diffuse("Yellow", (0.7, 0.5, 0.1)), turn=-15)
+    common.key(box, "location", [(1, (-1.25, 0.35, 0.35)), (FRAMES, (-0.25, 0.35, 0.35))])
     lamp = common.area_lamp("Lamp", (0.9, -0.6, 2.1), (0.0, 0.0, 0.3), (0.35, 0.35), 70.0, (1.0, 0.95, 0.88))
     common.key(lamp, "location", [(1, (0.9, -0.6, 2.1)), (FRAMES, (-0.9, -0.6, 2.1))])
 
