@@ -11,6 +11,7 @@ constexpr float kSurfaceReturn = 0.5f;  // pixels that a surface's way there and
 constexpr float kLeastNoise = 0.5f;     // levels: of their rounding
 constexpr float kDeviation = 1.4826f / 1.41421356f;  // of a level, from the median of the differences of two
 constexpr int kPatch = 7;                            // pixels around one, over which two vectors are compared
+constexpr float kLeastBelieved = 1.0f;               // levels of noise: reconstructions leave blotches, which DIS fits well
 constexpr float kGain = 1.5f;                        // variances that a vector must explain, as a mean over the patch: less fits by chance
 
 class RestFlow {
@@ -24,7 +25,7 @@ class RestFlow {
     const std::vector<Vec2> found = optical_flow(library, from_.image(), there);
     const std::vector<float> still = squares_off(there, std::vector<Vec2>(found.size())), moved = squares_off(there, found);
     const float noise = deviation(moved);
-    std::vector<Vec2> rest = believed(found, still, moved, noise * noise);
+    std::vector<Vec2> rest = believed(found, still, moved, std::max(noise, kLeastBelieved));
     refine_flow({from_.levels(), to_.levels(), noise, from_.surface(), seen_, from_.object()}, &rest);
     for (size_t p = 0; p < rest.size(); ++p) rest[p] = from_.bounded(from_.surface()[p] + rest[p]);
     return rest;
@@ -71,15 +72,14 @@ class RestFlow {
   }
 
   // The vectors that explain more than chance; no rest for the others.
-  std::vector<Vec2> believed(const std::vector<Vec2>& found, std::vector<float> still, const std::vector<float>& moved,
-                             float variance) const {
+  std::vector<Vec2> believed(const std::vector<Vec2>& found, std::vector<float> still, const std::vector<float>& moved, float noise) const {
     for (size_t p = 0; p < still.size(); ++p) still[p] -= moved[p];
     const std::vector<float> gain = patch_means(still);
     std::vector<Vec2> rest(found.size(), Vec2(0.0f));
     for (size_t p = 0; p < found.size(); ++p) {
       const Vec2 place = from_.place(p) + found[p];
       const size_t q = from_.nearest(place);
-      if (gain[p] < kGain * variance || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) continue;
+      if (gain[p] < kGain * noise * noise || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) continue;
       // What it shows there has gone on with the surface of that place.
       rest[p] = found[p] + linear_at(from_.plane(from_.surface()), place) - from_.surface()[p];
     }
