@@ -22,7 +22,10 @@ class FlowFrame {
   const std::vector<int32_t>& object() const { return object_; }  // all of them 0 where they are not known
   bool shows_edge(size_t pixel) const { return edges_[pixel] != 0; }
 
-  Vec2 place(size_t pixel) const { return Vec2(float(pixel % size_t(width())), float(pixel / size_t(width()))); }
+  Vec2 place(size_t pixel) const {
+    const size_t row = pixel / size_t(width());
+    return Vec2(float(pixel - row * size_t(width())), float(row));
+  }
   size_t nearest(const Vec2& place) const;
   bool holds(const Vec2& place) const;
   Vec2 bounded(const Vec2& vector) const;

@@ -36,7 +36,10 @@ struct Normal {
 
 std::array<float, 2 * kWindow + 1> window_weights() {
   std::array<float, 2 * kWindow + 1> weights{};
-  for (int i = -kWindow; i <= kWindow; ++i) weights[size_t(i + kWindow)] = std::exp(-2.0f * float(i * i) / float(kWindow * kWindow));
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const float offset = float(i) - float(kWindow);
+    weights[i] = std::exp(-2.0f * offset * offset / float(kWindow * kWindow));
+  }
   const float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
   for (float& weight : weights) weight /= sum;
   return weights;
@@ -118,7 +121,7 @@ class Refinement {
       data_[p] = sum;
     });
   }
-  float weight(int offset) const { return weights_[size_t(offset + kWindow)]; }
+  float weight(int offset) const { return weights_[size_t(ptrdiff_t(offset) + kWindow)]; }
 
   // How strongly the rests of two neighbours are held together.
   float likeness(size_t p, size_t q) const {
