@@ -83,10 +83,10 @@ ordered_json measure(const Snapshot& snapshot, const GradusSettings& settings, c
   report["moved_snapshot_cpu"] = cpu;
   const Camera camera = Camera(moved->camera, settings.width, settings.height).without_lens();
   const ChainTracer next(*moved, camera, settings);
-  const uint32_t all = (1u << components.count()) - 1;
-  const std::vector<ChainView> views = billed([&] { return view_chains(centres, settings, components, all); });
+  const int followed = components.count() - 1;  // no path stands for all that is left over
+  const std::vector<ChainView> views = billed([&] { return view_chains(centres, settings, components, (1u << followed) - 1); });
   report["chains_cpu"] = cpu;
-  for (int c = 0; c < components.count(); ++c) {
+  for (int c = 0; c < followed; ++c) {
     const ChainView& view = views[size_t(c)];
     ordered_json part{{"chains", view.chains.size()}};
     const ChainMotion motion = billed([&] { return track_chains(view, next, region); });

@@ -14,15 +14,10 @@ class HardMotion : public MotionTest {
   }
   // Of what is tracked, how many pixels end where the way does not lead to what they show: must be none.
   static size_t wrong_ends(const ChainMotion& motion, const MotionFrame& from, const MotionFrame& to) {
-    const SnapshotMotion surface(*from.context.snapshot, *to.context.snapshot);
-    const ChainTracer tracer = to.chains.tracer();
     size_t wrong = 0;
     for (size_t i = 0; i < motion.film.size(); ++i) {
       if (motion.tracking[i] != Tracking::Tracked) continue;
-      const SpecularChain& chain = from.chains.chains[size_t(from.chains.places[i])];
-      Target target{chain.ray.ray.direction, chain.end == ChainEnd::Sky};
-      wrong += !(target.in_sky || surface.position(chain.last, &target.place)) ||
-               !shows(tracer, chain.way, target, glm::dvec2(motion.film[i]), 3e-4);
+      wrong += !shows_in(to, from, from.chains.chains[size_t(from.chains.places[i])], motion.film[i]);
     }
     return wrong;
   }

@@ -127,7 +127,7 @@ void MotionTest::expect_bounded(const ChainMotion& motion) {
 }
 
 ChainMotion MotionTest::expect_motion(const char* component, const std::function<void(float)>& at) {
-  constexpr int kBetween = 16;
+  constexpr int kBetween = 32;
   std::vector<const MotionFrame*> way;
   for (int k = 0; k <= kBetween; ++k) {
     at(float(k) / float(kBetween));
@@ -141,6 +141,7 @@ ChainMotion MotionTest::expect_motion(const char* component, const std::function
   for (const uint64_t count : found.counts.pixels) causes << ' ' << count;
   EXPECT_GT(e.pixels, 40u);
   EXPECT_GE(e.share(), 0.95f) << causes.str();
+  EXPECT_EQ(e.invented, 0u);
   EXPECT_LE(e.quantile(0.5), 0.1f);
   EXPECT_LE(e.quantile(0.95), 0.5f);
   const TrackingCounts& c = found.counts;

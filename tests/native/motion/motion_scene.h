@@ -77,7 +77,7 @@ inline bool shows(const ChainTracer& tracer, const ChainWay& way, const Target& 
 struct MotionErrors {
   size_t pixels = 0;          // whose motion exists
   size_t tracked = 0;         // of them
-  size_t invented = 0;        // tracked though theirs does not
+  size_t invented = 0;        // tracked to where it is not to be seen
   std::vector<float> errors;  // of those tracked, in pixels
 
   float share() const { return pixels > 0 ? float(tracked) / float(pixels) : 0.0f; }
@@ -89,16 +89,27 @@ struct MotionErrors {
   }
 };
 
+// Where a chain's end is in another frame. False: nowhere.
+inline bool find_target(const MotionFrame& from, const MotionFrame& to, const SpecularChain& chain, Target* target) {
+  *target = {chain.ray.ray.direction, chain.end == ChainEnd::Sky};
+  return target->in_sky || SnapshotMotion(*from.context.snapshot, *to.context.snapshot).position(chain.last, &target->place);
+}
+
+// Whether a place of the film of `to` shows what a chain of `from` does.
+inline bool shows_in(const MotionFrame& to, const MotionFrame& from, const SpecularChain& chain, const Vec2& film) {
+  Target target;
+  return find_target(from, to, chain, &target) && shows(to.chains.tracer(), chain.way, target, glm::dvec2(film), 3e-4);
+}
+
 // The truth about a pixel: what it shows is followed through frames in between, by brute force about the place in the one before. False: it
 // is lost on the way, because it ceases or comes out of nowhere.
 inline bool true_place(const std::vector<const MotionFrame*>& frames, const SpecularChain& chain, const Vec2& centre, glm::dvec2* place) {
-  constexpr double kFarthest = 1.0, kFinest = 2e-5;  // pixels from one to the next
+  constexpr double kFarthest = 0.5, kFinest = 2e-5;  // pixels from one to the next
   *place = glm::dvec2(centre);
   for (size_t k = 1; k < frames.size(); ++k) {
-    const SnapshotMotion surface(*frames[0]->context.snapshot, *frames[k]->context.snapshot);
     const ChainTracer tracer = frames[k]->chains.tracer();
-    Target target{chain.ray.ray.direction, chain.end == ChainEnd::Sky};
-    if (!target.in_sky && !surface.position(chain.last, &target.place)) return false;
+    Target target;
+    if (!find_target(*frames[0], *frames[k], chain, &target)) return false;
     *place = brute_force(tracer, chain.way, target, *place, kFarthest, kFinest);
     if (!shows(tracer, chain.way, target, *place)) return false;
   }
@@ -122,7 +133,7 @@ inline MotionErrors errors_of(const ChainMotion& motion, const std::vector<const
     const double error = glm::length(truth - glm::dvec2(motion.film[i]));
     errors.pixels += exists;
     errors.tracked += exists && tracked;
-    errors.invented += tracked && !exists;
+    errors.invented += tracked && !shows_in(*frames.back(), *frames[0], view.chains[size_t(index)], motion.film[i]);
     if (exists && tracked) errors.errors.push_back(float(error));
   }
   return errors;
