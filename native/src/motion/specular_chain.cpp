@@ -53,7 +53,8 @@ ChainTracer::ChainTracer(const Snapshot& snapshot, const Camera& camera, const G
 PathRay ChainTracer::camera_ray(const Vec2& film) const { return {camera_.ray({film, Vec2(0.0f), time_}), GRADUS_VISIBLE_CAMERA, {}}; }
 
 struct ChainTracer::Arrival {
-  Vertex vertex;
+  Hit hit;
+  Vertex vertex;              // missing where only transparency was asked for, and there is none
   bool surely_rough = false;  // and dark: closures are missing
 };
 
@@ -71,11 +72,13 @@ bool ChainTracer::advance(Shades shades, const Hit* known, PathRay* ray, Arrival
     }
     if (!hit.valid()) return false;
     ray->state.length = glm::length(part.origin + part.direction * hit.t - ray->ray.origin);
+    const MaterialData& material = *snapshot_.materials[snapshot_.material_of(hit.instance, hit.triangle)];
+    arrival->hit = hit;
+    if (shades == Shades::Transparency && !material.may_be_transparent) return true;
     snapshot_.place(hit, &vertex->point);
-    const MaterialData& material = *snapshot_.materials[vertex->point.material];
     const bool is_rough = material.has_bsdf && !material.emits && material.min_alpha >= settings_.roughness_threshold;
     arrival->surely_rough = is_rough && !material.may_be_transparent;
-    if (arrival->surely_rough || (shades == Shades::Transparency && !material.may_be_transparent)) return true;
+    if (arrival->surely_rough) return true;
     shade_surface(snapshot_, vertex->point, vertex->wo, ray->state, settings_.roughness_threshold, &vertex->shade);
     const bool passes = mean_component(vertex->shade.transparency) > 0.5f;
     if (!passes || ray->state.transparent_depth >= settings_.transparent_max_bounces) return true;
@@ -131,7 +134,8 @@ bool ChainTracer::is_seen(const Search& search, PathWord word, SpecularChain* ch
 
 bool ChainTracer::extend(Search* search, PathRay ray, PathWord word, SpecularChain* chain) const {
   if (++search->looks > kMostLooks) return false;
-  Arrival arrival;
+  thread_local std::array<Arrival, kLongestChain + 1> arrivals;  // large: one for each depth
+  Arrival& arrival = arrivals[chain->way.length];
   chain->ray = ray;
   return advance(Shades::All, nullptr, &ray, &arrival) ? go_on(search, arrival, ray, word, chain) : is_seen(*search, word, chain);
 }
@@ -141,7 +145,8 @@ bool ChainTracer::go_on(Search* search, const Arrival& arrival, const PathRay& r
   const Vertex& vertex = arrival.vertex;
   if (search->ends_at(arrival, word)) {
     chain->end = ChainEnd::Surface;
-    chain->last = vertex.point.hit;
+    chain->last = arrival.hit;
+    chain->shown = vertex.point.position;
     return true;
   }
   if (arrival.surely_rough || chain->way.length == kLongestChain) return false;
@@ -197,7 +202,7 @@ bool ChainTracer::finish(const SpecularChain& chain, Hit* hit) const {
   PathRay ray = chain.ray;
   thread_local Arrival arrival;
   const bool found = advance(Shades::Transparency, nullptr, &ray, &arrival);
-  *hit = found ? arrival.vertex.point.hit : Hit();
+  *hit = found ? arrival.hit : Hit();
   hit->t = found ? ray.state.length : kInfinity;
   return found;
 }

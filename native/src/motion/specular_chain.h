@@ -29,9 +29,10 @@ struct ChainWay {
 struct SpecularChain {
   ChainWay way;
   ChainEnd end = ChainEnd::None;
-  Hit first;    // its first smooth vertex; not valid where there is none
-  Hit last;     // what it shows, if that is a surface
-  PathRay ray;  // the last
+  Hit first;                // its first smooth vertex; not valid where there is none
+  Hit last;                 // what it shows, if that is a surface
+  Vec3 shown = Vec3(0.0f);  // and where that is
+  PathRay ray;              // the last
 };
 
 class ChainTracer {

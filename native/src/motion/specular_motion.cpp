@@ -60,9 +60,9 @@ class Tracker {
     return target->in_sky || motion_.position(chain.last, &target->place);
   }
   // In the first frame.
-  Target own_target(const SpecularChain& chain) const {
+  static Target own_target(const SpecularChain& chain) {
     const bool in_sky = chain.end == ChainEnd::Sky;
-    return {in_sky ? chain.ray.ray.direction : here_.snapshot().surface_point(chain.last).position, in_sky};
+    return {in_sky ? chain.ray.ray.direction : chain.shown, in_sky};
   }
 
   // What is seen directly.
