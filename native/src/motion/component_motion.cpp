@@ -54,6 +54,7 @@ void join(const Camera& camera, const Region& band, const ChainMotion& previous,
 std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const GradusSettings& settings, const ComponentSet& components,
                                               uint32_t wanted, const Region& region, const CancelTest& is_cancelled) {
   const auto pixels = size_t(region.area()), width = size_t(region.width());
+  wanted &= (uint32_t{1} << components.count()) - 1;
   std::vector<ComponentMotion> motion(size_t(std::popcount(wanted)),
                                       {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), {}});
   if (wanted == 0) return motion;

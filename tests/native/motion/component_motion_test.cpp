@@ -27,6 +27,15 @@ class ComponentMotionTest : public MotionTest {
   }
 };
 
+// Whoever wanted all by all bits got 32, and wrote beyond the components that there are.
+TEST_F(ComponentMotionTest, IsThatOfTheComponentsThatThereAre) {
+  add_room();
+  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  const MotionFrame* middle = frame("Diffuse");
+  const auto all = component_motion(*middle->context.snapshot, middle->context.settings, components_, ~uint32_t{0}, kRegion);
+  EXPECT_EQ(all.size(), size_t(components_.count()));
+}
+
 // The keys of one snapshot say what three snapshots do.
 TEST_F(ComponentMotionTest, IsThatOfTheFramesAround) {
   add_room();
