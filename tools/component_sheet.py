@@ -1,4 +1,4 @@
-"""Pictures of a frame's components side by side: a column for each, a row for each of its passes.
+"""Pictures of a frame's components side by side: a column for each, a row for each of its passes, of which none is empty.
 
     component_sheet.py FRAME.exr SHEET.webp
 
@@ -64,11 +64,12 @@ ROWS: dict[str, Shower] = {
 
 def sheet(passes: Passes) -> Image.Image:
     names = components(passes)
+    rows = {suffix: show for suffix, show in ROWS.items() if any(passes[f"Path {name} {suffix}".strip()].any() for name in names)}
     white = max(float(np.percentile(passes["Combined"][..., :3], BRIGHTEST)), 1e-6)
     height, width = passes["Combined"].shape[:2]
-    made = Image.new("RGB", (len(names) * (width + GAP) - GAP, len(ROWS) * (height + HEADER) - GAP), "white")
+    made = Image.new("RGB", (len(names) * (width + GAP) - GAP, len(rows) * (height + HEADER) - GAP), "white")
     text = ImageDraw.Draw(made)
-    for row, (suffix, show) in enumerate(ROWS.items()):
+    for row, (suffix, show) in enumerate(rows.items()):
         for column, name in enumerate(names):
             left, top = column * (width + GAP), row * (height + HEADER)
             text.text((left + 2, top), f"{name} {suffix}", fill="black")

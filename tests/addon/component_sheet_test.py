@@ -43,6 +43,12 @@ def test_a_column_for_each_component_and_a_row_for_each_pass(tool: dict[str, Any
     assert shown(4, 1) == [64, 64, 64], "not tracked"
 
 
+def test_passes_that_are_empty_have_no_row(tool: dict[str, Any]) -> None:
+    passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)} | passes_of("Diffuse", (1.0, 0.0, 0.0), 0.0)
+    passes["Path Diffuse Motion"] = np.zeros((HEIGHT, WIDTH, 4), np.float32)
+    assert tool["sheet"](passes).size[1] == 4 * (HEIGHT + tool["HEADER"]) - tool["GAP"]
+
+
 def test_it_reads_what_blender_writes(tool: dict[str, Any], tmp_path: Path) -> None:
     bpy.ops.wm.open_mainfile(filepath=str(ROOT / "sample_blends" / "mirror_and_glass.blend"))
     scene = bpy.context.scene
