@@ -37,7 +37,7 @@ class Distances {
   std::vector<float> pixels_;
 };
 
-// What simpler answers differ by from a motion that was found.
+// What simpler answers differ by from a motion that was found, where something moves.
 ordered_json compare(const ChainView& view, const ChainTracer& next, const ChainMotion& found) {
   const SnapshotMotion surface(view.tracer().snapshot(), next.snapshot());
   const Camera& camera = next.camera();
@@ -45,7 +45,7 @@ ordered_json compare(const ChainView& view, const ChainTracer& next, const Chain
   for (size_t i = 0; i < found.film.size(); ++i) {
     if (found.tracking[i] != Tracking::Tracked) continue;
     const SpecularChain& chain = view.chains[size_t(view.places[i])];
-    if (chain.way.length == 0) continue;
+    if (chain.way.length == 0 || chain.rests) continue;
     Vec2 film;
     Vec3 position;
     if (surface.position(chain.first, &position) && camera.project(position, Moment::Now, &film))
@@ -83,8 +83,13 @@ ordered_json measure(const Snapshot& snapshot, const GradusSettings& settings, c
   report["moved_snapshot_cpu"] = cpu;
   const Camera camera = Camera(moved->camera, settings.width, settings.height).without_lens();
   const ChainTracer next(*moved, camera, settings);
+  Change change(snapshot);
+  change.add(*moved);
   const int followed = components.count() - 1;  // no path stands for all that is left over
-  const std::vector<ChainView> views = billed([&] { return view_chains(centres, settings, components, (1u << followed) - 1); });
+  const std::vector<ChainView> views = billed([&] {
+    return view_chains(
+        centres, settings, components, (1u << followed) - 1, [] { return false; }, &change);
+  });
   report["chains_cpu"] = cpu;
   for (int c = 0; c < followed; ++c) {
     const ChainView& view = views[size_t(c)];

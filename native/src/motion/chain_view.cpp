@@ -32,7 +32,7 @@ void join(std::vector<Row>* rows, ChainView* view) {
 }  // namespace
 
 std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettings& settings, const ComponentSet& components,
-                                   uint32_t wanted, const CancelTest& is_cancelled) {
+                                   uint32_t wanted, const CancelTest& is_cancelled, const Change* change) {
   const Region& region = centres.region;
   const auto width = size_t(region.width()), height = size_t(region.height());
   std::vector<int> numbers;
@@ -45,7 +45,7 @@ std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettin
     std::array<SpecularChain, kMostComponents> chains;
     for (size_t x = 0; x < width && !is_cancelled(); ++x) {
       const Vec2 film = pixel_centre(region.x0 + int32_t(x), region.y0 + int32_t(y));
-      const uint32_t found = tracer.find(film, centres.hits[y * width + x], components, wanted, &chains);
+      const uint32_t found = tracer.find(film, centres.hits[y * width + x], components, wanted, change, &chains);
       for (size_t k = 0; k < numbers.size(); ++k) {
         if ((found >> numbers[k] & 1) == 0) continue;
         views[k].places[y * width + x] = int32_t(rows[k][y].size());

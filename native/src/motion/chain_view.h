@@ -21,8 +21,9 @@ struct ChainView {
   ChainTracer tracer() const { return {*centres->snapshot, centres->camera, *settings}; }
 };
 // Of the components whose bits are set in `wanted`, in order. All that is given lives as long as the views. Cancelled: chains are missing.
+// change: see ChainTracer::find().
 std::vector<ChainView> view_chains(
     const CentreView& centres, const GradusSettings& settings, const ComponentSet& components, uint32_t wanted,
-    const CancelTest& is_cancelled = [] { return false; });
+    const CancelTest& is_cancelled = [] { return false; }, const Change* change = nullptr);
 
 }  // namespace gradus

@@ -59,10 +59,12 @@ std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const Gr
                                       {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), {}});
   if (wanted == 0) return motion;
   const OtherFrame previous(snapshot, Moment::Previous, settings, is_cancelled), next(snapshot, Moment::Next, settings, is_cancelled);
+  Change change(snapshot);
+  for (const OtherFrame* other : {&previous, &next}) change.add(*other->snapshot);
   for (int32_t y = region.y0; y < region.y1; y += kBand) {
     const Region band{region.x0, y, region.x1, std::min(y + kBand, region.y1)};
     const CentreView centres = view_centres(snapshot, settings.width, settings.height, with_neighbours(band, settings), is_cancelled);
-    const std::vector<ChainView> views = view_chains(centres, settings, components, wanted, is_cancelled);
+    const std::vector<ChainView> views = view_chains(centres, settings, components, wanted, is_cancelled, &change);
     for (size_t k = 0; k < views.size(); ++k)
       join(centres.camera, band, track_chains(views[k], previous.tracer, band, is_cancelled),
            track_chains(views[k], next.tracer, band, is_cancelled), width * size_t(y - region.y0), &motion[k]);

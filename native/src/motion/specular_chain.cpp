@@ -70,10 +70,10 @@ bool ChainTracer::advance(Shades shades, const Hit* known, PathRay* ray, Arrival
     } else {
       snapshot_.intersect(part, ray->visibility, &hit);
     }
+    arrival->hit = hit;
     if (!hit.valid()) return false;
     ray->state.length = glm::length(part.origin + part.direction * hit.t - ray->ray.origin);
     const MaterialData& material = *snapshot_.materials[snapshot_.material_of(hit.instance, hit.triangle)];
-    arrival->hit = hit;
     if (shades == Shades::Transparency && !material.may_be_transparent) return true;
     snapshot_.place(hit, &vertex->point);
     const bool is_rough = material.has_bsdf && !material.emits && material.min_alpha >= settings_.roughness_threshold;
@@ -102,10 +102,16 @@ float ChainTracer::scatter(const Vertex& vertex, ScatterClass letter, PathRay* r
 struct ChainTracer::Search {
   const ComponentSet& components;
   int component;
+  const Change* change;
   int looks = 0;
 
   bool reaches(PathWord word) const { return (components.ahead(word) >> component & 1) != 0; }
   bool is_lit(PathWord word) const { return components.component(word) == component; }
+  bool rests(const PathRay& ray, const Hit& hit) const {
+    const bool met = hit.valid();
+    return change != nullptr && !change->may_meet(ray.ray, met ? ray.state.length : kInfinity) &&
+           !(met && change->of_instance(hit.instance));
+  }
   // A rough surface or one that shines, where that belongs to the component.
   bool ends_at(const Arrival& arrival, PathWord word) const {
     if (arrival.surely_rough) return reaches(components.next(word, ScatterClass::Diffuse));
@@ -137,7 +143,9 @@ bool ChainTracer::extend(Search* search, PathRay ray, PathWord word, SpecularCha
   thread_local std::array<Arrival, kLongestChain + 1> arrivals;  // large: one for each depth
   Arrival& arrival = arrivals[chain->way.length];
   chain->ray = ray;
-  return advance(Shades::All, nullptr, &ray, &arrival) ? go_on(search, arrival, ray, word, chain) : is_seen(*search, word, chain);
+  const bool is_surface = advance(Shades::All, nullptr, &ray, &arrival);
+  chain->rests = chain->rests && search->rests(ray, arrival.hit);
+  return is_surface ? go_on(search, arrival, ray, word, chain) : is_seen(*search, word, chain);
 }
 
 // ray: as it arrived.
@@ -162,7 +170,7 @@ bool ChainTracer::go_on(Search* search, const Arrival& arrival, const PathRay& r
   return false;
 }
 
-uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted,
+uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted, const Change* change,
                            std::array<SpecularChain, kMostComponents>* chains) const {
   const PathRay start = camera_ray(film);
   if (is_none(start.ray)) return 0;
@@ -172,10 +180,11 @@ uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSe
   uint32_t found = 0;
   for (int c = 0; c < components.count(); ++c) {
     if ((wanted >> c & 1) == 0) continue;
-    Search search{components, c};
+    Search search{components, c, change};
     SpecularChain& chain = (*chains)[size_t(c)];
     chain = {};
     chain.ray = start;
+    chain.rests = change != nullptr && !change->of_camera() && search.rests(ray, arrival.hit);
     const bool is_found = is_surface ? go_on(&search, arrival, ray, PathWord{0}, &chain) : is_seen(search, PathWord{0}, &chain);
     found |= is_found ? 1u << c : 0u;
   }

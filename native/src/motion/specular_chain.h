@@ -3,6 +3,7 @@
 // A sharp lobe counts as perfectly smooth about its shading normal. Surfaces of which more goes straight through than stays are passed.
 #pragma once
 
+#include "motion/change.h"
 #include "path/components.h"
 #include "path/segment.h"
 #include "scene/camera.h"
@@ -28,6 +29,7 @@ struct ChainWay {
 
 struct SpecularChain {
   ChainWay way;
+  bool rests = false;  // nothing of it changes, and nothing that moves may come between
   ChainEnd end = ChainEnd::None;
   Hit first;                // its first smooth vertex; not valid where there is none
   Hit last;                 // what it shows, if that is a surface
@@ -42,8 +44,8 @@ class ChainTracer {
 
   // Chains at a place of the film: bits of the components of `wanted` that have one, which is put at their place in `chains`. Where
   // surfaces both reflect and transmit, the stronger way that leads to the component; it ends on the first surface that is rough or shines
-  // as the component asks, or in the sky. known: what the camera ray meets.
-  uint32_t find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted,
+  // as the component asks, or in the sky. known: what the camera ray meets. change: nullptr where it is not known; then no chain rests.
+  uint32_t find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted, const Change* change,
                 std::array<SpecularChain, kMostComponents>* chains) const;
   // Goes a way from another place of the film, up to its last ray, which is not traced. False: the way breaks.
   bool follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const;

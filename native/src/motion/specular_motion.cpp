@@ -23,7 +23,6 @@ struct Track {
   Tracking tracking = Tracking::NoPath;
   Vec2 film{0.0f};
   const SpecularChain* chain = nullptr;  // in the first frame
-  FilmJacobian jacobian;
 };
 
 class Tracker {
@@ -37,6 +36,10 @@ class Tracker {
     result.film = pixel_centre(x, y);
     result.chain = from_.at(x, y);
     if (result.chain == nullptr) return result;
+    if (result.chain->rests) {
+      result.tracking = Tracking::Tracked;
+      return result;
+    }
     Target target;
     if (!find_target(*result.chain, &target)) {
       result.tracking = Tracking::Gone;
@@ -103,7 +106,6 @@ class Tracker {
       track->tracking = tracking;
       if (tracking != Tracking::Tracked) return;
       track->film = found.film;
-      track->jacobian = found.jacobian;
     };
     const bool follows = before != nullptr && before->tracking == Tracking::Tracked && before->chain->way == chain.way;
     if (follows) attempt(newton.leap(start, before->film, &found));

@@ -139,6 +139,20 @@ TEST_F(ComponentMotionTest, OfARegionIsThatOfTheWholeFilm) {
     }
 }
 
+// A ball that moves in a corner: what neither shows it nor may be hidden by it is not looked for.
+TEST_F(ComponentMotionTest, WhatNothingMovesInIsNotTraced) {
+  add_room();
+  scene_.ball(Vec3(-1.2f, 0, 0), 0.3f, mirror(), 32, true);
+  scene_.ball(Vec3(1.2f, 0, 0), 0.5f, clear(), 32, true);
+  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 1.0f);
+  key(translation(Vec3(-0.02f, 0, 0)), Mat4(1.0f), translation(Vec3(0.02f, 0.01f, 0)));
+  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  const TrackingCounts seen_through = find(context, "Transmission").at(0).counts, mirrored = find(context, "Reflection").at(0).counts;
+  EXPECT_GT(seen_through.pixels[0], 100u);
+  EXPECT_LT(float(seen_through.searched), 0.5f * float(seen_through.pixels[0]));
+  EXPECT_GT(mirrored.searched, 20u);
+}
+
 TEST_F(ComponentMotionTest, CanBeCancelled) {
   add_room();
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);

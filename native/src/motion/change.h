@@ -1,0 +1,31 @@
+// What is different in the frames around: a path that meets nothing of it need not be looked for there.
+#pragma once
+
+#include <vector>
+
+#include "scene/ray_box.h"
+#include "scene/snapshot.h"
+
+namespace gradus {
+
+class Change {
+ public:
+  explicit Change(const Snapshot& now);
+  // other: moved_snapshot() of it.
+  void add(const Snapshot& other);
+
+  bool of_camera() const { return camera_; }
+  bool of_instance(uint32_t index) const { return instances_[index]; }
+  // Whether something that moves may be on that part of the ray, at any of these moments.
+  bool may_meet(const Ray& ray, float distance) const { return any_ && box_.may_meet(ray.origin, ray.direction, 0.0f, distance); }
+
+ private:
+  void add_box(const InstanceData& instance);
+
+  const Snapshot& now_;
+  bool camera_ = false, any_ = false;
+  std::vector<bool> instances_;
+  RayBox box_;  // around all that moves
+};
+
+}  // namespace gradus
