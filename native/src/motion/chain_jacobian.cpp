@@ -18,10 +18,9 @@ bool column(const ChainView& view, const Aim& aim, const SpecularChain& centre, 
     if (neighbour == nullptr || neighbour->way != centre.way || !aim.miss(neighbour->ray.ray, &there)) continue;
     difference[count++] = float(side) * (there - here);
   }
-  if (count < 2) {
-    *column = difference[0];
-    return count == 1;
-  }
+  if (count == 0) return false;
+  *column = difference[0];
+  if (count == 1) return true;
   *column = 0.5f * (difference[0] + difference[1]);
   return glm::length(difference[1] - difference[0]) < kLargestBend * glm::length(*column);
 }
