@@ -36,12 +36,17 @@ void read_mean(const Frame& frame, const PassPlane& plane, HalfRange halves, siz
   }
 }
 
+// half: half the difference of the halves' means.
+float variance_of(float half, bool is_known) {
+  return is_known ? std::min(half * half, std::numeric_limits<float>::max()) : std::numeric_limits<float>::quiet_NaN();
+}
+
 void read_variance(const Frame& frame, const PassPlane& plane, size_t pixel, float* to) {
   const uint32_t a = frame.count[0][pixel], b = frame.count[1][pixel];
   for (uint32_t c = 0; c < plane.channels; ++c) {
     const size_t i = plane.channels * pixel + c;
     const float half = 0.5f * (plane.values[0][i] / static_cast<float>(a) - plane.values[1][i] / static_cast<float>(b));
-    to[c] = a > 0 && b > 0 ? std::min(half * half, std::numeric_limits<float>::max()) : std::numeric_limits<float>::quiet_NaN();
+    to[c] = variance_of(half, a > 0 && b > 0);
   }
 }
 
@@ -66,6 +71,35 @@ FeatureImage read_feature(const Frame& frame, uint32_t pass, HalfRange halves) {
     for_pixels(frame, [&](size_t i) { read_variance(frame, *plane, i, image.variance.data() + i * image.channels); });
   }
   return image;
+}
+
+bool has_own_features(const Frame& frame, int component) {
+  const auto& rough = frame.components[size_t(component)].rough;
+  const auto is_met = [](const RoughVertices& vertices) { return vertices.samples > 0.0f; };
+  return std::any_of(rough[0].begin(), rough[0].end(), is_met) || std::any_of(rough[1].begin(), rough[1].end(), is_met);
+}
+
+Features read_own_features(const Frame& frame, int component) {
+  const auto& rough = frame.components[size_t(component)].rough;
+  if (rough[0].empty()) throw invalid_operation("the frame does not keep where the paths of its components become rough");
+  Features features{frame.region.width(), frame.region.height(), {}, {}, {}};
+  const auto read = [&](FeatureImage* image, uint32_t channels, const auto& value_of) {
+    image->channels = channels;
+    image->values.resize(rough[0].size() * channels);
+    image->variance.resize(image->values.size());
+    for_pixels(frame, [&](size_t i) {
+      const auto a = float(frame.count[0][i]), b = float(frame.count[1][i]), n = a + b;
+      for (uint32_t c = 0; c < channels; ++c) {
+        const float in_a = value_of(rough[0][i], c), in_b = value_of(rough[1][i], c), half = 0.5f * (in_a / a - in_b / b);
+        image->values[i * channels + c] = n > 0.0f ? (in_a + in_b) / n : 0.0f;
+        image->variance[i * channels + c] = variance_of(half, a > 0.0f && b > 0.0f);
+      }
+    });
+  };
+  read(&features.normal, 3, [](const RoughVertices& v, uint32_t c) { return v.normal[int(c)]; });
+  read(&features.albedo, 3, [](const RoughVertices& v, uint32_t c) { return v.reflectance[int(c)]; });
+  read(&features.depth, 1, [](const RoughVertices& v, uint32_t) { return v.depth; });
+  return features;
 }
 
 Features read_features(const Frame& frame, HalfRange halves) {

@@ -37,7 +37,9 @@ Frame::Frame(uint32_t full_width_, uint32_t full_height_, const Region& region_,
 
 uint64_t Frame::memory_bytes() const {
   uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + replayed.pixel.size() * sizeof(int32_t);
+  for (const std::vector<int32_t>& own : replayed.of_component) bytes += own.size() * sizeof(int32_t);
   for (const ComponentPlanes& component : components) {
+    bytes += component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float);
     for (int half = 0; half < kHalves; ++half) {
       bytes += component.primal[half].size() * sizeof(Radiance) + component.rough[half].size() * sizeof(RoughVertices);
       for (const auto& plane : component.gradient[half]) {
@@ -79,12 +81,17 @@ void keep_component(std::string_view name, Frame* frame) {
   ComponentPlanes kept = std::move(frame->components[size_t(std::max(place, 0))]);
   if (place < 0) {
     kept.name = name;
+    std::fill(kept.motion.begin(), kept.motion.end(), Vec4(0.0f));
+    std::fill(kept.tracked.begin(), kept.tracked.end(), kNothingToTrack);
     for (int half = 0; half < kHalves; ++half) {
       std::fill(kept.primal[half].begin(), kept.primal[half].end(), Radiance(0.0f));
       for (auto& plane : kept.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));
       std::fill(kept.rough[half].begin(), kept.rough[half].end(), RoughVertices{});
     }
   }
+  SampleSources& replayed = frame->replayed;
+  if (place >= 0 && replayed.has_own(place)) replayed.pixel = std::move(replayed.of_component[size_t(place)]);
+  replayed.of_component.clear();
   frame->components.clear();
   frame->components.push_back(std::move(kept));
 }

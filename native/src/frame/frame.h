@@ -54,7 +54,14 @@ struct ComponentPlanes {
   std::array<std::vector<Radiance>, kHalves> primal;
   std::array<std::array<std::vector<Radiance>, kOffsets>, kHalves> gradient;  // empty where the integrator makes none
   std::array<std::vector<RoughVertices>, kHalves> rough;                      // empty unless asked for
+  // Of what the component shows at the centres of pixels: previous − now, now − next, in pixels; 1, or why that is not known
+  // (motion/component_motion.h). Empty unless asked for.
+  std::vector<Vec4> motion;
+  std::vector<float> tracked;
 };
+
+// Of a pixel in which a component shows nothing.
+inline constexpr float kNothingToTrack = -1.0f;
 
 // A data or light pass: sums over samples, `channels` per pixel.
 struct PassPlane {

@@ -27,6 +27,13 @@ void keep_rough_vertices(Frame* frame) {
   }
 }
 
+void keep_motion(Frame* frame) {
+  for (ComponentPlanes& planes : frame->components) {
+    planes.motion.assign(size_t(frame->region.area()), Vec4(0.0f));
+    planes.tracked.assign(size_t(frame->region.area()), kNothingToTrack);
+  }
+}
+
 uint64_t kept_passes(const Frame& frame) {
   uint64_t passes = 0;
   for (const PassPlane& plane : frame.passes) passes |= uint64_t{1} << plane.pass;
@@ -38,11 +45,12 @@ const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
   return plane != frame.passes.end() ? &*plane : nullptr;
 }
 
-uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, bool rough) {
+uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, bool rough, bool motion) {
   const uint64_t offsets = gradients ? uint64_t{kOffsets} : 0, radiances = uint64_t(components) * (1 + offsets);
   const uint64_t features = rough ? uint64_t(components) * sizeof(RoughVertices) : 0;
   const uint64_t half = radiances * sizeof(Radiance) + features + sizeof(uint32_t) + offsets * sizeof(float);
-  return kHalves * half + pass_bytes_per_pixel(passes) + (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
+  const uint64_t moves = motion ? uint64_t(components) * (sizeof(Vec4) + sizeof(float)) : 0;
+  return kHalves * half + moves + pass_bytes_per_pixel(passes) + (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
 }
 
 }  // namespace gradus

@@ -1,6 +1,7 @@
 // Whose random numbers the pixels of a frame take, where they replay those of another one (contract 1.1).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,13 @@ struct SampleSources {
   uint64_t scene_key = 0;      // of the scene that the replayed frame shows; 0: not known
   uint32_t seed = 0;           // of the frame that is replayed
   bool shares_jitter = true;   // whether its cells did. Not stored: its scene tells
+  // Of components that go their own ways, as reflections do: likewise, by component; empty, or none: `pixel`.
+  std::vector<std::vector<int32_t>> of_component{};
+
+  bool has_own(int component) const { return size_t(component) < of_component.size() && !of_component[size_t(component)].empty(); }
+  const std::vector<int32_t>& pixels_of(int component) const { return has_own(component) ? of_component[size_t(component)] : pixel; }
 };
+
+inline bool replays_same(const SampleSources& a, const SampleSources& b) { return a.pixel == b.pixel && a.of_component == b.of_component; }
 
 }  // namespace gradus

@@ -64,14 +64,15 @@ void write_blocks(const PartRows& rows, const CancelTest& cancel, BlockFile* fil
                                      tbb::make_filter<PackedBlock, void>(tbb::filter_mode::serial_in_order, write));
 }
 
-void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, size_t parts, const CancelTest& cancel) {
+// numbers: of the parts in the file.
+void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std::vector<int>& numbers, const CancelTest& cancel) {
   struct Reader {
     BlockCodec codec;
     Bytes packed, bytes;
   };
   tbb::enumerable_thread_specific<Reader> readers;
   std::vector<Imf::InputPart> inputs;
-  for (size_t part = 0; part < parts; ++part) inputs.emplace_back(*file, int(part));
+  for (const int number : numbers) inputs.emplace_back(*file, number);
   const int top = file->header(0).dataWindow().min.y;
   tbb::parallel_for(0, rows.blocks(), [&](int i) {
     stop_if(cancel);
@@ -88,9 +89,13 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, size_t par
 }
 
 void check_sources(const Frame& frame) {
-  for (const int32_t pixel : frame.replayed.pixel) {
-    if (pixel < kNoLink || pixel >= frame.region.area()) throw invalid_argument("it replays pixels that do not exist");
-  }
+  const auto check = [&](const std::vector<int32_t>& pixels) {
+    for (const int32_t pixel : pixels) {
+      if (pixel < kNoLink || pixel >= frame.region.area()) throw invalid_argument("it replays pixels that do not exist");
+    }
+  };
+  check(frame.replayed.pixel);
+  for (const std::vector<int32_t>& own : frame.replayed.of_component) check(own);
 }
 
 Imf::MultiPartInputFile open_file(const std::string& path) {
@@ -99,15 +104,26 @@ Imf::MultiPartInputFile open_file(const std::string& path) {
   return Imf::MultiPartInputFile(path.c_str(), kNoThreads, kRepair);
 }
 
-Frame read_frame(const std::string& path, StoredContent content, const CancelTest& cancel) {
+int number_of(const Imf::MultiPartInputFile& file, const std::string& part) {
+  for (int i = 0; i < file.parts(); ++i) {
+    if (file.header(i).hasName() && file.header(i).name() == part) return i;
+  }
+  throw invalid_argument("part " + part + " is missing");
+}
+
+// only: the component to be read; nullptr: all.
+Frame read_frame(const std::string& path, StoredContent content, const std::string* only, const CancelTest& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
-  Frame frame = make_frame(file.header(0), content);
+  Frame frame = make_frame(file.header(0), content, only);
   const std::vector<StoredPart> parts = stored_parts(&frame);
-  const bool is_whole = content == StoredContent::kAll;
-  if (is_whole ? size_t(file.parts()) != parts.size() : size_t(file.parts()) < parts.size())
-    throw invalid_argument("it has parts of something else");
-  for (size_t i = 0; i < parts.size(); ++i) check_part(file.header(int(i)), file.header(0), parts[i]);
-  read_blocks(&file, PartRows(parts, frame), parts.size(), cancel);
+  const bool is_whole = content == StoredContent::kAll && only == nullptr;
+  if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
+  std::vector<int> numbers;
+  for (const StoredPart& part : parts) {
+    numbers.push_back(number_of(file, part.name));
+    check_part(file.header(numbers.back()), file.header(0), part);
+  }
+  read_blocks(&file, PartRows(parts, frame), numbers, cancel);
   check_sources(frame);
   return frame;
 }
@@ -141,7 +157,13 @@ void save_frame(const Frame& frame, const std::string& path, const FrameWriting&
 }
 
 std::shared_ptr<Frame> load_frame(const std::string& path, StoredContent content, const CancelTest& cancel) {
-  return load(path, [&] { return std::make_shared<Frame>(read_frame(path, content, cancel)); });
+  return load(path, [&] { return std::make_shared<Frame>(read_frame(path, content, nullptr, cancel)); });
+}
+
+std::shared_ptr<Frame> load_component(const std::string& path, const std::string& name, StoredContent content, const CancelTest& cancel) {
+  auto frame = load(path, [&] { return std::make_shared<Frame>(read_frame(path, content, &name, cancel)); });
+  keep_component(name, frame.get());
+  return frame;
 }
 
 FrameHeader load_header(const std::string& path) {

@@ -24,9 +24,12 @@ void save_frame(const Frame& frame, const std::string& path, const FrameWriting&
 
 // What is read of a file: the samples alone are a frame without gradients and passes.
 enum class StoredContent { kAll, kSamples };
-// Both throw invalid_argument with path and cause for a file that is missing, damaged or no frame.
+// All throw invalid_argument with path and cause for a file that is missing, damaged or no frame.
 std::shared_ptr<Frame> load_frame(
     const std::string& path, StoredContent content = StoredContent::kAll, const CancelTest& cancel = [] { return false; });
+// The same of one component alone, black where the frame has none of that name: the frame's only one, which replays from where that
+// component was. Nothing is unpacked of the others.
+std::shared_ptr<Frame> load_component(const std::string& path, const std::string& name, StoredContent content, const CancelTest& cancel);
 FrameHeader load_header(const std::string& path);
 
 }  // namespace gradus

@@ -92,6 +92,7 @@ json describe_samples(const Frame& frame) {
           {"channels", frame.channels},
           {"components", components_to_json(frame)},
           {"rough", !frame.components[0].rough[0].empty()},
+          {"motion", !frame.components[0].motion.empty()},
           {"gradients", frame.gradients},
           {"sampling_key", hex(sampling_key(frame.settings))},
           {"scene_key", hex(frame.scene_key)},
@@ -108,6 +109,9 @@ json describe(const Frame& frame) {
   j["replayed_frame"] = frame.replayed.stream_frame;
   j["replayed_scene_key"] = hex(frame.replayed.scene_key);
   j["replayed_seed"] = frame.replayed.seed;
+  for (int c = 0; c < int(frame.components.size()); ++c) {
+    if (frame.replayed.has_own(c)) j["own_sources"].push_back(c);
+  }
   return j;
 }
 
@@ -170,6 +174,7 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.gradients = description.at("gradients");
   frame.planes = description.at("planes");
   frame.rough = description.at("rough");
+  frame.motion = description.value("motion", false);
   frame.settings = settings_from_json(description.at("settings"));
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
@@ -179,6 +184,23 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.scene_key = key_from_json(description.at("scene_key"));
   frame.frame_number = description.at("frame");
   return frame;
+}
+
+}  // namespace
+
+namespace {
+
+// 0 where there is none: whoever asks for one that is not there gets planes all the same (keep_component()).
+size_t place_of(const json& names, const std::string& name) {
+  const auto found = std::find_if(names.begin(), names.end(), [&](const json& item) { return item.at(0) == name; });
+  return found != names.end() ? size_t(found - names.begin()) : 0;
+}
+
+// The frame's one component takes a place among so many, of which the others have no planes.
+void place_component(size_t place, size_t count, Frame* frame) {
+  std::vector<ComponentPlanes> components(count);
+  components[place] = std::move(frame->components.front());
+  frame->components = std::move(components);
 }
 
 }  // namespace
@@ -193,23 +215,27 @@ std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<Stor
 
 FrameHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
 
-Frame make_frame(const Imf::Header& header, StoredContent content) {
+Frame make_frame(const Imf::Header& header, StoredContent content, const std::string* only) {
   const json description = description_of(header);
   const FrameHeader known = read_header(header, description);
   const json& names = description.at("components");
   if (!names.is_array() || names.empty() || names.size() > kMostComponents) throw damaged("its planes are wrong");
   const int components = int(names.size());
-  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients, rough = is_whole && known.rough;
+  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients, rough = is_whole && known.rough,
+             motion = is_whole && known.motion;
   const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
   const bool has_fallback = is_whole && wants(known.settings.passes, GRADUS_PASS_FALLBACK);
   const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
-  const uint64_t bytes = frame_bytes_per_pixel(components, gradients, planes, rough) * pixels, available = machine_memory_bytes();
+  const int held = only ? 1 : components;
+  const uint64_t bytes = frame_bytes_per_pixel(held, gradients, planes, rough, motion) * pixels, available = machine_memory_bytes();
   if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   const Imath::V2i last = header.displayWindow().max;
-  Frame frame(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, components, gradients);
-  name_components(names, &frame);
+  Frame frame(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
   if (rough) keep_rough_vertices(&frame);
+  if (motion) keep_motion(&frame);
+  if (only) place_component(place_of(names, *only), names.size(), &frame);
+  name_components(names, &frame);
   frame.settings = known.settings;
   frame.frame_number = known.frame_number;
   frame.scene_key = known.scene_key;
@@ -220,6 +246,12 @@ Frame make_frame(const Imf::Header& header, StoredContent content) {
   if (has_fallback) frame.fallback.assign(pixels, 0.0f);
   if (description.contains("replayed_frame")) {
     frame.replayed = {known.replayed_frame, std::vector<int32_t>(pixels), known.replayed_key, known.replayed_seed};
+    for (const int own : description.value("own_sources", std::vector<int>())) {
+      if (own < 0 || own >= components) throw damaged("its planes are wrong");
+      if (frame.components[size_t(own)].primal[0].empty()) continue;  // not read
+      frame.replayed.of_component.resize(size_t(components));
+      frame.replayed.of_component[size_t(own)].resize(pixels);
+    }
   }
   check_regions(frame);
   return frame;

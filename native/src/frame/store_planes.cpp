@@ -30,6 +30,10 @@ class PlaneList {
     add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(RoughVertices));
     add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(RoughVertices));
   }
+  void vectors(const std::string& layer, std::vector<Vec4>* plane) {
+    if (plane->empty()) return;
+    for (int c = 0; c < 4; ++c) add(layer + "." + kVectorNames[c], false, &(*plane)[0][c], sizeof(Vec4));
+  }
   void links(const std::string& layer, std::vector<int32_t>* plane) {
     if (!plane->empty()) add(layer + ".V", true, plane->data(), sizeof(int32_t));
   }
@@ -45,9 +49,11 @@ class PlaneList {
   std::vector<StoredPlane> planes_;
 };
 
-std::string layer_of(size_t component, int half) {
-  return (component == 0 ? "" : "component" + std::to_string(component) + ".") + kHalfNames[half];
-}
+std::string layer_of(size_t component) { return "component" + std::to_string(component); }
+
+std::string layer_of(size_t component, int half) { return (component == 0 ? "" : layer_of(component) + ".") + kHalfNames[half]; }
+
+std::string part_of(const std::string& name, size_t component) { return component == 0 ? name : name + "." + layer_of(component); }
 
 std::string layer_of(const PassPlane& plane) {
   std::string name = pass_info(plane.pass).name;
@@ -55,13 +61,13 @@ std::string layer_of(const PassPlane& plane) {
   return name;
 }
 
-std::vector<StoredPlane> samples(Frame* frame) {
+std::vector<StoredPlane> samples(Frame* frame, size_t component) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) {
-    for (size_t c = 0; c < frame->components.size(); ++c) {
-      list.radiance(layer_of(c, half), frame->channels, &frame->components[c].primal[half]);
-    }
+    list.radiance(layer_of(component, half), frame->channels, &frame->components[component].primal[half]);
   }
+  SampleSources& replayed = frame->replayed;
+  if (replayed.has_own(int(component))) list.links(layer_of(component) + ".source", &replayed.of_component[component]);
   return list.take();
 }
 
@@ -74,13 +80,11 @@ std::vector<StoredPlane> counts(Frame* frame) {
 
 std::string layer_of(int half, int offset) { return std::string(kHalfNames[half]) + "." + kOffsetNames[offset]; }
 
-std::vector<StoredPlane> gradients(Frame* frame) {
+std::vector<StoredPlane> gradients(Frame* frame, size_t component) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) {
     for (int o = 0; o < kOffsets; ++o) {
-      for (size_t c = 0; c < frame->components.size(); ++c) {
-        list.radiance(layer_of(c, half) + "." + kOffsetNames[o], frame->channels, &frame->components[c].gradient[half][o]);
-      }
+      list.radiance(layer_of(component, half) + "." + kOffsetNames[o], frame->channels, &frame->components[component].gradient[half][o]);
     }
   }
   return list.take();
@@ -102,11 +106,18 @@ std::vector<StoredPlane> feature(PassPlane* plane) {
   return list.take();
 }
 
-std::vector<StoredPlane> rough(Frame* frame) {
+std::vector<StoredPlane> rough(Frame* frame, size_t component) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) {
-    for (size_t c = 0; c < frame->components.size(); ++c) list.rough(layer_of(c, half), &frame->components[c].rough[half]);
-  }
+  for (int half = 0; half < kHalves; ++half) list.rough(layer_of(component, half), &frame->components[component].rough[half]);
+  return list.take();
+}
+
+std::vector<StoredPlane> motion(Frame* frame, size_t component) {
+  PlaneList list;
+  ComponentPlanes& planes = frame->components[component];
+  const std::string layer = layer_of(component);
+  list.vectors(layer + ".motion", &planes.motion);
+  list.vectors(layer + ".tracked", 1, &planes.tracked);
   return list.take();
 }
 
@@ -124,11 +135,14 @@ std::vector<StoredPlane> passes(Frame* frame) {
 }  // namespace
 
 std::vector<StoredPart> stored_parts(Frame* frame) {
-  std::vector<StoredPart> parts = {{"samples", samples(frame)},
-                                   {"counts", counts(frame)},
-                                   {"gradients", gradients(frame)},
-                                   {"pairs", pairs(frame)},
-                                   {"rough", rough(frame)}};
+  std::vector<StoredPart> parts;
+  const size_t components = frame->components.size();
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("samples", c), samples(frame, c)});
+  parts.push_back({"counts", counts(frame)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("gradients", c), gradients(frame, c)});
+  parts.push_back({"pairs", pairs(frame)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("rough", c), rough(frame, c)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("motion", c), motion(frame, c)});
   for (PassPlane& plane : frame->passes) {
     if (plane.in_halves) parts.push_back({layer_of(plane), feature(&plane)});
   }

@@ -17,8 +17,8 @@ struct StoredPlane {
   size_t stride = 0;
 };
 
-// What belongs together and packs alike: samples and their counts, gradients and their pairs, each feature, passes. There is none without
-// channels. All is in 32 bits: half would do for the
+// What belongs together and packs alike: samples and gradients, of each component by itself, so that one can be read without the others;
+// counts, pairs, each feature, passes. There is none without channels. All is in 32 bits: half would do for the
 // means of features (REGULARIZED's error changes by less than a thousandth), but a render that goes on from rounded sums has other bits
 // than one that was never stored (contract 2.1).
 struct StoredPart {

@@ -122,6 +122,67 @@ TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
   EXPECT_THROW(load_frame(path()), Error);
 }
 
+class F6_StoredComponents : public F6_Store {
+ protected:
+  // Three, each as bright as its number.
+  Frame frame() const {
+    Frame frame = *rendered(small_settings(20, 10, 2));
+    const ComponentPlanes planes = frame.components.front();
+    frame.components.assign(3, planes);
+    for (int c = 0; c < 3; ++c) {
+      frame.components[size_t(c)].name = kNames[c];
+      frame.components[size_t(c)].primal[0].assign(200, Radiance(Rgb(float(c + 1)), 0.0f));
+    }
+    frame.replayed.pixel.assign(200, kNoLink);
+    frame.replayed.of_component = {{}, {}, std::vector<int32_t>(200, 7)};
+    return frame;
+  }
+  std::shared_ptr<Frame> load(const char* name) const {
+    return load_component(path(), name, StoredContent::kAll, [] { return false; });
+  }
+  static constexpr const char* kNames[3] = {"Seen", "Diffuse", "Reflection"};
+};
+
+TEST_F(F6_StoredComponents, ComeBackTogether) {
+  const Frame stored = frame();
+  save_frame(stored, path());
+  const auto back = load_frame(path());
+  EXPECT_TRUE(same_samples(stored, *back));
+  EXPECT_EQ(back->replayed.of_component, stored.replayed.of_component);
+}
+
+TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
+  const Frame stored = frame();
+  save_frame(stored, path());
+  for (int c = 0; c < 3; ++c) {
+    const auto one = load(kNames[c]);
+    ASSERT_EQ(one->components.size(), 1u);
+    EXPECT_EQ(one->components[0].name, kNames[c]);
+    EXPECT_EQ(one->components[0].primal, stored.components[size_t(c)].primal);
+    EXPECT_EQ(one->components[0].gradient, stored.components[size_t(c)].gradient);
+    EXPECT_EQ(one->count, stored.count);
+    EXPECT_EQ(one->replayed.pixel, c == 2 ? stored.replayed.of_component[2] : stored.replayed.pixel);
+    EXPECT_TRUE(one->replayed.of_component.empty());
+  }
+}
+
+TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
+  save_frame(frame(), path());
+  const auto one = load("Glass");
+  ASSERT_EQ(one->components.size(), 1u);
+  EXPECT_EQ(one->components[0].name, "Glass");
+  EXPECT_EQ(one->components[0].primal[0], std::vector<Radiance>(200, Radiance(0.0f)));
+}
+
+TEST_F(F6_StoredComponents, WaysToPixelsThatDoNotExistAreRefused) {
+  Frame stored = frame();
+  stored.replayed.of_component[2][3] = 200;
+  save_frame(stored, path());
+  EXPECT_THROW(load_frame(path()), Error);
+  EXPECT_THROW(load("Reflection"), Error);
+  EXPECT_NO_THROW(load("Seen"));
+}
+
 // A file by OpenEXR alone, with headers as `change` leaves them: every channel of every part is read and written again.
 template <class Change>
 void rewrite(const std::string& from, const std::string& to, const Change& change) {
