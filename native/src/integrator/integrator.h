@@ -20,6 +20,8 @@ namespace gradus {
 // pixel_map: 0 for pixels of the frame's region that are passed over, though their counts are those of the others.
 // sources: whose random numbers the pixels take, where the unit replays another frame; nullptr: their own.
 // gradient_map: 0 for pixels of the region whose paths have no offsets; pairs with such a pixel are absent.
+// components: bits of those that are sampled, component_map: of each pixel; others keep what they have, and paths that lead to them alone
+// end. again: the unit adds components to samples that were counted before, and whose data passes are there.
 struct WorkUnit {
   Region tile;
   uint32_t first_sample = 0;
@@ -29,6 +31,9 @@ struct WorkUnit {
   const std::vector<uint8_t>* pixel_map = nullptr;
   const std::vector<uint8_t>* gradient_map = nullptr;
   const SampleSources* sources = nullptr;
+  uint32_t components = kEveryComponent;
+  const std::vector<uint32_t>* component_map = nullptr;
+  bool again = false;
 };
 
 class Integrator {

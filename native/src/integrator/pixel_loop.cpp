@@ -89,16 +89,18 @@ Vec2 own_jitter(const PathContext& context, const WorkUnit& unit, const Frame& f
   return context.filter.sample(sample.sampler.get2(dimension::kFilm));
 }
 
-void add_primal(const PathResult& result, const PixelSample& sample, Frame* frame, Counters* counters) {
+void add_primal(const PathResult& result, const PixelSample& sample, const WorkUnit& unit, Frame* frame, Counters* counters) {
+  const uint32_t wanted = unit_components(unit, sample.pixel);
   for (size_t c = 0; c < frame->components.size(); ++c) {
     Radiance value = result.radiance[c];
     if (frame->channels < 4) {
       value.w = 0.0f;
     }
-    if (value != Radiance(0.0f)) {
+    if (value != Radiance(0.0f) && (wanted >> c & 1) != 0) {
       add_radiance(value, &frame->components[c].primal[sample.half][sample.pixel], counters);
     }
   }
+  if (unit.again) return;
   ++frame->count[sample.half][sample.pixel];
   if (!frame->fallback.empty() && result.fallback) {
     frame->fallback[sample.pixel] += 1.0f;

@@ -22,6 +22,11 @@ struct PixelSample {
 // Samples that a unit takes of a pixel.
 inline uint32_t unit_count(const WorkUnit& unit, size_t pixel) { return unit.count_map != nullptr ? (*unit.count_map)[pixel] : unit.count; }
 
+// Bits of the components of which they are.
+inline uint32_t unit_components(const WorkUnit& unit, size_t pixel) {
+  return unit.component_map != nullptr ? unit.components & (*unit.component_map)[pixel] : unit.components;
+}
+
 // Number of the first of them.
 inline uint32_t unit_first(const WorkUnit& unit, size_t pixel) {
   return unit.first_map != nullptr ? (*unit.first_map)[pixel] : unit.first_sample;
@@ -81,6 +86,6 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fra
 }
 
 // The primal sample of a pixel goes through the gate.
-void add_primal(const PathResult& result, const PixelSample& sample, Frame* frame, Counters* counters);
+void add_primal(const PathResult& result, const PixelSample& sample, const WorkUnit& unit, Frame* frame, Counters* counters);
 
 }  // namespace gradus

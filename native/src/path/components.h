@@ -22,6 +22,9 @@ inline constexpr int kMostComponents = 16;
 inline constexpr std::string_view kDefaultComponents = "Emission=EL;Diffuse=ED.*L;Reflection=ER(D.*)?L;Transmission=ETT(D.*)?L";
 inline constexpr std::string_view kResidual = "Residual";
 
+// Bits of components.
+inline constexpr uint32_t kEveryComponent = ~uint32_t{0};
+
 // Where a path's word has come to. 0 after E.
 using PathWord = uint16_t;
 

@@ -65,12 +65,13 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
   }
 }
 
-void PassRecorder::begin_sample(size_t pixel, int half, bool first_sample) {
+void PassRecorder::begin_sample(size_t pixel, int half, bool first_sample, bool again) {
   pixel_ = pixel;
   half_ = half;
   first_sample_ = first_sample;
-  features_done_ = !features_;
-  looks_for_rough_ = components_ != nullptr;
+  again_ = again;
+  features_done_ = !features_ || again;
+  looks_for_rough_ = components_ != nullptr && !again;
   path_length_ = 0.0f;
   albedo_ = Rgb(0.0f);
 }
@@ -123,7 +124,7 @@ void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent
 
 void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
   path_length_ += segment.length;
-  if (state.depth == 0 && others_) {
+  if (state.depth == 0 && others_ && !again_) {
     camera_surface(sampler, state.throughput, vertex);
   }
   if (!features_done_) {
@@ -135,7 +136,7 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
 }
 
 void PassRecorder::escaped(const PathState& state) {
-  if (state.depth > 0) {
+  if (state.depth > 0 || again_) {
     return;
   }
   add(GRADUS_PASS_MIST, 1.0f);
@@ -262,6 +263,13 @@ void PassRecorder::rough_vertex(const PathState& state, const Vertex& vertex) {
     if ((ahead >> c & 1) != 0) {
       add_rough(here, &(*components_)[c].rough[half_][pixel_], counters_);
     }
+  }
+}
+
+void PassRecorder::shines(int component, const Rgb& light) {
+  if (looks_for_rough_ && !is_black(light)) {
+    const RoughVertices here{glm::clamp(light, Rgb(0.0f), Rgb(1.0f)), Vec3(0.0f), path_length_, 1.0f};
+    add_rough(here, &(*components_)[size_t(component)].rough[half_][pixel_], counters_);
   }
 }
 

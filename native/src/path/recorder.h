@@ -16,19 +16,24 @@ class PassRecorder {
   PassRecorder(const PathContext& context, Frame* frame, Counters* counters);
   bool active() const { return active_; }
 
-  void begin_sample(size_t pixel, int half, bool first_sample);
+  // again: all but the light was recorded before.
+  void begin_sample(size_t pixel, int half, bool first_sample, bool again = false);
   // surface() will look at the closures of the vertex with `depth` scatterings before it.
-  bool needs_closures(int depth) const { return depth == 0 || !features_done_ || looks_for_rough_; }
+  bool needs_closures(int depth) const { return (depth == 0 && !again_) || !features_done_ || looks_for_rough_; }
   // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // The ray left the scene.
   void escaped(const PathState& state);
   // The film sees nothing there: all is mist, as in Cycles.
-  void no_ray() { add(GRADUS_PASS_MIST, 1.0f); }
+  void no_ray() {
+    if (!again_) add(GRADUS_PASS_MIST, 1.0f);
+  }
   // A lamp or the world on the path's last segment, with the whole of the light that arrives from there.
   void sighting(const Rgb& light) {
     if (!features_done_) add_albedo(light);
   }
+  // Light that a ray found, before any weight. Seen in a mirror or behind glass it is a feature of its component, as the albedo is.
+  void shines(int component, const Rgb& light);
   // Light that was scattered `scatterings` times; 0: seen by the camera.
   void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
   void environment(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT); }
@@ -63,6 +68,7 @@ class PassRecorder {
   std::vector<ComponentPlanes>* components_ = nullptr;  // that keep rough vertices
   bool looks_for_rough_ = false;                        // the path has met none so far
   bool first_sample_ = false;
+  bool again_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;
   Rgb albedo_ = Rgb(0.0f);  // feature of this sample, so far

@@ -54,6 +54,9 @@ class PathTracer {
         counters_(*counters),
         observer_(*observer) {}
 
+  // Bits of the components that count: a path that leads to none of them ends. Until it is said again.
+  void want(uint32_t components) { wanted_ = components; }
+
   // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is known. The result
   // stays until the next path.
   const PathResult& trace(const Sampler& sampler, const Vec2& film, CameraVertex* first = nullptr) {
@@ -119,6 +122,9 @@ class PathTracer {
   // The path's last ray, of which nobody wants to know more than the light that it finds.
   bool sees_lights_alone() const { return !records() && shows_lights_alone(context_, state_); }
 
+  // The path may still find something that counts.
+  bool is_wanted() const { return (context_.components.ahead(state_.word) & wanted_) != 0; }
+
   // The recorder looks at the closures of the next vertex.
   bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
 
@@ -132,7 +138,7 @@ class PathTracer {
     observer_.arrive(source, state_, *segment_, *vertex);
     const bool goes_on = see(sampler, source, *vertex);
     observer_.seen();
-    return goes_on && !state_.emission_only && light_and_leave(sampler, vertex);
+    return goes_on && !state_.emission_only && is_wanted() && light_and_leave(sampler, vertex);
   }
 
   // What a segment shows whose surface nobody asks for.
@@ -165,6 +171,9 @@ class PathTracer {
   // Scatters, and traces the next ray already: while the vertex is lit, what the ray has met is on its way from memory.
   bool look_ahead(const VertexSample& u, const Vertex& vertex) {
     if (!scatter(context_, u, vertex, &state_, &s_.event)) {
+      return false;
+    }
+    if (!is_wanted() && !records()) {
       return false;
     }
     if (!sees_lights_alone()) {
@@ -209,15 +218,19 @@ class PathTracer {
   // That of the film: no more than one component has it, so that they add up.
   float& alpha() { return result_.radiance[size_t(context_.components.component(PathWord{0}))].w; }
 
+  // Its light goes to passes, too.
+  bool records(const Contribution& c) const { return recorder_ != nullptr && (wanted_ >> c.component & 1) != 0; }
+
   void add(const Contribution& c) { result_.radiance[size_t(c.component)] += Radiance(c.clamped, 0.0f); }
 
   void add_lamps(const RaySource& source) {
     for (const LampSighting& lamp : segment_->lamps) {
       const Contribution c = lamp_contribution(context_, source, state_, lamp);
       if (recorder_ != nullptr) recorder_->sighting(state_.throughput * lamp.weight * c.light);
+      if (recorder_ != nullptr) recorder_->shines(c.component, c.light);
       if (!is_black(c.clamped)) {
         add(c);
-        if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
+        if (records(c)) recorder_->emission(state_.depth, c.clamped);
         observer_.lamp(source, c, lamp);
       }
     }
@@ -228,9 +241,10 @@ class PathTracer {
     if (state_.depth == 0 && context_.settings.film_transparent != 0) add_transparent(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
     if (recorder_ != nullptr) recorder_->sighting(state_.throughput * c.light);
+    if (recorder_ != nullptr) recorder_->shines(c.component, c.light);
     if (!is_black(c.clamped)) {
       add(c);
-      if (recorder_ != nullptr) recorder_->environment(state_.depth, c.clamped);
+      if (records(c)) recorder_->environment(state_.depth, c.clamped);
       observer_.world(source, c);
     }
   }
@@ -253,9 +267,10 @@ class PathTracer {
     }
     if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, *segment_);
     const Contribution c = emission_contribution(context_, source, state_, vertex);
+    if (recorder_ != nullptr) recorder_->shines(c.component, c.light);
     if (!is_black(c.clamped)) {
       add(c);
-      if (recorder_ != nullptr) recorder_->emission(state_.depth, c.clamped);
+      if (records(c)) recorder_->emission(state_.depth, c.clamped);
       observer_.emission(source, c, vertex);
     }
     return true;
@@ -274,7 +289,7 @@ class PathTracer {
       if (!is_black(c.clamped)) {
         add(c);
         const auto scatter_class = static_cast<ScatterClass>(k);
-        if (recorder_ != nullptr) recorder_->light(here, vertex, scatter_class, s_.light, c.clamped);
+        if (records(c)) recorder_->light(here, vertex, scatter_class, s_.light, c.clamped);
         observer_.light(vertex, s_.light, scatter_class, c);
       }
     }
@@ -285,6 +300,7 @@ class PathTracer {
   PassRecorder* recorder_;
   Counters& counters_;
   Observer& observer_;
+  uint32_t wanted_ = kEveryComponent;
   PathState state_;
   Hit next_hit_;                      // of the ray that leaves the vertex
   const Segment* segment_ = nullptr;  // the path's last

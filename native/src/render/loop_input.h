@@ -6,6 +6,7 @@
 #include "base/device.h"
 #include "frame/frame.h"
 #include "frame/sample_sources.h"
+#include "render/component_replay.h"
 #include "render/render.h"
 
 namespace gradus {
@@ -14,6 +15,7 @@ namespace gradus {
 struct Replay {
   SampleSources sources;
   std::vector<uint32_t> counts;  // samples of each pixel; empty: those of the settings
+  ComponentReplays components;   // of the sources
 };
 
 // Threads that a render with these settings has. device: may be nullptr if settings.threads is set.

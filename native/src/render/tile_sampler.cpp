@@ -1,5 +1,7 @@
 #include "render/tile_sampler.h"
 
+#include <algorithm>
+
 #include "base/clock.h"
 #include "base/fpu.h"
 #include "frame/cells.h"
@@ -9,6 +11,14 @@ namespace gradus {
 namespace {
 
 uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow; }
+
+bool has_pixels(const std::vector<uint8_t>& pixels, const Region& tile, const Region& region) {
+  for (int32_t y = tile.y0; y < tile.y1; ++y) {
+    const auto row = pixels.begin() + ptrdiff_t(y - region.y0) * region.width() + (tile.x0 - region.x0);
+    if (std::find(row, row + tile.width(), 1) != row + tile.width()) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -44,7 +54,7 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   if (replay_ != nullptr) unit.sources = &replay_->sources;
   if (replay_ != nullptr && !replay_->counts.empty()) unit.count_map = &replay_->counts;
   const uint64_t cpu = thread_cpu_nanoseconds();
-  const Counters counters = adaptive_ ? sample_cells(unit) : sample(unit);
+  const Counters counters = adaptive_ ? sample_cells(unit) : replay_ != nullptr ? sample_replay(unit) : sample(unit);
   done_[tile] = 1;
   const bool pause = after_tile(unit.tile, uint64_t(unit.tile.area()) * unit.count);
   cpu_ += thread_cpu_nanoseconds() - cpu;
@@ -57,6 +67,23 @@ Counters TileSampler::sample(const WorkUnit& unit) {
   Counters counters;
   integrator_.sample(unit, frame_, &counters, stop_);
   return counters;
+}
+
+// What goes with the surface, and then each component that goes its own way.
+Counters TileSampler::sample_replay(WorkUnit unit) {
+  const ComponentReplays& components = replay_->components;
+  if (!components.shared.empty()) unit.component_map = &components.shared;
+  Counters sum = sample(unit);
+  unit.component_map = nullptr;
+  unit.again = true;
+  for (const ComponentReplay& replay : components.own) {
+    if (!has_pixels(replay.pixels, unit.tile, frame_->region)) continue;
+    unit.components = uint32_t{1} << replay.component;
+    unit.sources = &replay.sources;
+    unit.pixel_map = &replay.pixels;
+    sum.add(sample(unit));
+  }
+  return sum;
 }
 
 // Cell by cell, so that the cost of each is known.

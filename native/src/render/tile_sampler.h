@@ -33,6 +33,7 @@ class TileSampler {
  private:
   bool sample_tile(size_t tile, const AfterTile& after_tile);
   Counters sample_cells(WorkUnit unit);
+  Counters sample_replay(WorkUnit unit);
   Counters sample(const WorkUnit& unit);
 
   const Integrator& integrator_;

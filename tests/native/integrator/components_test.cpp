@@ -105,6 +105,50 @@ TEST_P(Scenarios, PlainPathsHaveTheSameComponents) {
   }
 }
 
+// What replays do where a component goes its own way.
+TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
+  const IntegratorContext c = context("");
+  const Frame whole = sampled(c, true);
+  Frame apart = test::make_test_frame(c.settings, true, c.components.count());
+  const auto integrator = make_gradient_integrator(c);
+  const uint32_t own = 1u << c.components.find("Diffuse") | 1u << c.components.find("Reflection");
+  // Own ways in every other pixel.
+  const size_t pixels = size_t(apart.region.area());
+  std::vector<uint32_t> shared(pixels, kEveryComponent);
+  std::vector<uint8_t> map(pixels, 0);
+  for (size_t i = 0; i < pixels; i += 2) shared[i] &= ~own, map[i] = 1;
+  WorkUnit unit{apart.region, 0, 6};
+  unit.component_map = &shared;
+  integrator->sample(unit, &apart, &apart.counters, std::atomic<bool>{false});
+  unit.component_map = nullptr;
+  unit.again = true;
+  unit.pixel_map = &map;
+  for (const char* name : {"Diffuse", "Reflection"}) {
+    unit.components = 1u << c.components.find(name);
+    integrator->sample(unit, &apart, &apart.counters, std::atomic<bool>{false});
+  }
+  EXPECT_EQ(whole.count, apart.count);
+  EXPECT_EQ(whole.pair_count, apart.pair_count);
+  for (size_t i = 0; i < whole.components.size(); ++i) {
+    for (int half = 0; half < kHalves; ++half) {
+      EXPECT_EQ(whole.components[i].primal[half], apart.components[i].primal[half]) << c.components[int(i)].name;
+      for (int k = 0; k < kOffsets; ++k) EXPECT_EQ(whole.components[i].gradient[half][k], apart.components[i].gradient[half][k]);
+    }
+  }
+}
+
+TEST_P(Scenarios, PathsThatLeadToNoWantedComponentEnd) {
+  const IntegratorContext c = context("");
+  Frame whole = sampled(c, false), seen = test::make_test_frame(c.settings, false, c.components.count());
+  const auto integrator = make_path_integrator(c);
+  WorkUnit unit{seen.region, 0, 6};
+  unit.components = 1u << c.components.find("Emission");
+  integrator->sample(unit, &seen, &seen.counters, std::atomic<bool>{false});
+  EXPECT_EQ(seen.components[0].primal, whole.components[0].primal);
+  EXPECT_EQ(seen.counters.rays_bounce, 0u);
+  EXPECT_GT(whole.counters.rays_bounce, 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Components, Scenarios, testing::Range(0, int(Scenario::Count)),
                          [](const auto& info) { return test::name_of(Scenario(info.param)); });
 

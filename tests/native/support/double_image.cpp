@@ -78,7 +78,7 @@ DoubleImage render_in_double(const IntegratorContext& context, uint32_t samples)
   const auto vertices = std::make_unique<CameraVertices>(path);
   for_each_sample(path, unit, frame, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
     const PathResult& result = tracer.trace(s.sampler, s.film, s.first);
-    add_primal(result, s, &frame, &frame.counters);
+    add_primal(result, s, unit, &frame, &frame.counters);
     if (!fits(result.radiance[0])) return;
     sums[s.pixel].sum += observer.radiance;
     sums[s.pixel].squares += observer.radiance * observer.radiance;

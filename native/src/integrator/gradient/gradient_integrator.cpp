@@ -69,18 +69,22 @@ class GradientIntegrator final : public Integrator {
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto worker = std::make_unique<Worker>(path_, frame, counters);
     for_each_sample(path_, unit, *frame, &worker->vertices, stop, [&](const PixelSample& s) {
-      worker->recorder.begin_sample(s.pixel, s.half, s.number == path_.settings.first_sample);
+      worker->recorder.begin_sample(s.pixel, s.half, s.number == path_.settings.first_sample, unit.again);
+      const uint32_t wanted = unit_components(unit, s.pixel);
       if (!has_gradients(unit, s.pixel)) {
-        add_primal(worker->plain.trace(s.sampler, s.film, s.first), s, frame, counters);
+        worker->plain.want(wanted);
+        add_primal(worker->plain.trace(s.sampler, s.film, s.first), s, unit, frame, counters);
         return;
       }
       const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, s.x, s.y, s.half);
-      worker->offsets.start(pairs, s);
-      add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, frame, counters);
+      worker->offsets.start(pairs, s, wanted);
+      worker->tracer.want(wanted);
+      add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, unit, frame, counters);
       worker->offsets.finish();
       for (int c = 0; c < path_.components.count(); ++c) {
-        add_gradients(worker->offsets.gradient(c), s, frame->channels, &frame->components[size_t(c)], counters);
+        if ((wanted >> c & 1) != 0) add_gradients(worker->offsets.gradient(c), s, frame->channels, &frame->components[size_t(c)], counters);
       }
+      if (unit.again) return;
       for (int k = 0; k < kOffsets; ++k) frame->pair_count[s.half][k][s.pixel] += pairs[k].weight();
     });
   }

@@ -48,7 +48,8 @@ OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraV
   }
 }
 
-void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample) {
+void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample, uint32_t wanted) {
+  own_tracer_.want(wanted);
   pairs_ = pairs;
   sample_ = &sample;
   for (int c = 0; c < context_.components.count(); ++c) gradient_[size_t(c)].fill(Radiance(0.0f));

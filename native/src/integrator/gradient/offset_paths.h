@@ -13,8 +13,8 @@ class OffsetPaths {
   // vertices: of the cell that is being sampled.
   OffsetPaths(const PathContext& context, Counters* counters, CameraVertices* vertices);
 
-  // Before each sample.
-  void start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample);
+  // Before each sample. wanted: bits of the components that count.
+  void start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample, uint32_t wanted);
   // After it: the weighted gradient sample of each pair, by components, alpha included.
   void finish() { tell_settled(); }
   const std::array<Radiance, kOffsets>& gradient(int component) const { return gradient_[size_t(component)]; }

@@ -1,6 +1,7 @@
 #include "render/sequence/frame_sampling.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/bill.h"
 #include "base/error.h"
@@ -197,7 +198,7 @@ void FrameSampling::sample_offset(const FrameHeader& base, const std::vector<uin
   if (found && counted && samples_of_pixels(*load(FramePart::kOffset, StoredContent::kSamples)) == counts) return;
   const bool may_go_on = found && !counted && !has_counts(found->settings);
   const std::shared_ptr<const Frame> stored_offset = may_go_on ? load(FramePart::kOffset) : nullptr;
-  if (stored_offset && stored_offset->replayed.pixel == input.replay->sources.pixel) input.resumed = stored_offset;
+  if (stored_offset && replays_same(stored_offset->replayed, input.replay->sources)) input.resumed = stored_offset;
   if (counted) input.settings.samples = *std::max_element(counts.begin(), counts.end());
   auto offset = std::make_unique<RenderLoop>(std::move(input));
   {
@@ -226,9 +227,17 @@ std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, con
   if (follows_before()) {
     const Bill bill(&record_.stats.seconds.links, &record_.stats.cpu_seconds.links);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      replay->sources = link_sources(*before, *input_.snapshot, input_.settings, base.region, [this] { return is_stopped(); });
+      replay->sources =
+          link_sources(*before, *input_.snapshot, input_.settings, record_.plan.components, base.region, [this] { return is_stopped(); });
       stop_if_asked();
     });
+  }
+  replay->components = replays_of_components(replay->sources);
+  if (const uint64_t apart = replay->components.pixels; apart > 0) {
+    const double share = 100.0 * double(apart) / double(base.region.area());
+    record_.plan.chosen.emplace_back(
+        "replays of components by themselves",
+        "in " + std::to_string(std::lround(share)) + " % of the pixels what mirrors and glass show goes another way than they do");
   }
   if (!has_counts(input_.settings)) return replay;
   const double mean = mean_of(counts);

@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "integrator/pixel_loop.h"
+#include "render/component_replay.h"
+#include "temporal/component_links.h"
 #include "temporal/pixel_links.h"
 
 namespace gradus {
@@ -14,14 +16,52 @@ bool follows(const FrameBefore* before, const Snapshot& now, const GradusSetting
          show_same_region(before->settings, settings) && !is_cut(before->snapshot->camera, now.camera);
 }
 
-SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const GradusSettings& settings, const Region& region,
-                           const CancelTest& cancel) {
+namespace {
+
+using Sources = std::vector<std::vector<int32_t>>;
+
+// What is left for Residual is mostly seen in mirrors of mirrors: it goes with what goes its own way there.
+std::vector<int32_t> sources_of_residual(const std::vector<int32_t>& surface, const Sources& others) {
+  std::vector<int32_t> sources = surface;
+  for (const std::vector<int32_t>& own : others) {
+    for (size_t i = 0; i < own.size(); ++i) {
+      if (own[i] != kNoLink && own[i] != surface[i] && sources[i] == surface[i]) sources[i] = own[i];
+    }
+  }
+  return sources;
+}
+
+Sources sources_of_components(const CentreView& from, const CentreView& to, const GradusSettings& settings, const ComponentSet& components,
+                              const std::vector<int32_t>& links, const std::vector<int32_t>& surface, const CancelTest& cancel) {
+  Sources sources(static_cast<size_t>(components.count()));
+  const ChainTracer tracer{*to.snapshot, to.camera, settings};
+  const auto residual = size_t(components.count() - 1);
+  const std::vector<ChainView> views = view_chains(from, settings, components, (uint32_t{1} << residual) - 1, cancel);
+  bool any = false;
+  for (size_t c = 0; c < views.size(); ++c) {
+    if (!shows_through(views[c])) continue;
+    sources[c] = inverse_links(link_component(links, views[c], track_chains(views[c], tracer, from.region, cancel)));
+    any = true;
+  }
+  if (!any) return {};
+  sources.back() = sources_of_residual(surface, sources);
+  return sources;
+}
+
+}  // namespace
+
+SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const GradusSettings& settings, const ComponentSet& components,
+                           const Region& region, const CancelTest& cancel) {
   const auto view = [&](const Snapshot& snapshot) { return view_centres(snapshot, settings.width, settings.height, region, cancel); };
   const CentreView from = view(*before.snapshot), to = view(now);
   if (cancel()) return {};
   const Snapshot& scene = *before.snapshot;
   const bool shares = shares_jitter(Camera(scene.camera, settings.width, settings.height), scene);
-  return {before.stream_frame, inverse_links(link_pixels(from, to)), scene.content_key, before.settings.seed, shares};
+  const std::vector<int32_t> links = link_pixels(from, to);
+  SampleSources sources{before.stream_frame, inverse_links(links), scene.content_key, before.settings.seed, shares};
+  sources.of_component = sources_of_components(from, to, settings, components, links, sources.pixel, cancel);
+  limit_own_ways(&sources);
+  return sources;
 }
 
 double mean_of(const std::vector<uint32_t>& counts) {

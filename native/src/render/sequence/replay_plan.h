@@ -6,6 +6,7 @@
 
 #include "base/cancel_test.h"
 #include "frame/frame.h"
+#include "path/components.h"
 #include "render/sequence/frame_record.h"
 
 namespace gradus {
@@ -13,9 +14,10 @@ namespace gradus {
 // Whether the frame before shows the same pixels, without a cut between. before: nullptr where there is none.
 bool follows(const FrameBefore* before, const Snapshot& now, const GradusSettings& settings);
 
-// Of each pixel of the region the one that shows the same point in the frame before. Empty once cancelled.
-SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const GradusSettings& settings, const Region& region,
-                           const CancelTest& cancel);
+// Of each pixel of the region the one that shows the same point in the frame before; of components that are seen through smooth surfaces
+// the one in which these show the same. Empty once cancelled.
+SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const GradusSettings& settings, const ComponentSet& components,
+                           const Region& region, const CancelTest& cancel);
 
 double mean_of(const std::vector<uint32_t>& counts);
 

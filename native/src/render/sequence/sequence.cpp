@@ -160,9 +160,7 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
 
 LoadPart Sequence::load_part(FramePart part, const std::string& component) const {
   return [this, part, component](int place, const CancelTest& cancel) {
-    const auto frame = read_or_name_the_way_out([&] { return folder_.load(frame_at(place), part, StoredContent::kAll, cancel); });
-    keep_component(component, frame.get());
-    return frame;
+    return read_or_name_the_way_out([&] { return folder_.load_component(frame_at(place), part, component, cancel); });
   };
 }
 

@@ -47,6 +47,12 @@ std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part, Store
   return load_frame(path(frame, part), content, cancel);
 }
 
+std::shared_ptr<Frame> SequenceFolder::load_component(int32_t frame, FramePart part, const std::string& component,
+                                                      const CancelTest& cancel) const {
+  ++loads_;
+  return gradus::load_component(path(frame, part), component, StoredContent::kAll, cancel);
+}
+
 void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part, const CancelTest& cancel) const {
   save_frame(content, path(frame, part), {durable(), cancel});
 }

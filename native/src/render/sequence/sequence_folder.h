@@ -30,6 +30,8 @@ class SequenceFolder {
   FrameHeader header(int32_t frame, FramePart part) const;
   std::shared_ptr<Frame> load(
       int32_t frame, FramePart part, StoredContent content = StoredContent::kAll, const CancelTest& cancel = [] { return false; }) const;
+  // Of one component alone (frame/store.h).
+  std::shared_ptr<Frame> load_component(int32_t frame, FramePart part, const std::string& component, const CancelTest& cancel) const;
   void save(const Frame& content, int32_t frame, FramePart part, const CancelTest& cancel) const;
   // Of delivery (exposure and the like): frames that are alike share their files, and may differ in these. Throws invalid_argument with the
   // path; nothing: those of its files.

@@ -1,7 +1,9 @@
 // Components of animations: each has windows of its own, and they add up.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "frame/store.h"
 #include "render/sequence/sequence_fixture.h"
 #include "settings/options.h"
 
@@ -28,8 +30,8 @@ struct Pictures {
   std::vector<double> light;  // of each component, in the last frame
 };
 
-Pictures rendered(uint32_t reconstruction, const char* components) {
-  Pan pan(1.0f, Scenario::Glass);
+Pictures rendered(uint32_t reconstruction, const char* components, Scenario scenario = Scenario::Glass) {
+  Pan pan(1.0f, scenario);
   const auto sequence = make_sequence(0, kLast);
   for (int32_t frame = 0; frame <= kLast; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, reconstruction, components));
   Pictures pictures;
@@ -67,13 +69,68 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceComponents,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_WEIGHTED},
                                          uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
-// The weights of L2 over time are the same for all.
+// The weights of L2 over time are the same for all, where all go the surfaces' ways.
 TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOne) {
-  const Pictures many = rendered(GRADUS_RECONSTRUCTION_L2, ""), one = rendered(GRADUS_RECONSTRUCTION_L2, nullptr);
+  const Pictures many = rendered(GRADUS_RECONSTRUCTION_L2, "Once=E.L;Twice=E..L", Scenario::DiffuseArea);
+  const Pictures one = rendered(GRADUS_RECONSTRUCTION_L2, nullptr, Scenario::DiffuseArea);
+  EXPECT_GE(std::count_if(many.light.begin(), many.light.end(), [](double light) { return light > 1.0; }), 2);
   for (size_t frame = 0; frame <= size_t(kLast); ++frame) {
     const std::vector<float>&a = many.combined[frame], &b = one.combined[frame];
     const float scale = *std::max_element(b.begin(), b.end());
     for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-4f * scale) << frame;
+  }
+}
+
+// A camera that moves past balls of glass: what they show goes other ways than they do. The replay of such a component is of where it was.
+TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
+  Pan pan(1.0f, Scenario::Glass);
+  const Folder folder;
+  const auto sequence = make_sequence(0, 1, folder.path());
+  for (int32_t frame = 0; frame <= 1; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, GRADUS_RECONSTRUCTION_L2, ""));
+  const auto offset = SequenceFolder(folder.path()).load(1, FramePart::kOffset);
+  const SampleSources& sources = offset->replayed;
+  const int diffuse = find_component(*offset, "Diffuse");
+  EXPECT_FALSE(sources.has_own(diffuse));
+  size_t apart = 0;
+  for (const char* name : {"Reflection", "Transmission"}) {
+    const int component = find_component(*offset, name);
+    ASSERT_TRUE(sources.has_own(component)) << name;
+    const std::vector<int32_t>& own = sources.of_component[size_t(component)];
+    std::set<int32_t> taken;
+    for (size_t i = 0; i < own.size(); ++i) {
+      apart += own[i] != kNoLink && own[i] != sources.pixel[i] ? 1 : 0;
+      EXPECT_TRUE(own[i] == kNoLink || taken.insert(own[i]).second) << name;
+    }
+  }
+  EXPECT_GT(apart, 50u);
+  const auto whole =
+      load_component(SequenceFolder(folder.path()).path(1, FramePart::kOffset), "Transmission", StoredContent::kAll, [] { return false; });
+  EXPECT_EQ(whole->replayed.pixel, sources.of_component[size_t(find_component(*offset, "Transmission"))]);
+}
+
+// Whatever the links say, a replay is a sample of its pixel.
+TEST(ComponentsOfSequences, ReplaysAlongOwnWaysHaveTheLightOfPlainSamples) {
+  GradusSettings plain = settings_for(1, GRADUS_RECONSTRUCTION_L2, "");
+  plain.samples = 512;
+  Pan pan(1.0f, Scenario::Glass);
+  const Folder folder;
+  const auto sequence = make_sequence(0, 1, folder.path());
+  for (int32_t frame = 0; frame <= 1; ++frame) {
+    plain.frame = frame;
+    sample(sequence.get(), pan.at(frame), plain);
+  }
+  const auto light = [&](FramePart part, const char* name) {
+    const auto frame = load_component(SequenceFolder(folder.path()).path(1, part), name, StoredContent::kAll, [] { return false; });
+    double sum = 0.0;
+    for (const float value : read_images(*frame, 0).primal) sum += value;
+    return sum;
+  };
+  // Reflections of the lamp come by few samples.
+  const std::pair<const char*, double> bounds[] = {{"Reflection", 0.12}, {"Transmission", 0.03}, {"Diffuse", 0.03}};
+  for (const auto& [name, bound] : bounds) {
+    const double base = light(FramePart::kBase, name), offset = light(FramePart::kOffset, name);
+    EXPECT_GT(base, 1.0) << name;
+    EXPECT_NEAR(offset, base, bound * base) << name;
   }
 }
 

@@ -1,0 +1,54 @@
+#include "render/component_replay.h"
+
+#include <algorithm>
+
+#include "path/components.h"
+
+namespace gradus {
+
+namespace {
+
+bool parts(const std::vector<int32_t>& own, const std::vector<int32_t>& surface, size_t pixel) {
+  return own[pixel] != kNoLink && own[pixel] != surface[pixel];
+}
+
+size_t parting_pixels(const std::vector<int32_t>& own, const std::vector<int32_t>& surface) {
+  size_t pixels = 0;
+  for (size_t i = 0; i < own.size(); ++i) pixels += parts(own, surface, i) ? 1 : 0;
+  return pixels;
+}
+
+}  // namespace
+
+void limit_own_ways(SampleSources* sources) {
+  size_t pixels = 0;
+  for (std::vector<int32_t>& own : sources->of_component) {
+    pixels += parting_pixels(own, sources->pixel);
+    if (pixels > sources->pixel.size()) own.clear();
+  }
+  const auto& all = sources->of_component;
+  if (std::all_of(all.begin(), all.end(), [](const auto& own) { return own.empty(); })) sources->of_component.clear();
+}
+
+ComponentReplays replays_of_components(const SampleSources& sources) {
+  ComponentReplays replays;
+  const size_t pixels = sources.pixel.size();
+  for (size_t c = 0; c < sources.of_component.size(); ++c) {
+    if (!sources.has_own(int(c))) continue;
+    const std::vector<int32_t>& own = sources.of_component[c];
+    ComponentReplay replay{uint32_t(c), sources, std::vector<uint8_t>(pixels, 0)};
+    replay.sources.pixel = own;
+    replay.sources.of_component.clear();
+    if (replays.shared.empty()) replays.shared.assign(pixels, kEveryComponent);
+    for (size_t i = 0; i < pixels; ++i) {
+      if (!parts(own, sources.pixel, i)) continue;
+      replay.pixels[i] = 1;
+      replays.shared[i] &= ~(uint32_t{1} << c);
+      ++replays.pixels;
+    }
+    replays.own.push_back(std::move(replay));
+  }
+  return replays;
+}
+
+}  // namespace gradus

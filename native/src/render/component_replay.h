@@ -1,0 +1,29 @@
+// Components that replay other pixels than the surface does, as reflections do (contract 4.2): their samples are taken by themselves, where
+// the ways part.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/sample_sources.h"
+
+namespace gradus {
+
+struct ComponentReplay {
+  uint32_t component = 0;
+  SampleSources sources;
+  std::vector<uint8_t> pixels;  // 1: the component is sampled there
+};
+
+struct ComponentReplays {
+  std::vector<ComponentReplay> own;
+  std::vector<uint32_t> shared;  // bits of the components that go with the surface, by pixels; empty: all of them, everywhere
+  uint64_t pixels = 0;           // that are sampled once more, for one component or another
+};
+
+// As long as a pixel is sampled more than once again on average, the last component that goes its own way goes with the surface after all.
+void limit_own_ways(SampleSources* sources);
+// By sources.of_component. A component without a way stays with the surface, whose samples are as good as others.
+ComponentReplays replays_of_components(const SampleSources& sources);
+
+}  // namespace gradus

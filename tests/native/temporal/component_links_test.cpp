@@ -1,0 +1,105 @@
+// Links by component: chains of smooth surfaces go where what they show has gone.
+#include "temporal/component_links.h"
+
+#include <gtest/gtest.h>
+
+#include "render/component_replay.h"
+
+namespace gradus {
+namespace {
+
+// A row of six pixels, of which some have a chain.
+class ComponentLinks : public testing::Test {
+ protected:
+  ComponentLinks() {
+    centres_.region = {0, 0, 6, 1};
+    chains_.centres = &centres_;
+    chains_.places.assign(6, -1);
+    motion_.film.assign(6, Vec2(0.0f));
+    motion_.tracking.assign(6, Tracking::NoPath);
+  }
+  void chain(int pixel, float x, Tracking tracking = Tracking::Tracked) {
+    chains_.places[size_t(pixel)] = int32_t(chains_.chains.size());
+    chains_.chains.emplace_back();
+    chains_.chains.back().way.length = 1;
+    motion_.film[size_t(pixel)] = Vec2(x, 0.5f);
+    motion_.tracking[size_t(pixel)] = tracking;
+  }
+  std::vector<int32_t> links(const std::vector<int32_t>& surface) const { return link_component(surface, chains_, motion_); }
+
+  CentreView centres_;
+  ChainView chains_;
+  ChainMotion motion_;
+  const std::vector<int32_t> rest_{0, 1, 2, 3, 4, 5};
+};
+
+using Row = std::vector<int32_t>;
+
+TEST_F(ComponentLinks, FollowChainsWhereThereAreAnyAndSurfacesElsewhere) {
+  chain(1, 2.4f);
+  chain(2, 3.4f);
+  EXPECT_EQ(links(rest_), (Row{0, 2, 3, -1, 4, 5}));  // pixel 3 is the reflection's now
+}
+
+TEST_F(ComponentLinks, AreAbsentWhereAChainWasLost) {
+  chain(1, 1.5f, Tracking::Occluded);
+  EXPECT_EQ(links(rest_), (Row{0, -1, 2, 3, 4, 5}));
+}
+
+TEST_F(ComponentLinks, AChainWithoutSmoothSurfacesGoesWithTheSurface) {
+  chain(1, 4.5f);
+  chains_.chains.back().way.length = 0;
+  EXPECT_EQ(links(rest_), rest_);
+  EXPECT_FALSE(shows_through(chains_));
+}
+
+TEST_F(ComponentLinks, AreAbsentOutsideOfTheFilm) {
+  chain(0, -0.5f);
+  chain(5, 6.5f);
+  EXPECT_EQ(links(rest_), (Row{-1, 1, 2, 3, 4, -1}));
+}
+
+TEST_F(ComponentLinks, OfTwoChainsTheNearerToTheCentreHasThePixel) {
+  chain(1, 3.9f);
+  chain(2, 3.6f);
+  chain(4, 3.1f);
+  EXPECT_EQ(links(rest_), (Row{0, -1, 3, -1, -1, 5}));
+}
+
+TEST_F(ComponentLinks, TakeNoPlaceThatIsNotANumber) {
+  chain(1, NAN);
+  EXPECT_EQ(links(rest_), (Row{0, -1, 2, 3, 4, 5}));
+}
+
+TEST(ComponentReplays, AreTakenWhereTheWaysPart) {
+  SampleSources sources;
+  sources.pixel = {0, 1, 2, kNoLink};
+  sources.of_component = {{}, {0, 3, kNoLink, 2}};
+  const ComponentReplays replays = replays_of_components(sources);
+  ASSERT_EQ(replays.own.size(), 1u);
+  EXPECT_EQ(replays.own[0].component, 1u);
+  EXPECT_EQ(replays.own[0].pixels, (std::vector<uint8_t>{0, 1, 0, 1}));
+  EXPECT_EQ(replays.own[0].sources.pixel, sources.of_component[1]);
+  EXPECT_EQ(replays.shared, (std::vector<uint32_t>{kEveryComponent, ~2u, kEveryComponent, ~2u}));
+  EXPECT_EQ(replays.pixels, 2u);
+}
+
+TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
+  SampleSources sources;
+  sources.pixel = {0, 1, 2, 3};
+  sources.of_component = {{1, 0, 3, 3}, {1, 1, 2, 3}, {0, 1, 3, 3}};
+  SampleSources limited = sources;
+  limit_own_ways(&limited);
+  EXPECT_EQ(limited.of_component, (std::vector<std::vector<int32_t>>{sources.of_component[0], sources.of_component[1], {}}));
+  EXPECT_LE(replays_of_components(limited).pixels, 4u);
+}
+
+TEST(ComponentReplays, AreNoneWhereAllGoWithTheSurface) {
+  SampleSources sources;
+  sources.pixel = {0, 1};
+  EXPECT_TRUE(replays_of_components(sources).own.empty());
+  EXPECT_TRUE(replays_of_components(sources).shared.empty());
+}
+
+}  // namespace
+}  // namespace gradus
