@@ -257,8 +257,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "in Error: the scale is not squared",
         REGULARIZED,
-        "multiply(scale * scale, &error);",
-        "multiply(scale, &error);",
+        "  Field error = regression.error();\n  multiply(scale * scale, &error);",
+        "  Field error = regression.error();\n  multiply(scale, &error);",
         (native("B2_Regularized.ScalesWithTheImage"),),
     ),
     Fault(

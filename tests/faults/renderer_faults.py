@@ -33,8 +33,8 @@ RENDERER = (
         "1 % darker",
         "every sample loses a hundredth",
         PIXELS,
-        "  Radiance value = result.radiance;\n",
-        "  Radiance value = 0.99f * result.radiance;\n",
+        "    Radiance value = result.radiance[c];\n",
+        "    Radiance value = 0.99f * result.radiance[c];\n",
         (statistics("A6_Bias.*"), native("All/B8_Double.*")),
     ),
     Fault(
@@ -42,8 +42,8 @@ RENDERER = (
         "NaN sample",
         "one sample of 1,000 is no number",
         PIXELS,
-        "  Radiance value = result.radiance;\n",
-        "  Radiance value = result.radiance;\n  if ((sample.pixel * 31 + sample.number) % 1000 == 0) value.x = kInfinity - kInfinity;\n",
+        "    Radiance value = result.radiance[c];\n",
+        "    Radiance value = result.radiance[c];\n    if ((sample.pixel * 31 + sample.number) % 1000 == 0) value.x = kInfinity - kInfinity;\n",
         (Test("stress", "Duplicates.*"),),
     ),
     Fault(
@@ -69,8 +69,8 @@ RENDERER = (
         "1 MB leak a frame",
         "in the library",
         LOOP,
-        "  const GradusSettings& settings = input_.settings;\n",
-        "  const GradusSettings& settings = input_.settings;\n  std::fill_n(new char[1 << 20], 1 << 20, char(1));\n",
+        "  gradients_ = choose_gradients();\n",
+        "  gradients_ = choose_gradients();\n  std::fill_n(new char[1 << 20], 1 << 20, char(1));\n",
         (Test("memory", "J1_Growth.*"),),
     ),
     Fault(

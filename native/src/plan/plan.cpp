@@ -154,6 +154,7 @@ void choose_components(const GradusSettings& settings, const SceneFeatures& feat
   const ComponentSet all = ComponentSet::parse(text);
   const uint32_t seen = shows_light(features) ? 1u << all.component(PathWord{0}) : 0;
   plan->rough_vertices = wants_rough_vertices(settings.component_passes);
+  plan->component_motion = wants_motion(settings.component_passes);
   const uint32_t kept = all.reached(letters_of(settings, features)) | seen;
   plan->components = all.without_empty(kept);
   std::string names, absent;
@@ -209,6 +210,7 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const H
   plan.unbiased = !plan.adaptive && !clamps;
   list_scene(settings, snapshot, &plan);
   choose_components(settings, snapshot.features, &plan);
+  plan.rough_vertices |= plan.components.count() > 1 && plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   choose_passes(settings, &plan);
   list_passes(&plan);
   return plan;
@@ -304,7 +306,7 @@ uint64_t quarter_bytes(const Plan& plan) {
 }  // namespace
 
 uint64_t planned_bytes(const Plan& plan) {
-  uint64_t bytes = frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices);
+  uint64_t bytes = frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices, plan.component_motion);
   bytes += 4 * sizeof(float);  // the noisy image that is shown meanwhile
   uint64_t floats = reconstruction_floats(plan);
   if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is

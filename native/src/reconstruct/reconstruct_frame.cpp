@@ -62,7 +62,8 @@ Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t 
     case GRADUS_RECONSTRUCTION_NONE:
       return {read_images(frame, component).primal, {}};
     case GRADUS_RECONSTRUCTION_REGULARIZED: {
-      Reconstructed result = regularize(frame, component, features, cancel, report);
+      const bool own = has_own_features(frame, component);
+      Reconstructed result = own ? regularize(frame, component, cancel, report) : regularize(frame, component, features, cancel, report);
       if (!wants_error) result.error = {};
       return result;
     }

@@ -228,8 +228,12 @@ Reconstructed paste(const Reconstructed& from, const Region& part, int w, int h)
 
 }  // namespace
 
+Features features_of(const Frame& frame, int component) {
+  return filter_features(has_own_features(frame, component) ? read_own_features(frame, component) : read_features(frame));
+}
+
 Reconstructed regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
-  return regularize(frame, component, filter_features(read_features(frame)), cancel, report);
+  return regularize(frame, component, features_of(frame, component), cancel, report);
 }
 
 Reconstructed regularize(const Frame& frame, int component, const Features& features, const CancelTest& cancel, SolveReport* report) {

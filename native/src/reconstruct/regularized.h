@@ -7,6 +7,8 @@
 
 namespace gradus {
 
+// What a component is regressed on, as filter_features() leaves it: its own features, or those of the frame.
+Features features_of(const Frame& frame, int component);
 // With its error, always. Throws invalid_operation for a frame without features.
 Reconstructed regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report);
 // The same by its features as filter_features() leaves them.

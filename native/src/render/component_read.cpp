@@ -28,7 +28,23 @@ Vec3 value_of(uint32_t pass, const RoughVertices& mean, const Vec3& color) {
   return irradiance;
 }
 
+void read_motion(const Frame& frame, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
+  if (planes.motion.empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
+      const size_t i = frame.index(x, y);
+      if (info.pass == GRADUS_COMPONENT_TRACKED) *pixels = planes.tracked[i];
+      if (info.pass == GRADUS_COMPONENT_MOTION) std::copy_n(&planes.motion[i][0], 4, pixels);
+    }
+  }
+}
+
 }  // namespace
+
+void read_absent_component(uint32_t pass, const Region& region, float* pixels) {
+  const float value = pass == GRADUS_COMPONENT_TRACKED ? kNothingToTrack : 0.0f;
+  std::fill_n(pixels, size_t(region.area()) * component_pass_info(pass).channels, value);
+}
 
 void check_component(const GradusSettings& settings, const std::string& name) {
   if (settings.use_decomposition == 0) throw invalid_argument("the picture was not taken apart into components: set use_decomposition");
@@ -40,10 +56,8 @@ void read_component_pass(const Frame& frame, int component, uint32_t pass, const
                          float* pixels) {
   const ComponentPassInfo& info = component_pass_info(pass);
   if (pass == GRADUS_COMPONENT_COLOR) return static_cast<void>(std::copy(color.begin(), color.end(), pixels));
-  if (pass == GRADUS_COMPONENT_MOTION || pass == GRADUS_COMPONENT_TRACKED) {
-    return static_cast<void>(std::fill_n(pixels, size_t(region.area()) * info.channels, 0.0f));
-  }
   const ComponentPlanes& planes = frame.components[size_t(component)];
+  if (wants_motion(1u << pass)) return read_motion(frame, planes, info, region, pixels);
   if (planes.rough[0].empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x, pixels += 3) {

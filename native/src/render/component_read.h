@@ -10,6 +10,8 @@ namespace gradus {
 
 // Throws invalid_argument: the settings have no component of that name.
 void check_component(const GradusSettings& settings, const std::string& name);
+// Of one that no path of the frame belongs to.
+void read_absent_component(uint32_t pass, const Region& region, float* pixels);
 // Pixels of `region`. color: the component's picture there, RGB, where the pass is made of it. Throws invalid_operation if the frame was
 // sampled without what the pass is made of.
 void read_component_pass(const Frame& frame, int component, uint32_t pass, const Region& region, const std::vector<float>& color,

@@ -6,6 +6,7 @@
 #include "base/device.h"
 #include "base/error.h"
 #include "frame/pass_planes.h"
+#include "motion/component_motion.h"
 #include "render/batches.h"
 #include "render/combine.h"
 #include "render/component_read.h"
@@ -76,6 +77,7 @@ void RenderLoop::render() {
   set_phase(GRADUS_PHASE_SAMPLING);
   sample();
   stop_if_asked();
+  if (plan_.component_motion && !input_.replay) find_motion();
   if (input_.samples_only) return;
   const bool denoises = denoises_after(plan_, mean_samples(*frame_), &stats_.chosen, &stats_.skipped);
   if (!denoises) frame_->settings.denoiser = GRADUS_DENOISER_NONE;
@@ -117,6 +119,7 @@ void RenderLoop::prepare() {
                                     !gradients_.none());
     name_planes(plan_.components, frame.get());
     if (plan_.rough_vertices) keep_rough_vertices(frame.get());
+    if (plan_.component_motion && !input_.replay) keep_motion(frame.get());
     frame->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
     if (wants(plan_.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
@@ -254,6 +257,19 @@ void RenderLoop::reconstruct_frame() {
   show_combined(*frame_, frame_->settings.reconstruction, plan_, stop_, &arena_, &picture_, &stats_.solve);
 }
 
+void RenderLoop::find_motion() {
+  const Bill bill(&stats_.seconds.links, &stats_.cpu_seconds.links);
+  const CancelTest cancel = [this] { return is_stopped(); };
+  std::vector<ComponentMotion> motion;
+  arena_.execute(
+      [&] { motion = component_motion(*input_.snapshot, input_.settings, plan_.components, kEveryComponent, plan_.sampled, cancel); });
+  stop_if_asked();
+  for (size_t c = 0; c < motion.size(); ++c) {
+    frame_->components[c].motion = std::move(motion[c].vectors);
+    frame_->components[c].tracked = std::move(motion[c].tracked);
+  }
+}
+
 void RenderLoop::denoise_frame() {
   const CancelTest cancel = [this] { return is_stopped(); };
   std::vector<float> rgba = denoise_and_bill(*denoiser_, *frame_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
@@ -304,9 +320,7 @@ void RenderLoop::read_component(const std::string& name, uint32_t pass, float* p
     frame = frame_;
   }
   const int component = plan_.components.find(name);
-  if (!frame || component < 0) {
-    return static_cast<void>(std::fill_n(pixels, size_t(plan_.delivered.area()) * component_pass_info(pass).channels, 0.0f));
-  }
+  if (!frame || component < 0) return read_absent_component(pass, plan_.delivered, pixels);
   if (!wants(settings.component_passes, pass))
     throw invalid_operation("pass " + std::string(component_pass_info(pass).name) + " of components was not asked for");
   std::vector<float> color = picture_.component(component);

@@ -48,6 +48,8 @@ class RenderLoop final : public RenderTask {
   GradientMap choose_gradients();
   void sample();
   void reconstruct_frame();
+  // Of components, from what the scene knows of the frames around.
+  void find_motion();
   void denoise_frame();
   // False: nothing more to do.
   bool next_batch(uint32_t begin, uint32_t* end) const;

@@ -58,6 +58,10 @@ constexpr bool wants_rough_vertices(uint32_t component_passes) {
          (component_passes >> GRADUS_COMPONENT_NORMAL & 1) != 0;
 }
 
+constexpr bool wants_motion(uint32_t component_passes) {
+  return (component_passes >> GRADUS_COMPONENT_MOTION & 1) != 0 || (component_passes >> GRADUS_COMPONENT_TRACKED & 1) != 0;
+}
+
 inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
 
 // `passes` plus what they need: the colours that light passes are divided by.

@@ -2,15 +2,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/error.h"
+#include "frame/features.h"
 #include "frame/store.h"
+#include "motion/component_motion.h"
 #include "render/render.h"
 #include "render/resume.h"
 #include "settings/options.h"
+#include "settings/pass_table.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -225,6 +230,98 @@ TEST(Components, OfDifferentSetsAreNotMerged) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("Direct"), std::string::npos) << e.what();
   }
+}
+
+constexpr uint32_t kMotionPasses = 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_TRACKED;
+
+std::vector<float> read(const Render& render, const std::string& name, uint32_t pass) {
+  std::vector<float> values(component_pass_info(pass).channels * kSide * kSide);
+  render.read_component(name, pass, values.data(), values.size());
+  return values;
+}
+
+// A camera that turns from frame to frame.
+void turn_camera(Snapshot* snapshot) {
+  std::copy_n(snapshot->camera.matrix, 16, snapshot->camera.matrix_previous);
+  snapshot->camera.matrix_previous[12] -= 0.05f;
+}
+
+TEST(Components, TellTheirMotion) {
+  PathScene scene;
+  test::build(Scenario::Glass, &scene);
+  GradusSettings settings = settings_with("");
+  settings.component_passes = kMotionPasses;
+  const IntegratorContext context = scene.context(settings);
+  auto moved = std::make_shared<Snapshot>(*context.snapshot);
+  turn_camera(moved.get());
+  Render render(test::test_device(), moved, settings);
+  render.wait(-1.0);
+  const ComponentSet set = ComponentSet::parse("");
+  const Region region{0, 0, int32_t(kSide), int32_t(kSide)};
+  const auto expected = component_motion(*moved, settings, set, kEveryComponent, region);
+  float farthest = 0.0f;
+  for (int c = 0; c < set.count(); ++c) {
+    if (find_component(*render.frame(), set[c].name) < 0) continue;
+    const std::vector<float> vectors = read(render, set[c].name, GRADUS_COMPONENT_MOTION);
+    const std::vector<float> tracked = read(render, set[c].name, GRADUS_COMPONENT_TRACKED);
+    for (size_t i = 0; i < tracked.size(); ++i) {
+      ASSERT_EQ(tracked[i], expected[size_t(c)].tracked[i]) << set[c].name;
+      for (size_t k = 0; k < 4; ++k) ASSERT_EQ(vectors[4 * i + k], expected[size_t(c)].vectors[i][int(k)]) << set[c].name;
+      farthest = std::max(farthest, std::fabs(vectors[4 * i]));
+    }
+  }
+  EXPECT_GT(farthest, 0.2f);
+}
+
+TEST(Components, WhatIsNotThereIsNotTracked) {
+  GradusSettings settings = settings_with("Nothing=ETTTTTTL");
+  settings.component_passes = kMotionPasses;
+  const auto render = rendered(Scenario::DiffuseArea, settings);
+  ASSERT_EQ(find_component(*render->frame(), "Nothing"), -1);
+  for (const float value : read(*render, "Nothing", GRADUS_COMPONENT_TRACKED)) ASSERT_EQ(value, kNothingToTrack);
+  for (const float value : read(*render, "Nothing", GRADUS_COMPONENT_MOTION)) ASSERT_EQ(value, 0.0f);
+}
+
+TEST(Components, MotionThatWasNotAskedForIsRefused) {
+  GradusSettings settings = settings_with("");
+  settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
+  const auto render = rendered(Scenario::Glass, settings);
+  std::vector<float> values(kSide * kSide);
+  EXPECT_THROW(render->read_component("Diffuse", GRADUS_COMPONENT_TRACKED, values.data(), values.size()), Error);
+}
+
+TEST(Components, MotionIsStoredWithTheFrame) {
+  GradusSettings settings = settings_with("");
+  settings.component_passes = kMotionPasses;
+  const auto frame = rendered(Scenario::Glass, settings)->frame();
+  const std::string path = (std::filesystem::temp_directory_path() / ("gradus_motion_" + std::to_string(getpid()) + ".exr")).string();
+  save_frame(*frame, path);
+  const auto back = load_frame(path);
+  std::filesystem::remove(path);
+  ASSERT_FALSE(frame->components[0].motion.empty());
+  for (size_t c = 0; c < frame->components.size(); ++c) {
+    EXPECT_EQ(back->components[c].motion, frame->components[c].motion);
+    EXPECT_EQ(back->components[c].tracked, frame->components[c].tracked);
+  }
+}
+
+// Behind a mirror and beside one: the mean over all samples tells how much of the pixel the component has.
+TEST(Components, HaveFeaturesOfTheirOwn) {
+  GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_REGULARIZED);
+  settings.component_passes = 0;
+  const auto frame = rendered(Scenario::Glass, settings)->frame();
+  const int diffuse = find_component(*frame, "Diffuse");
+  ASSERT_TRUE(has_own_features(*frame, diffuse));
+  const Features own = read_own_features(*frame, diffuse);
+  const ComponentPlanes& planes = frame->components[size_t(diffuse)];
+  size_t partly = 0;
+  for (size_t i = 0; i < size_t(frame->region.area()); ++i) {
+    const float met = planes.rough[0][i].samples + planes.rough[1][i].samples, samples = float(samples_at(*frame, i));
+    partly += met > 0.0f && met < samples ? 1 : 0;
+    const Vec3 normal = planes.rough[0][i].normal + planes.rough[1][i].normal;
+    for (size_t c = 0; c < 3; ++c) ASSERT_NEAR(own.normal.values[3 * i + c], normal[int(c)] / samples, 1e-6f);
+  }
+  EXPECT_GT(partly, 10u);
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, boo
 
 RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, const CancelTest& cancel, SolveReport* report) {
   Estimate estimate;
-  estimate.features = filter_features(read_features(samples));
+  estimate.features = features_of(samples, 0);
   estimate.picture = to_field(samples, regularize(samples, 0, estimate.features, cancel, report));
   const float scale = scale_of(estimate.picture), least = kLeastError * scale * scale;
   estimate.weight = make_field(samples.region.width(), samples.region.height(),

@@ -221,10 +221,9 @@ void FrameDelivery::read_component(const std::string& name, uint32_t pass, float
   check_component(frame_->settings, name);
   const Region& region = record_.plan.delivered;
   const int place = find_component(*frame_, name);
-  if (place < 0 || size_t(place) >= components_.size()) {  // no path is of its kind, or nothing is known of its picture
-    return static_cast<void>(std::fill_n(pixels, size_t(region.area()) * component_pass_info(pass).channels, 0.0f));
-  }
-  read_component_pass(*frame_, place, pass, region, components_[size_t(place)], pixels);
+  const bool has_picture = place >= 0 && size_t(place) < components_.size();
+  if (place < 0 || (is_of_picture(pass) && !has_picture)) return read_absent_component(pass, region, pixels);
+  read_component_pass(*frame_, place, pass, region, has_picture ? components_[size_t(place)] : std::vector<float>(), pixels);
 }
 
 std::string FrameDelivery::stats() const {

@@ -87,8 +87,8 @@ bool is_memory(const std::string& folder) {
 PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps) {
   const bool regularized = method.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   const uint64_t area = uint64_t(plan.sampled.area()), channels = uint64_t(plan.channels);
-  const Sizes sizes{frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices), channels,
-                    uint64_t(regularized || reads_halves(method) ? 1 : 0), uint64_t(plan.gradients && !regularized ? 3 : 1)};
+  const Sizes sizes{frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices, plan.component_motion),
+                    channels, uint64_t(regularized || reads_halves(method) ? 1 : 0), uint64_t(plan.gradients && !regularized ? 3 : 1)};
   const uint64_t all = uint64_t(count), in_window = keeps ? uint64_t(windows.frames) : std::min(all, uint64_t(windows.frames));
   const uint64_t ahead = std::min(all, uint64_t(2 * windows.frames - windows.overlap));
 

@@ -1,0 +1,126 @@
+"""`Path NAME Motion` and `Tracked` as Blender gets them: of reflections in place of mirrors, under motion blur, in the compositor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from gradus import store
+from support import images
+
+SAMPLES = Path(__file__).resolve().parents[2] / "sample_blends"
+NAMES = ("Emission", "Diffuse", "Reflection", "Transmission", "Residual")
+WIDTH, HEIGHT = 160, 90
+
+
+@pytest.fixture
+def sample() -> bpy.types.Scene:
+    """A mirror ball rolls to the right, a box slides by behind a slab of glass, the rest stands still but for the lamp."""
+    bpy.ops.wm.open_mainfile(filepath=str(SAMPLES / "mirror_and_glass.blend"))
+    scene = bpy.context.scene
+    images.prepare(scene)
+    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.view_layers[0].use_pass_vector = True
+    return scene
+
+
+def motion(rendered: images.Passes, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Vectors, and where they are known."""
+    return rendered[f"ViewLayer.Path {name} Motion"], rendered[f"ViewLayer.Path {name} Tracked"][..., 0] == 1.0
+
+
+def lit(rendered: images.Passes, name: str) -> np.ndarray:
+    """Where the component is most of the picture."""
+    combined = rendered["ViewLayer.Combined"][..., :3].sum(axis=-1)
+    return rendered[f"ViewLayer.Path {name}"].sum(axis=-1) > 0.7 * combined
+
+
+def test_what_is_seen_directly_moves_as_its_surface(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    bpy.data.objects.remove(bpy.data.objects["Slab"])
+    rendered = render(sample, frame=12)
+    vectors, known = motion(rendered, "Diffuse")
+    surface = rendered["ViewLayer.Vector"]
+    inside = known & lit(rendered, "Diffuse")
+    assert inside.sum() > 0.9 * lit(rendered, "Diffuse").sum()
+    away = np.abs(vectors - surface)[inside].max(axis=-1)
+    assert np.percentile(away, 95) < 0.02  # the rest are edges
+    assert (np.abs(vectors[inside]).max(axis=-1) > 0.3).sum() > 100, "the box moves"
+
+
+def test_a_reflection_moves_otherwise_than_its_mirror(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    rendered = render(sample, frame=12)
+    vectors, known = motion(rendered, "Reflection")
+    mirror = known & lit(rendered, "Reflection")
+    assert mirror.sum() > 0.8 * lit(rendered, "Reflection").sum()
+    surface = rendered["ViewLayer.Vector"]
+    assert np.median(np.abs(vectors - surface)[mirror].max(axis=-1)) > 0.2
+    assert np.median(np.abs(vectors)[mirror].max(axis=-1)) > 0.2
+
+
+def test_what_glass_shows_moves_behind_glass_that_stands(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    rendered = render(sample, frame=12)
+    vectors, known = motion(rendered, "Transmission")
+    glass = known & lit(rendered, "Transmission")
+    assert np.abs(rendered["ViewLayer.Vector"][glass]).max() < 1e-3
+    assert (np.abs(vectors[glass]).max(axis=-1) > 0.3).sum() > 100
+
+
+def test_what_is_not_tracked_is_0_with_a_cause(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    rendered = render(sample, frame=12)
+    causes = set()
+    for name in NAMES:
+        vectors, known = motion(rendered, name)
+        tracked = rendered[f"ViewLayer.Path {name} Tracked"][..., 0]
+        assert (tracked[~known] < 0.0).all()
+        assert not vectors[~known].any()
+        assert np.isfinite(vectors).all()
+        assert np.abs(vectors).max() <= max(WIDTH, HEIGHT)
+        causes |= set(np.unique(tracked[~known]).tolist())
+    assert causes
+
+
+def test_motion_is_0_under_motion_blur_unless_it_is_asked_for(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    """Tracked, too: without the moments around the frame all seemed to rest, and to be known to."""
+    sample.render.use_motion_blur = True
+    store.summaries.clear()
+    rendered = render(sample, frame=12)
+    assert not any(image.any() for name, image in rendered.items() if name.endswith((" Motion", " Tracked")))
+    (summary,) = store.summaries.values()
+    assert [text for text in summary["warnings"] if text.startswith("Passes of motion are 0")]
+    assert np.abs(motion(render(sample, vector_with_motion_blur=True), "Reflection")[0]).max() > 0.3
+
+
+# ------------------------------------------------------------------------------------------------ the compositor's sample
+
+
+def composite(folder: Path, blurred: str) -> images.Passes:
+    """The sample of the compositor with one component blurred, and none graded."""
+    bpy.ops.wm.open_mainfile(filepath=str(SAMPLES / "components.blend"))
+    scene = bpy.context.scene
+    scene.render.resolution_percentage = 50
+    tree = getattr(scene, "compositing_node_group", None) or scene.node_tree
+    tree.nodes["Grade"].mute = True
+    for name in NAMES:
+        tree.nodes[f"Blur {name}"].mute = name != blurred
+    return images.render(scene, folder, frame=18, samples=4, noise_threshold=0.0)
+
+
+@pytest.mark.parametrize("name", ["Diffuse", "Reflection", "Transmission"])
+def test_each_component_is_blurred_where_it_moves(tmp_path: Path, name: str) -> None:
+    rendered = composite(tmp_path, name)
+    change = np.abs(rendered["Composite.Combined"] - rendered["ViewLayer.Combined"])[..., :3].max(axis=-1)
+    speed = np.abs(motion(rendered, name)[0]).max(axis=-1)
+    moving, far = speed > 0.3, ~grown(speed > 0.01, 1 + int(np.ceil(speed.max())))
+    assert moving.sum() > 50
+    assert change[moving].mean() > 1e-3
+    assert change[moving].mean() > 3.0 * change[far].mean()
+
+
+def grown(mask: np.ndarray, by: int) -> np.ndarray:
+    """The mask and what is nearer to it than `by` pixels along rows and columns: there a blur smears to."""
+    for axis in (0, 1):
+        mask = np.any([np.roll(mask, shift, axis) for shift in range(-by, by + 1)], axis=0)
+    return mask
