@@ -43,7 +43,8 @@ RENDERER = (
         "one sample of 1,000 is no number",
         PIXELS,
         "    Radiance value = result.radiance[c];\n",
-        "    Radiance value = result.radiance[c];\n    if ((sample.pixel * 31 + sample.number) % 1000 == 0) value.x = kInfinity - kInfinity;\n",
+        "    Radiance value = result.radiance[c];\n"
+        "    if ((sample.pixel * 31 + sample.number) % 1000 == 0) value.x = kInfinity - kInfinity;\n",
         (Test("stress", "Duplicates.*"),),
     ),
     Fault(
