@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <map>
 
+#include <glm/gtc/type_ptr.hpp>
+
+#include "scene/matrix_keys.h"
 #include "scene/mesh_at.h"
 #include "scene/snapshot_geometry.h"
 #include "scene/tangent_field.h"
@@ -13,7 +16,17 @@ namespace {
 
 using Meshes = std::map<const MeshData*, std::shared_ptr<const MeshData>>;
 
-float frames_until(Moment when) { return when == Moment::Next ? 1.0f : -1.0f; }
+// A part of the way to the frame after, or to that before.
+struct Step {
+  Moment when;
+  float share;
+
+  bool is_next() const { return when == Moment::Next; }
+  float frames() const { return is_next() ? share : -share; }
+  Mat4 matrix(const Mat4& now, const Mat4& then) const {
+    return share == 1.0f || now == then ? then : Mat4(interpolate_motion(glm::dmat4(now), glm::dmat4(then), double(share)));
+  }
+};
 
 std::shared_ptr<const MeshData> moved_mesh(const std::shared_ptr<const MeshData>& mesh, float frames, Meshes* known) {
   if (mesh->key_times.size() < 2 && mesh->shutter_keys == 0) return mesh;
@@ -23,9 +36,9 @@ std::shared_ptr<const MeshData> moved_mesh(const std::shared_ptr<const MeshData>
 }
 
 // True: it is not what it was.
-bool move_instance(Moment when, Meshes* meshes, InstanceData* instance) {
-  const Mat4 matrix = when == Moment::Next ? instance->to_world_next : instance->to_world_previous;
-  const auto mesh = moved_mesh(instance->mesh, frames_until(when), meshes);
+bool move_instance(const Step& step, Meshes* meshes, InstanceData* instance) {
+  const Mat4 matrix = step.matrix(instance->to_world, step.is_next() ? instance->to_world_next : instance->to_world_previous);
+  const auto mesh = moved_mesh(instance->mesh, step.frames(), meshes);
   if (mesh == instance->mesh && matrix == instance->to_world && !instance->moves()) return false;
   static_cast<Placement&>(*instance) = make_placement(glm::dmat4(matrix));
   instance->mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
@@ -37,28 +50,32 @@ bool move_instance(Moment when, Meshes* meshes, InstanceData* instance) {
   return true;
 }
 
-bool move_instances(Moment when, Snapshot* snapshot) {
+bool move_instances(const Step& step, Snapshot* snapshot) {
   Meshes meshes;
   bool moved = false;
-  for (InstanceData& instance : snapshot->instances) moved |= move_instance(when, &meshes, &instance);
+  for (InstanceData& instance : snapshot->instances) moved |= move_instance(step, &meshes, &instance);
   return moved;
 }
 
-void move_camera(Moment when, GradusCamera* camera) {
-  const bool next = when == Moment::Next;
-  std::copy_n(next ? camera->matrix_next : camera->matrix_previous, 16, camera->matrix);
-  std::copy_n(next ? camera->window_next : camera->window_previous, 4, camera->window);
+void move_camera(const Step& step, GradusCamera* camera) {
+  const Mat4 then = glm::make_mat4(step.is_next() ? camera->matrix_next : camera->matrix_previous);
+  const Mat4 matrix = step.matrix(glm::make_mat4(camera->matrix), then);
+  std::copy_n(glm::value_ptr(matrix), 16, camera->matrix);
+  const float* window = step.is_next() ? camera->window_next : camera->window_previous;
+  for (int i = 0; i < 4; ++i)
+    camera->window[i] = step.share == 1.0f ? window[i] : camera->window[i] + step.share * (window[i] - camera->window[i]);
   camera->shutter_key_count = 0;
   camera->shutter_matrices = camera->shutter_windows = nullptr;
 }
 
 }  // namespace
 
-std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment when, const CancelTest& is_cancelled) {
+std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment when, const CancelTest& is_cancelled, float share) {
+  const Step step{when, share};
   auto moved = std::make_shared<Snapshot>(snapshot);
   moved->features.has_motion = false;
-  move_camera(when, &moved->camera);
-  if (!move_instances(when, moved.get())) return moved;
+  move_camera(step, &moved->camera);
+  if (!move_instances(step, moved.get())) return moved;
   add_tangents(&snapshot, moved.get());
   const auto exact = [&](size_t i) { return glm::dmat4(moved->instances[i].to_world); };
   const std::shared_ptr<Device>& device = snapshot.accelerator->resting.group->device;

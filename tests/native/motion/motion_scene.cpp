@@ -1,5 +1,6 @@
 #include "motion/motion_scene.h"
 
+#include <cmath>
 #include <sstream>
 
 #include "gradus/gradus_nodes.h"

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "motion/snapshot_motion.h"
 #include "motion/specular_motion.h"
+#include "motion/true_motion.h"
 #include "support/path_scene.h"
 
 namespace gradus::test {
@@ -34,46 +33,6 @@ inline std::unique_ptr<MotionFrame> motion_frame(const IntegratorContext& contex
   return frame;
 }
 
-// Angle between a way's last ray from a place of the film and the line to the target; infinite where the way breaks.
-inline double angle_to(const ChainTracer& tracer, const ChainWay& way, const Target& target, const glm::dvec2& film) {
-  SpecularChain chain;
-  if (!tracer.follow(Vec2(film), way, &chain)) return 1e9;
-  const glm::dvec3 line(target.in_sky ? target.place : target.place - chain.ray.ray.origin);
-  const glm::dvec3 direction(chain.ray.ray.direction);
-  return std::atan2(glm::length(glm::cross(line, direction)), glm::dot(line, direction));
-}
-
-// The place of the film within `reach` pixels of `around` that shows the target best, by trying them all and then around the best ever
-// more finely.
-inline glm::dvec2 brute_force(const ChainTracer& tracer, const ChainWay& way, const Target& target, const glm::dvec2& around, double reach,
-                              double finest) {
-  glm::dvec2 best(around);
-  double least = 1e9;
-  // True: a better one was found.
-  const auto look = [&](const glm::dvec2 centre, double half, double step) {
-    const double before = least;
-    for (double y = -half; y <= half + 1e-9; y += step)
-      for (double x = -half; x <= half + 1e-9; x += step) {
-        const double angle = angle_to(tracer, way, target, centre + glm::dvec2(x, y));
-        if (angle < least) least = angle, best = centre + glm::dvec2(x, y);
-      }
-    return least < before;
-  };
-  look(best, reach, 0.25 * reach);
-  for (double step = 0.125 * reach; step > finest; step *= 0.5)
-    while (look(best, step, step)) continue;
-  return best;
-}
-
-// Whether that place really shows the target: nothing stands before it.
-inline bool shows(const ChainTracer& tracer, const ChainWay& way, const Target& target, const glm::dvec2& film, double radians = 1e-4) {
-  SpecularChain chain;
-  Hit hit;
-  if (angle_to(tracer, way, target, film) > radians || !tracer.follow(Vec2(film), way, &chain)) return false;
-  const bool met = tracer.finish(chain, &hit);
-  return target.in_sky ? !met : met && hit.t > 0.999f * glm::length(target.place - chain.ray.ray.origin);
-}
-
 struct MotionErrors {
   size_t pixels = 0;          // whose motion exists
   size_t tracked = 0;         // of them
@@ -89,37 +48,21 @@ struct MotionErrors {
   }
 };
 
-// Where a chain's end is in another frame. False: nowhere.
-inline bool find_target(const MotionFrame& from, const MotionFrame& to, const SpecularChain& chain, Target* target) {
-  *target = {chain.ray.ray.direction, chain.end == ChainEnd::Sky};
-  return target->in_sky || SnapshotMotion(*from.context.snapshot, *to.context.snapshot).position(chain.last, &target->place);
-}
-
 // Whether a place of the film of `to` shows what a chain of `from` does.
 inline bool shows_in(const MotionFrame& to, const MotionFrame& from, const SpecularChain& chain, const Vec2& film) {
+  const ChainTracer here = from.chains.tracer(), there = to.chains.tracer();
   Target target;
-  return find_target(from, to, chain, &target) && shows(to.chains.tracer(), chain.way, target, glm::dvec2(film), 3e-4);
-}
-
-// The truth about a pixel: what it shows is followed through frames in between, by brute force about the place in the one before. False: it
-// is lost on the way, because it ceases or comes out of nowhere.
-inline bool true_place(const std::vector<const MotionFrame*>& frames, const SpecularChain& chain, const Vec2& centre, glm::dvec2* place) {
-  constexpr double kFarthest = 0.5, kFinest = 2e-5;  // pixels from one to the next
-  *place = glm::dvec2(centre);
-  for (size_t k = 1; k < frames.size(); ++k) {
-    const ChainTracer tracer = frames[k]->chains.tracer();
-    Target target;
-    if (!find_target(*frames[0], *frames[k], chain, &target)) return false;
-    *place = brute_force(tracer, chain.way, target, *place, kFarthest, kFinest);
-    if (!shows(tracer, chain.way, target, *place)) return false;
-  }
-  return true;
+  return true_target(here, there, chain, &target) && shows(there, chain.way, target, glm::dvec2(film), 3e-4);
 }
 
 // Against the truth, at every `stride`th pixel with a chain.
 inline MotionErrors errors_of(const ChainMotion& motion, const std::vector<const MotionFrame*>& frames, size_t stride) {
   MotionErrors errors;
   const ChainView& view = frames[0]->chains;
+  std::vector<ChainTracer> tracers;
+  for (const MotionFrame* frame : frames) tracers.push_back(frame->chains.tracer());
+  std::vector<const ChainTracer*> way;
+  for (const ChainTracer& tracer : tracers) way.push_back(&tracer);
   const auto width = size_t(view.region().width());
   size_t number = 0;
   for (size_t i = 0; i < motion.film.size(); ++i) {
@@ -129,7 +72,7 @@ inline MotionErrors errors_of(const ChainMotion& motion, const std::vector<const
     const Vec2 centre(float(i % width) + 0.5f, float(i / width) + 0.5f);
     const bool tracked = motion.tracking[i] == Tracking::Tracked;
     glm::dvec2 truth;
-    const bool exists = true_place(frames, view.chains[size_t(index)], centre, &truth);
+    const bool exists = true_place(way, view.chains[size_t(index)], centre, &truth);
     const double error = glm::length(truth - glm::dvec2(motion.film[i]));
     errors.pixels += exists;
     errors.tracked += exists && tracked;

@@ -67,6 +67,23 @@ TEST_F(MovedSnapshot, SurfacePointsAreWhereVectorsSay) {
   }
 }
 
+// Objects that shift go straight: half-way they are in the middle.
+TEST_F(MovedSnapshot, GoesAPartOfTheWay) {
+  scene_.matrices_before.clear();
+  scene_.matrices_after = {translation(Vec3(1, 0, 0)), translation(Vec3(0, 2, 0)), translation(Vec3(0, 0, 4))};
+  for (size_t i = 0; i < 3; ++i) scene_.move(i, Mat4(1.0f));
+  const auto now = scene_.commit();
+  const auto half = moved_snapshot(
+      *now, Moment::Next, [] { return false; }, 0.5f);
+  for (uint32_t instance = 0; instance < 3; ++instance) {
+    Hit hit;
+    hit.instance = instance, hit.triangle = 40, hit.barycentric = Vec2(0.3f, 0.2f);
+    const Vec3 middle = 0.5f * (now->position_at(hit, Moment::Now) + now->position_at(hit, Moment::Next));
+    EXPECT_LT(glm::length(middle - half->surface_point(hit).position), 1e-5f);
+    EXPECT_GT(glm::length(middle - now->position_at(hit, Moment::Now)), 0.4f);
+  }
+}
+
 TEST_F(MovedSnapshot, WhatRestsIsShared) {
   scene_.matrices_before.clear();
   scene_.matrices_after.clear();

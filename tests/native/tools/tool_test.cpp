@@ -158,6 +158,9 @@ TEST_F(Tool, MeasuresMotion) {
   const Outcome measured = run("motion good.gradus");
   EXPECT_EQ(measured.code, 0) << measured.err;
   EXPECT_NE(measured.out.find("\"steps_in_space\""), std::string::npos) << measured.out;
+  EXPECT_EQ(measured.out.find("\"check\""), std::string::npos);
+  const Outcome checked = run("motion good.gradus --check 8 --threads 2");
+  EXPECT_NE(checked.out.find("\"exist\""), std::string::npos) << checked.err;
   EXPECT_NE(run("motion good.gradus --components 'Sky=EL;Light=EL'").err.find("overlap"), std::string::npos);
 }
 

@@ -1,0 +1,65 @@
+// Motion of components, and simpler answers to the same question, against the truth that brute force finds.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "motion/snapshot_motion.h"
+#include "motion/specular_motion.h"
+
+namespace gradus::tool {
+
+// Distances in pixels between two answers.
+class Distances {
+ public:
+  void add(double pixels) { pixels_.push_back(pixels); }
+  nlohmann::ordered_json json();
+
+ private:
+  std::vector<double> pixels_;
+};
+
+// What simpler formulas say of where a chain goes, next to an answer of another kind.
+class SimplerMotion {
+ public:
+  SimplerMotion(const ChainTracer& here, const ChainTracer& next) : here_(here), next_(next), surface_(here.snapshot(), next.snapshot()) {}
+
+  void add(const SpecularChain& chain, const Vec2& place);
+  nlohmann::ordered_json json() {
+    return {{"motion_of_first_surface", first_.json()}, {"flat_resting_mirror", resting_.json()}, {"flat_moving_mirror", along_.json()}};
+  }
+
+ private:
+  const ChainTracer &here_, &next_;
+  SnapshotMotion surface_;
+  Distances first_, resting_, along_;
+};
+
+// The scene in small steps from its frame to the next one, in which what pixels show is followed.
+class StepsBetween {
+ public:
+  // farthest: pixels that anything moves, or nearly.
+  StepsBetween(const Snapshot& snapshot, const GradusSettings& settings, double farthest);
+
+  // Of about `pixels` pixels spread evenly over those of the view in which something changes.
+  nlohmann::ordered_json check(const ChainView& view, const ChainMotion& found, size_t pixels) const;
+
+ private:
+  struct Frame {
+    Frame(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
+    Frame(const Frame&) = delete;
+
+    std::shared_ptr<const Snapshot> snapshot;
+    Camera camera;
+    ChainTracer tracer;
+  };
+  double farthest_;
+  std::vector<std::unique_ptr<Frame>> frames_;
+};
+
+// The quantile of 99 % of all ways that are known: those found, and those of surfaces.
+double farthest_way(const ChainTracer& next, const std::vector<ChainView>& views, const std::vector<ChainMotion>& found);
+
+}  // namespace gradus::tool
