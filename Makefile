@@ -8,7 +8,7 @@ BLENDER ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-addon stress faults compilers package format lint clean
-.PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture picture-components
+.PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-motion bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture picture-components
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -59,6 +59,10 @@ bench-agreement: ## converged images against those of Cycles and Mitsuba; limite
 bench-animation: ## flicker of animations against CPU time; limited by the same variables, varied by SIZE=320x180 FRAMES=24 BLUR=1
 	@SCENES='$(SCENES)' MODES='$(MODES)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
 	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' tools/bench.sh --animation
+
+bench-motion:   ## motion of reflections and refractions, and what it is worth; as bench-animation, PARTS=truth,prediction,flicker,cost LOADED=1
+	@SCENES='$(SCENES)' MODES='$(MODES)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
+	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' PARTS='$(PARTS)' LOADED='$(LOADED)' tools/bench.sh --motion
 
 bench-quick:    ## errors of two scenes, in under five minutes
 	@tools/bench.sh --quick

@@ -42,14 +42,24 @@ def light(image: np.ndarray, white: float) -> np.ndarray:
     return np.clip(image[..., :3] / white, 0.0, 1.0) ** (1.0 / 2.2)
 
 
-def motion(passes: Passes, component: str) -> np.ndarray:
-    """From the frame before to this one, for all components on one scale."""
-    longest = max(np.abs(image[..., :2]).max() for name, image in passes.items() if name.endswith(" Motion"))
-    vectors, tracked = passes[f"Path {component} Motion"], passes[f"Path {component} Tracked"][..., 0] > 0.0
-    length = np.clip(np.hypot(vectors[..., 0], vectors[..., 1]) / max(float(longest), 1e-6), 0.0, 1.0)
+def longest_motion(passes: Passes) -> float:
+    """Of any component, in pixels."""
+    return max(float(np.abs(image[..., :2]).max()) for name, image in passes.items() if name.endswith(" Motion"))
+
+
+def wheel(vectors: np.ndarray, longest: float) -> np.ndarray:
+    """Direction as hue, length as brightness. vectors: previous − current, pixels, y upwards."""
+    length = np.clip(np.hypot(vectors[..., 0], vectors[..., 1]) / max(longest, 1e-6), 0.0, 1.0)
     hue = np.arctan2(-vectors[..., 1], -vectors[..., 0]) / (2.0 * np.pi)
-    wheel = np.clip(np.abs((hue[..., None] * 6.0 + np.array((0.0, 4.0, 2.0))) % 6.0 - 3.0) - 1.0, 0.0, 1.0)
-    return np.where(tracked[..., None], wheel * np.sqrt(length)[..., None], 0.25)
+    colors = np.clip(np.abs((hue[..., None] * 6.0 + np.array((0.0, 4.0, 2.0))) % 6.0 - 3.0) - 1.0, 0.0, 1.0)
+    return colors * np.sqrt(length)[..., None]
+
+
+def motion(passes: Passes, component: str, longest: float | None = None) -> np.ndarray:
+    """From the frame before to this one, for all components on one scale."""
+    tracked = passes[f"Path {component} Tracked"][..., 0] > 0.0
+    longest = longest_motion(passes) if longest is None else longest
+    return np.where(tracked[..., None], wheel(passes[f"Path {component} Motion"], longest), 0.25)
 
 
 ROWS: dict[str, Shower] = {

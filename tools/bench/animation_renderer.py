@@ -13,21 +13,29 @@ from animation_scenes import Animation
 from animation_variants import Variant
 from renderers import RefusedError, Worker
 
-WORKER = Path(__file__).with_name("animation_worker.py")
-
 
 class AnimationRenderer:
+    script = "animation_worker.py"
+
     def __init__(self, animation: Animation, variant: Variant) -> None:
         self.animation, self.variant = animation, variant
         self._folder = tempfile.TemporaryDirectory()
-        self._worker = Worker([sys.executable, str(WORKER), str(animation.scene.path), *(str(s) for s in variant.size)])
+        self.folder = Path(self._folder.name)
+        script = Path(__file__).with_name(self.script)
+        self._worker = Worker([sys.executable, str(script), str(animation.scene.path), *(str(s) for s in variant.size)])
 
     def render(self, mode: str, samples: int, seed: int, **more: Any) -> tuple[np.ndarray, dict]:
         """Pictures (frames, height, width, 3) and what they took."""
-        out = Path(self._folder.name) / "frames.npy"
-        job = {"mode": mode, "samples": samples, "seed": seed, "frames": self.animation.frames, "out": str(out)}
-        answer = self._worker.ask(job | {"shutter": self.variant.shutter} | more)
+        out = self.folder / "frames.npy"
+        answer = self.render_to(out, mode, samples, seed, **more)
         return np.load(out).astype(np.float64), answer
+
+    def render_to(self, out: Path, mode: str, samples: int, seed: int, **more: Any) -> dict:
+        job = {"mode": mode, "samples": samples, "seed": seed, "frames": self.animation.frames, "out": str(out)}
+        return self.ask(job | {"shutter": self.variant.shutter} | more)
+
+    def ask(self, job: dict) -> dict:
+        return self._worker.ask(job)
 
     def vectors(self, samples: int) -> np.ndarray:
         """Pass Vector (frames, height, width, 4)."""

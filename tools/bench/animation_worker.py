@@ -31,19 +31,30 @@ def render(job: dict, folder: Path) -> dict:
     wants_vectors = job.get("vectors", False)
     layer.use_pass_vector = wants_vectors
     worker.choose_file(layers=wants_vectors)
-    first, last = job["frames"]
+    answer, files = render_range(job["frames"], folder)
+    channels = [f"{layer.name}.Vector.{c}" for c in "XYZW"] if wants_vectors else list("RGB")
+    np.save(job["out"], np.stack([worker.read_exr(file, channels) for file in files]))
+    remove(files)
+    return answer
+
+
+def render_range(frames: tuple[int, int], folder: Path) -> tuple[dict, list[Path]]:
+    """What it took, and the files of the frames."""
+    scene = bpy.context.scene
+    first, last = frames
     scene.frame_start, scene.frame_end, scene.frame_step = first, last, 1
     scene.render.filepath = str(folder / "frame")
     memory.reset_peak()
     wall, cpu = time.perf_counter(), time.process_time()
     bpy.ops.render.render(animation=True)
     answer = {"cpu": time.process_time() - cpu, "wall": time.perf_counter() - wall, "peak_memory_bytes": memory.peak_bytes()}
-    channels = [f"{layer.name}.Vector.{c}" for c in "XYZW"] if wants_vectors else list("RGB")
-    files = [Path(scene.render.frame_path(frame=frame)) for frame in range(first, last + 1)]
-    np.save(job["out"], np.stack([worker.read_exr(file, channels) for file in files]))
+    return answer, [Path(scene.render.frame_path(frame=frame)) for frame in range(first, last + 1)]
+
+
+def remove(files: list[Path]) -> None:
+    """A frame that the next job does not write must be missed."""
     for file in files:
-        file.unlink()  # a frame that the next job does not write must be missed
-    return answer
+        file.unlink()
 
 
 def set_motion_blur(scene: bpy.types.Scene, layer: bpy.types.ViewLayer, shutter: float) -> None:

@@ -10,6 +10,7 @@ import animation_report
 import behind
 import figures
 import maps
+import motion_report
 import numpy as np
 import pictures
 import results
@@ -206,7 +207,8 @@ def conditions(scene: SceneResults) -> str:
 def blocks() -> list[Block]:
     scenes = results.load()
     made: list[Block] = [Text((FOLDER / "preface.md").read_text()), Text("## Targets"), targets.table(scenes)]
-    made += [*equal_time(scenes), *shortfalls(scenes), *animation_report.blocks(), *room(), *sample_costs(scenes), *agreement()]
+    made += [*equal_time(scenes), *shortfalls(scenes), *animation_report.blocks(), *motion_report.blocks()]
+    made += [*room(), *sample_costs(scenes), *agreement()]
     for scene in scenes:
         made += details(scene)
     return made

@@ -1,0 +1,198 @@
+"""The benchmark of components' motion: its measures against motion that is known, its modes, its report, and a tiny run."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools" / "bench"))
+pytest.importorskip("PIL")
+pytest.importorskip("scipy")
+import animation_variants as variants  # noqa: E402
+import document  # noqa: E402
+import motion_metrics as metrics  # noqa: E402
+import motion_modes  # noqa: E402
+import motion_pictures as pictures  # noqa: E402
+import motion_report as report  # noqa: E402
+
+HEIGHT, WIDTH = 36, 64
+SHIFT = (3.25, -1.5)  # pixels to the right, and up
+
+
+def waves(right: float = 0.0, up: float = 0.0) -> np.ndarray:
+    """A smooth picture that has moved so far."""
+    rows, columns = np.indices((HEIGHT, WIDTH)).astype(float)
+    return 1.0 + 0.4 * np.sin(0.4 * (columns - right)) * np.cos(0.3 * (rows + up))
+
+
+def forward(right: float, up: float) -> np.ndarray:
+    """current − next, as passes have it."""
+    return np.broadcast_to(np.array((-right, -up)), (HEIGHT, WIDTH, 2))
+
+
+def parts_of(now: np.ndarray, following: np.ndarray, own: np.ndarray, deviation: float = 0.0, count: int = 4) -> list[metrics.Passes]:
+    """Renderings of two frames whose reflection goes its own way while surfaces rest."""
+    random = np.random.default_rng(1)
+    both = np.stack([now, following])[..., None] * np.ones(3)
+    motion = np.zeros((2, HEIGHT, WIDTH, 4))
+    motion[0, ..., 2:] = own
+    passes = {"Vector": np.zeros((2, HEIGHT, WIDTH, 4)), "Path Reflection Motion": motion}
+    passes["Path Reflection Tracked"] = np.ones((2, HEIGHT, WIDTH, 1))
+    noise = [deviation * random.normal(size=(2, HEIGHT, WIDTH, 1)) for _ in range(count)]
+    return [passes | {"Path Reflection": both + n, "Combined": both + n} for n in noise]
+
+
+def test_the_right_vectors_predict_the_next_frame_and_the_surface_does_not() -> None:
+    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT)), "Reflection").row()
+    assert found["all"]["own"] > 0.99
+    assert found["all"]["surface"] < 0.2
+    assert found["moving"]["pixels"] == found["all"]["pixels"] > 0.8 * HEIGHT * WIDTH, "what leaves the picture does not count"
+
+
+def test_vectors_of_the_wrong_sign_predict_nothing() -> None:
+    found = metrics.predict(parts_of(waves(), waves(*SHIFT), -forward(*SHIFT)), "Reflection").row()
+    assert found["all"]["own"] < 0.2
+
+
+def test_noise_of_independent_parts_is_no_error_of_prediction() -> None:
+    """Each part is off by 4 %, their mean by 2 %."""
+    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.04), "Reflection").row()
+    assert found["all"]["own"] > 0.9
+    assert found["all"]["noise"] > 0.9
+    loud = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.4), "Reflection").row()
+    assert loud["all"]["noise"] < 0.8, "too much noise must be seen in what is told of it"
+
+
+def test_light_that_changes_is_an_error_of_prediction() -> None:
+    found = metrics.predict(parts_of(waves(), 1.05 * waves(*SHIFT), forward(*SHIFT), deviation=0.02), "Reflection").row()
+    assert found["all"]["own"] < 0.1
+
+
+def test_pixels_without_a_track_do_not_count() -> None:
+    parts = parts_of(waves(), waves(*SHIFT), forward(*SHIFT))
+    parts[0]["Path Reflection Tracked"][0, :, : WIDTH // 2] = -4.0
+    assert metrics.predict(parts, "Reflection").counts[:, : WIDTH // 2].sum() == 0
+
+
+def test_own_ways_are_those_of_what_a_pixel_mostly_shows() -> None:
+    passes = parts_of(waves(), waves(), forward(*SHIFT))[0]
+    passes["Combined"] = passes["Path Reflection"] * np.where(np.arange(WIDTH) < 20, 4.0, 1.0)[:, None]
+    ways = metrics.own_ways(passes)
+    assert (ways[:, :, :20] == metrics.NOWHERE).all()
+    np.testing.assert_array_equal(ways[:, :, 20:], passes["Path Reflection Motion"][:, :, 20:])
+
+
+def test_an_error_that_goes_along_does_not_flicker() -> None:
+    """The reflection moves two pixels to the right, and its error with it; along the resting surface it flickers."""
+    frames = [waves(2.0 * k) for k in range(3)]
+    reference = np.ones((3, HEIGHT, WIDTH, 3))
+    images = reference + 0.1 * (np.stack(frames)[..., None] - 1.0)
+    own = np.broadcast_to(np.array((-2.0, 0.0, -2.0, 0.0)), (3, HEIGHT, WIDTH, 4))
+    still = [metrics.flicker_measures(images, reference, np.zeros_like(images), ways)["flicker_own"] for ways in (own, 0.0 * own)]
+    assert still[0] < 1e-9
+    assert still[1] > 1e-5
+
+
+@pytest.mark.parametrize("mode", motion_modes.FLICKER)
+def test_every_mode_is_compared_with_windows_without_components(mode: str) -> None:
+    settings, other = motion_modes.MODES[mode].settings, motion_modes.MODES[motion_modes.compared_with(mode)].settings
+    assert (other["use_temporal"], other["use_decomposition"]) == (True, False)
+    assert settings["reconstruction"] == other["reconstruction"]
+    assert "use_temporal" in settings and "use_decomposition" in settings, "modes follow one another in one scene"  # noqa: PT018
+
+
+def flicker_row(mode: str, flicker: float, seed: int = 0, **more: Any) -> dict:
+    row = {"part": "flicker", "scene": "mirror_and_glass", "frames": [10, 15], "width": 320, "height": 180, "shutter": 0.0}
+    row |= {"mode": mode, "samples": 16, "seed": seed, "version": "new", "cpu": 6.0}
+    return row | {name: flicker for name in ("flicker_own", "flicker_own_moving", "relmse_smooth", "relmse")} | more
+
+
+def tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *rows: dict) -> list[document.Table]:
+    file = tmp_path / "motion.jsonl"
+    file.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    monkeypatch.setattr(report, "RESULTS", file)
+    return [block for block in report.blocks() if isinstance(block, document.Table)]
+
+
+def test_flicker_is_told_over_that_of_windows_of_the_same_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [flicker_row("windows-l2", 1.0), flicker_row("windows-l2", 4.0, 1), flicker_row("windows-parts-l2", 0.5)]
+    table = tables(tmp_path, monkeypatch, *rows)[-1]
+    ratios = {row[1]: row[9] for row in table.rows}
+    assert ratios[motion_modes.MODES["windows-parts-l2"].label] == "0.50"
+
+
+def test_times_of_a_loaded_machine_are_not_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    modes = {"windows-l2": 1.0, "windows-parts-l2": 0.5}
+    for more, told in (({}, True), ({"loaded": True}, False)):
+        table = tables(tmp_path, monkeypatch, *(flicker_row(mode, flicker, **more) for mode, flicker in modes.items()))[-1]
+        assert all((row[4] != "–") == told and (row[11] != "–") == told for row in table.rows)
+
+
+def test_the_newest_version_of_a_part_replaces_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [flicker_row("windows-l2", 1.0, version="old"), flicker_row("windows-parts-l2", 1.0, version="old")]
+    table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-l2", 2.0))[-1]
+    assert [row[5] for row in table.rows] == ["2.0000", "1.0000"]
+
+
+def cost_row(mode: str, **seconds: float) -> dict:
+    times = {"sample": 1.0, "reconstruct": 0.5, "links": 0.0} | seconds
+    return flicker_row(mode, 0.0) | {"part": "cost", "seconds": times, "frame": 12}
+
+
+def test_costs_are_ratios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [cost_row("whole"), cost_row("parts", sample=1.04, reconstruct=0.7), cost_row("parts-motion", sample=1.0, links=0.02)]
+    table = tables(tmp_path, monkeypatch, *rows)[-1]
+    assert table.rows == [["mirror_and_glass", "1.040", "1.400", "0.020", "1"]]
+    assert len(tables(tmp_path, monkeypatch, *(row | {"loaded": True} for row in rows))) == 1, "no ratio of a loaded machine"
+
+
+def test_the_wheel_has_the_colours_of_the_maps() -> None:
+    """What moves to the right has the colour at the right of the wheel."""
+    passes = {name: images[0] for name, images in parts_of(waves(), waves(), forward(*SHIFT))[0].items()}
+    passes["Path Reflection Motion"] = np.broadcast_to(np.array((-4.0, 0.0, -4.0, 0.0)), (HEIGHT, WIDTH, 4))
+    shown = pictures.component_sheet.motion(passes, "Reflection")
+    wheel = np.asarray(pictures.wheel(4.0)) / 255.0
+    np.testing.assert_allclose(shown[0, 0], wheel[pictures.WHEEL // 2, -1], atol=0.01)
+    assert np.abs(shown[0, 0] - wheel[pictures.WHEEL // 2, 0]).max() > 0.5
+
+
+@pytest.mark.module
+def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the sample with the mirror ball; what is done is not done again."""
+    import animation_references
+    import motion
+    import motion_renderer
+
+    if not motion_renderer.TOOL.exists():
+        pytest.skip("the tool is not built")
+    results = tmp_path / "motion.jsonl"
+    for module in (motion, report):
+        monkeypatch.setattr(module, "RESULTS", results)
+    monkeypatch.setattr(animation_references, "CACHE", tmp_path)
+    monkeypatch.setattr(animation_references, "PART", 2)
+    for module in (pictures, report):
+        monkeypatch.setattr(module, "FOLDER", tmp_path)
+    monkeypatch.setattr(motion, "CHECKED", 8)
+    (animation,) = motion.select("mirror_and_glass", 2)
+    arguments = SimpleNamespace(
+        parts=list(motion.PARTS), size=(64, 36), frames=2, blur=False, seeds=1, reference=8, light=8, samples=[2], loaded=False,
+        modes=["frames-l2", "windows-l2", "windows-parts-l2"],
+    )  # fmt: skip
+    for _ in range(2):
+        motion.bench_motion(animation, arguments, "version", float("inf"))
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    counts = {part: sum(row["part"] == part for row in rows) for part in motion.PARTS}
+    assert counts["flicker"] == counts["cost"] == 3
+    assert counts["truth"] >= 3 and counts["prediction"] >= 3  # noqa: PT018
+    reflected = next(row for row in rows if (row["part"], row["component"]) == ("truth", "Reflection"))
+    assert reflected["check"]["error"]["quantile_95"] < 0.5
+    assert (tmp_path / pictures.file_name(animation.name)).exists()
+    assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 6
+    assert variants.of_row(rows[0]).size == (64, 36)

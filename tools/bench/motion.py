@@ -1,0 +1,184 @@
+"""Motion of components: against the truth, as a prediction of the next frame, for what it does to flicker, and at what price.
+
+    motion.py [--scenes a,b] [--parts truth,prediction,flicker,cost] [--size 320x180] [--frames 6] [--blur] [--minutes 60]
+
+Every run is appended to docs/benchmark/motion.jsonl with the version that made it: an interrupted benchmark goes on. Converged frames are
+those of animation_references.py, cached with their components' motion. Pictures of the project's own scenes are stored on the way
+(motion_pictures.py). CPU seconds are those of the moment: on a machine with other work they say nothing. Report: report.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+
+import motion_metrics
+import motion_pictures
+import numpy as np
+from animation import several, size
+from animation_references import file_of, reference
+from animation_scenes import Animation
+from animation_variants import SHUTTER, Variant, of_row
+from bench import append, bench_each, powers_of_two
+from motion_modes import FLICKER, MODES
+from motion_renderer import MotionRenderer
+from motion_scenes import select
+from results import FOLDER
+from version import cpu_name
+
+RESULTS = FOLDER / "motion.jsonl"
+TRUTH, PREDICTION, FLICKERS, COST = PARTS = ("truth", "prediction", "flicker", "cost")
+CHECKED = 400  # pixels of each component that are held against the truth
+LIGHT, LIGHT_PARTS = 256, 4  # samples of the pictures whose change is predicted, and renderings that share them
+COST_SAMPLES = 16
+COST_MODES = ("whole", "parts", "parts-motion")  # the last one with the passes of motion
+
+
+@dataclass(frozen=True)
+class Job:
+    part: str
+    mode: str = ""
+    samples: int = 0
+    seed: int = 0
+    frame: int = 0  # of truth and prediction
+
+
+def jobs_of(animation: Animation, arguments: argparse.Namespace) -> list[Job]:
+    """Truth and prediction in the middle; flicker and cost interleaved, a seed through all modes before the next one begins."""
+    middle = sum(animation.frames) // 2
+    jobs = {TRUTH: [Job(TRUTH, frame=middle)], PREDICTION: [Job(PREDICTION, "parts", arguments.light, frame=middle)]}
+    jobs[FLICKERS] = [
+        Job(FLICKERS, mode, samples, seed) for seed in range(arguments.seeds) for samples in arguments.samples for mode in arguments.modes
+    ]
+    jobs[COST] = [Job(COST, mode, COST_SAMPLES, seed, middle) for seed in range(arguments.seeds) for mode in COST_MODES]
+    return [job for part in arguments.parts for job in jobs[part]]
+
+
+def variant_of(arguments: argparse.Namespace) -> Variant:
+    return Variant(arguments.size, arguments.frames, SHUTTER if arguments.blur else 0.0)
+
+
+def done_jobs(animation: Animation, variant: Variant, version: str) -> set[Job]:
+    if not RESULTS.exists():
+        return set()
+    wanted = (animation.name, list(animation.frames), variant, version)
+    rows = [json.loads(line) for line in RESULTS.read_text().splitlines()]
+    rows = [row for row in rows if (row["scene"], row["frames"], of_row(row), row["version"]) == wanted]
+    rows = [row for row in rows if not (row.get("loaded") and row["part"] == COST)]  # of no use: to be run again
+    return {Job(*(row[name] for name in ("part", "mode", "samples", "seed", "frame"))) for row in rows}
+
+
+class MotionBench:
+    """One animation in one variant, with its process and references."""
+
+    def __init__(self, animation: Animation, arguments: argparse.Namespace, version: str) -> None:
+        self.animation, self.samples, self.version = animation, arguments.reference, version
+        self.variant, self.loaded = variant_of(arguments), arguments.loaded
+        self.renderer = MotionRenderer(animation, self.variant)
+        self._ways: np.ndarray | None = None
+        self._refused: dict[str, str] = {}
+
+    def works(self, mode: str) -> bool:
+        if mode in MODES and mode not in self._refused:
+            self._refused[mode] = self.renderer.refusal(mode)
+            if self._refused[mode]:
+                print(f"SKIP {mode} in {self.animation.name}: {self._refused[mode]}", flush=True)
+        return not self._refused.get(mode)
+
+    def run(self, job: Job) -> None:
+        row = {"scene": self.animation.name, "frames": self.animation.frames, "version": self.version, "machine": cpu_name()}
+        if self.loaded:
+            row["loaded"] = True
+        for found in {TRUTH: self._truth, PREDICTION: self._prediction, FLICKERS: self._flicker, COST: self._cost}[job.part](job):
+            append(row | asdict(job) | self.variant.row() | found, RESULTS)
+        print(f"{self.animation.name:18} {job.part:11} {job.mode:32} {job.samples or '':5} seed {job.seed}", flush=True)
+
+    def _truth(self, job: Job) -> Iterator[dict]:
+        found = self.renderer.track(job.frame, CHECKED)
+        for name, part in found.items():
+            if isinstance(part, dict) and part["chains"]:
+                yield {"component": name, **{key: value for key, value in part.items() if not key.endswith("_cpu")}}
+
+    def _prediction(self, job: Job) -> Iterator[dict]:
+        frames = (job.frame, job.frame + 1)
+        parts = [self.renderer.passes(job.mode, job.samples // LIGHT_PARTS, 1000 + part, frames) for part in range(LIGHT_PARTS)]
+        found = {name: motion_metrics.predict(parts, name) for name in motion_metrics.components(parts[0])}
+        if self.animation.scene.own:
+            motion_pictures.store(self.animation.name, self.variant, parts[0], found)
+        for name, prediction in found.items():
+            if prediction.counts.any():
+                yield {"component": name, **prediction.row()}
+
+    def _flicker(self, job: Job) -> Iterator[dict]:
+        converged, ways = reference(self.renderer, "path", self.samples), self._own_ways()
+        images, answer = self.renderer.render(job.mode, job.samples, job.seed)
+        measures = motion_metrics.flicker_measures(images, converged.mean, converged.variance, ways)
+        yield {"cpu": answer["cpu"], "wall": answer["wall"], **measures, "reference_samples": converged.samples}
+
+    def _cost(self, job: Job) -> Iterator[dict]:
+        mode = job.mode.removesuffix("-motion")
+        out = self.renderer.folder / "cost.npz"
+        more = {"frames": (job.frame, job.frame), "passes": job.mode.endswith("-motion")}
+        answer = self.renderer.render_to(out if more["passes"] else out.with_suffix(".npy"), mode, job.samples, job.seed, **more)
+        yield {"cpu": answer["cpu"], "seconds": answer["seconds"][0]}
+
+    def _own_ways(self) -> np.ndarray:
+        """Cached, since only what the scene shows decides about them: few samples tell what a pixel mostly shows."""
+        if self._ways is None:
+            file = file_of(self.renderer, f"own-ways-{self.version}")
+            if not file.exists():
+                passes = self.renderer.passes("parts", 32, 1000, self.animation.frames)
+                file.parent.mkdir(parents=True, exist_ok=True)
+                np.savez_compressed(file, ways=motion_metrics.own_ways(passes).astype(np.float32))
+            self._ways = np.load(file)["ways"].astype(np.float64)
+        return self._ways
+
+    def close(self) -> None:
+        self.renderer.close()
+
+
+def bench_motion(animation: Animation, arguments: argparse.Namespace, version: str, deadline: float) -> None:
+    done = done_jobs(animation, variant_of(arguments), version)
+    jobs = [job for job in jobs_of(animation, arguments) if job not in done]
+    if not jobs:
+        return
+    bench = MotionBench(animation, arguments, version)
+    try:
+        for job in jobs:
+            if time.monotonic() > deadline:
+                return
+            if bench.works(job.mode):
+                bench.run(job)
+    finally:
+        bench.close()
+
+
+def _chosen(known: tuple[str, ...], text: str) -> list[str]:
+    if unknown := set(text.split(",")) - set(known):
+        raise argparse.ArgumentTypeError(f"unknown: {', '.join(sorted(unknown))}; there are {', '.join(known)}")
+    return text.split(",")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenes", default="")
+    parser.add_argument("--parts", type=lambda text: _chosen(PARTS, text), default=list(PARTS))
+    parser.add_argument("--minutes", type=float, default=600.0)
+    parser.add_argument("--size", type=size, default=(320, 180), help="pixels")
+    parser.add_argument("--frames", type=several, default=6, help="how many, of flicker")
+    parser.add_argument("--blur", action="store_true", help="motion blur")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--reference", type=int, default=512, help="samples per pixel of converged frames")
+    parser.add_argument("--loaded", action="store_true", help="the machine has other work: times are stored, but not shown")
+    parser.add_argument("--light", type=int, default=LIGHT, help="samples per pixel of pictures that are predicted")
+    parser.add_argument("--samples", type=powers_of_two, default=[4, 16])
+    parser.add_argument("--modes", type=lambda text: _chosen(FLICKER, text), default=list(FLICKER))
+    arguments = parser.parse_args()
+    bench_each(select(arguments.scenes, arguments.frames), bench_motion, arguments)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,121 @@
+"""How well vectors predict the next frame, and flicker along the way of what a pixel mostly shows: definitions of docs/benchmark/motion.md.
+
+Sequences are float arrays (frames, height, width, channels), top row first. Vectors are as the passes have them: (previous − current,
+current − next) in pixels, y upwards. Passes go by their names.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import temporal_metrics
+from scipy.ndimage import gaussian_filter, map_coordinates
+
+Passes = dict[str, np.ndarray]
+
+WITHIN = 0.02  # of the light: what is predicted
+DARK = 0.05  # of the picture's mean: a component with less light says nothing of motion
+AROUND, REACH = 2.0, 2.5  # pixels: deviation of the mean around a pixel, and how many deviations it reaches
+MOVES = 0.5  # pixels from which a pixel counts as moving
+MAIN = 0.5  # share of the light from which a pixel shows a component
+SMOOTH = ("Reflection", "Transmission")
+NOWHERE = 1e6  # pixels: a way that leaves every picture
+
+
+def gray(images: np.ndarray) -> np.ndarray:
+    return images[..., :3].mean(axis=-1)
+
+
+def warped(following: np.ndarray, forward: np.ndarray) -> np.ndarray:
+    """What the next frame (height, width) shows where the vectors `forward` (current − next) lead; NaN outside of it."""
+    height, width = following.shape
+    rows, columns = np.indices((height, width))
+    rows, columns = rows + forward[..., 1], columns - forward[..., 0]
+    inside = (rows >= 0) & (rows <= height - 1) & (columns >= 0) & (columns <= width - 1)
+    return np.where(inside, map_coordinates(following, [rows, columns], order=3, mode="nearest"), np.nan)
+
+
+def mean_product(differences: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Square of what independent estimates (parts, height, width) are estimates of: the mean product of two different ones, in which no
+    noise is left, around each pixel of those that count."""
+    parts = len(differences)
+    products = (differences.sum(axis=0) ** 2 - (differences**2).sum(axis=0)) / (parts * (parts - 1))
+    return _around(np.where(counts, products, 0.0)) / np.maximum(_around(counts.astype(float)), 1e-9)
+
+
+def as_noisy(differences: np.ndarray, parts: int) -> np.ndarray:
+    """Scaled, so that the mean product of these has the noise of that of as many parts: its variance goes by the number of products."""
+    count = len(differences)
+    return differences * (count * (count - 1) / (parts * (parts - 1))) ** 0.25
+
+
+def _around(plane: np.ndarray) -> np.ndarray:
+    return gaussian_filter(plane, AROUND, mode="constant", truncate=REACH)
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Of one component from one frame to the next: relative squared errors by pixels, of which only `counts` count."""
+
+    counts: np.ndarray  # tracked, lit, and leading into the picture
+    moves: np.ndarray  # those whose way is not to stay
+    own: np.ndarray
+    surface: np.ndarray
+    noise: np.ndarray  # of the frame and itself by other samples: what is not 0 of it is noise
+
+    def row(self) -> dict[str, Any]:
+        return {"all": self._shares(self.counts), "moving": self._shares(self.counts & self.moves)}
+
+    def _shares(self, where: np.ndarray) -> dict[str, float | int]:
+        """Of the pixels that are predicted; median error by their own ways."""
+        if not where.any():
+            return {"pixels": 0}
+        shares = {name: float((getattr(self, name)[where] <= WITHIN**2).mean()) for name in ("own", "surface", "noise")}
+        return {"pixels": int(where.sum())} | shares | {"median": float(np.sqrt(max(np.median(self.own[where]), 0.0)))}
+
+
+def predict(parts: list[Passes], component: str) -> Prediction:
+    """From the first of two frames to the second one; the parts, four or more of an even number, are renderings with seeds of their own."""
+    now, following = (np.stack([gray(part[f"Path {component}"][frame]) for part in parts]) for frame in (0, 1))
+    first, mean = parts[0], np.maximum(now.mean(axis=0), 1e-9)
+    forward, surface = first[f"Path {component} Motion"][0, ..., 2:], first["Vector"][0, ..., 2:]
+    own, along = (np.stack([warped(after, vectors) for after in following]) - now for vectors in (forward, surface))
+    tracked = first[f"Path {component} Tracked"][0, ..., 0] > 0.0
+    lit = mean > DARK * gray(first["Combined"][0]).mean()
+    counts = tracked & lit & np.isfinite(own[0])
+    moves = np.maximum(np.hypot(*np.moveaxis(forward, -1, 0)), np.hypot(*np.moveaxis(surface, -1, 0))) > MOVES
+
+    def relative(differences: np.ndarray) -> np.ndarray:
+        return mean_product(np.where(np.isfinite(differences), differences, mean), counts) / mean**2
+
+    again = as_noisy(now[::2] - now[1::2], len(parts))
+    return Prediction(counts, moves, relative(own), relative(along), relative(again))
+
+
+def components(passes: Passes) -> list[str]:
+    return [name.removeprefix("Path ").removesuffix(" Motion") for name in passes if name.startswith("Path ") and name.endswith(" Motion")]
+
+
+def own_ways(passes: Passes) -> np.ndarray:
+    """Vectors of what is mostly seen by reflection or refraction; elsewhere, and where it is not tracked, nowhere."""
+    combined = gray(passes["Combined"])
+    ways = np.full((*combined.shape, 4), NOWHERE)
+    for name in (name for name in SMOOTH if f"Path {name}" in passes):
+        shown = gray(passes[f"Path {name}"]) > MAIN * np.maximum(combined, 1e-9)
+        tracked = passes[f"Path {name} Tracked"][..., 0] > 0.0
+        ways = np.where((shown & tracked)[..., None], passes[f"Path {name} Motion"], ways)
+    return ways
+
+
+def flicker_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, ways: np.ndarray) -> dict[str, float | int]:
+    """By their names in motion.jsonl, of the pixels that have a way alone; without the worst 0.1 %."""
+    smooth = ways[..., 0] < NOWHERE
+    along = temporal_metrics.warped_flicker_map(images, reference, variance, ways)
+    errors = temporal_metrics.error_map(images, reference, variance)
+    parted = along[temporal_metrics.moving(ways) & np.isfinite(along)]
+    found = {"pixels": int(np.isfinite(along).sum()), "relmse_smooth": temporal_metrics.trimmed_mean(errors[smooth])}
+    found["relmse"] = temporal_metrics.trimmed_mean(errors)
+    found["flicker_own"] = temporal_metrics.trimmed_mean(along)
+    return found | ({"flicker_own_moving": temporal_metrics.trimmed_mean(parted)} if parted.size else {})
