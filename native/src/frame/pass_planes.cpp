@@ -14,7 +14,7 @@ std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
     plane.channels = info.channels;
     plane.first_sample_only = info.kind == PassKind::First;
     plane.skips_transparent = info.kind == PassKind::Weighted;
-    plane.in_halves = info.kind == PassKind::Feature;
+    plane.in_halves = is_in_halves(info.kind);
     for (int half = 0; half < (plane.in_halves ? kHalves : 1); ++half) plane.values[half].assign(pixels * info.channels, 0.0f);
     if (plane.skips_transparent) plane.weight.assign(pixels, 0.0f);
   }

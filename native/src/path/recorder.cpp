@@ -5,6 +5,7 @@
 
 #include "frame/gate.h"
 #include "scene/mesh.h"
+#include "settings/pass_table.h"
 #include "shading/material.h"
 
 namespace gradus {
@@ -56,8 +57,9 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
     planes_[plane.pass] = &plane;
     active_ = true;
     lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
-    features_ |= plane.in_halves;
-    others_ |= !plane.in_halves;
+    const bool is_feature = pass_info(plane.pass).kind == PassKind::Feature;
+    features_ |= is_feature;
+    others_ |= !is_feature;
   }
   if (!frame->components[0].rough[0].empty()) {
     components_ = &frame->components;

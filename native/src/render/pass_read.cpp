@@ -85,7 +85,8 @@ void read_light(const Frame& frame, const PassPlane& light, const PassPlane& col
   for_pixels(frame, region, [&](size_t i, size_t out) {
     for (int c = 0; c < 3; ++c) {
       const float divisor = color.values[0][3 * i + c];
-      const float quotient = divisor > 0.0f ? frame.settings.film_exposure * light.values[0][3 * i + c] / divisor : 0.0f;
+      const float radiance = frame.settings.film_exposure * (light.values[0][3 * i + c] + light.values[1][3 * i + c]);
+      const float quotient = divisor > 0.0f ? radiance / divisor : 0.0f;
       pixels[3 * out + c] = std::clamp(quotient, -kMaxFloat, kMaxFloat);
     }
   });

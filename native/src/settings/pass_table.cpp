@@ -65,6 +65,14 @@ constexpr bool is_in_order(const Table& table, uint32_t count) {
 static_assert(is_in_order(kPasses, GRADUS_PASS_COUNT), "one row per GradusPass, in order");
 static_assert(is_in_order(kComponentPasses, GRADUS_COMPONENT_PASS_COUNT), "one row per GradusComponentPass, in order");
 
+uint64_t passes_that(bool (*are_such)(PassKind)) {
+  uint64_t passes = 0;
+  for (const PassInfo& info : kPasses) {
+    if (are_such(info.kind)) passes |= uint64_t{1} << info.pass;
+  }
+  return passes;
+}
+
 bool is_stored(PassKind kind) {
   return kind != PassKind::Image && kind != PassKind::Derived && kind != PassKind::Solved && kind != PassKind::Sequence;
 }
@@ -100,17 +108,15 @@ std::vector<PassInfo> stored_passes(uint64_t passes) {
 uint64_t pass_bytes_per_pixel(uint64_t passes) {
   uint64_t floats = 0;
   for (const PassInfo& info : stored_passes(passes)) {
-    floats += info.channels * (info.kind == PassKind::Feature ? 2 : 1) + (info.kind == PassKind::Weighted ? 1 : 0);
+    floats += info.channels * (is_in_halves(info.kind) ? 2 : 1) + (info.kind == PassKind::Weighted ? 1 : 0);
   }
   return floats * sizeof(float);
 }
 
 uint64_t feature_passes() {
-  uint64_t passes = 0;
-  for (const PassInfo& info : kPasses) {
-    if (info.kind == PassKind::Feature) passes |= uint64_t{1} << info.pass;
-  }
-  return passes;
+  return passes_that([](PassKind kind) { return kind == PassKind::Feature; });
 }
+
+uint64_t light_passes() { return passes_that(is_of_light); }
 
 }  // namespace gradus

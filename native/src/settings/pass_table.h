@@ -15,8 +15,8 @@ enum class PassKind : uint8_t {
   Derived,   // gradients, variance, counts: from the frame's own planes
   Solved,    // error: comes with Combined (render/combine.h)
   Sequence,  // differences to the next frame: come with the delivery of a sequence (render/sequence), 0 elsewhere
-  Radiance,  // sum of radiance; the film's exposure applies
-  Light,     // sum of radiance, divided by its colour pass when read (contract 6.5)
+  Radiance,  // sum of radiance, by halves; the film's exposure applies
+  Light,     // the same, divided by its colour pass when read (contract 6.5)
   Color,     // sum of albedos
   Average,   // sum of a quantity over all samples, misses count as 0
   Weighted,  // sum over those samples that have it, divided by their number
@@ -31,6 +31,11 @@ struct PassInfo {
   PassKind kind;
   uint32_t color;  // Light: the colour pass it is divided by; GRADUS_PASS_COUNT otherwise
 };
+
+// Parts of the picture's light, which add up to it (contract 6.5).
+constexpr bool is_of_light(PassKind kind) { return kind == PassKind::Radiance || kind == PassKind::Light; }
+// By halves, whose difference tells the noise.
+constexpr bool is_in_halves(PassKind kind) { return kind == PassKind::Feature || is_of_light(kind); }
 
 // Throws invalid_argument for a number that is no pass.
 const PassInfo& pass_info(uint32_t pass);
@@ -72,5 +77,7 @@ std::vector<PassInfo> stored_passes(uint64_t passes);
 uint64_t pass_bytes_per_pixel(uint64_t passes);
 // What reconstructions and denoisers are guided by.
 uint64_t feature_passes();
+// Parts of the picture's light.
+uint64_t light_passes();
 
 }  // namespace gradus

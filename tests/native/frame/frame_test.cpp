@@ -30,7 +30,7 @@ TEST(B6_Gate, NonFiniteSamplesStayOutAndAreCounted) {
 // Samples of 3e38 are finite, sums of two were not, nor were the mean of both halves and the variance.
 TEST(B6_Gate, SumsThatWouldOverflowStayOutAndAreCounted) {
   Frame frame = small_frame();
-  PassPlane plane = make_pass_planes(uint64_t{1} << GRADUS_PASS_EMISSION, 12)[0];
+  PassPlane plane = make_pass_planes(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, 12)[0];
   for (int half = 0; half < kHalves; ++half) {
     for (const float value : {3e38f, 6e36f, 6e36f}) {
       const float feature[3] = {value, value, value};

@@ -228,8 +228,9 @@ std::vector<std::string> names_of(const Imf::MultiPartInputFile& file) {
 TEST_F(F6_Store, PartsAreThereByPurpose) {
   save_frame(*rendered(all_passes(20, 10, 2)), path());
   EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())),
-            (std::vector<std::string>{"samples", "counts", "gradients", "pairs", "Denoising_Normal", "Denoising_Albedo", "Denoising_Depth",
-                                      "passes"}));
+            (std::vector<std::string>{"samples", "counts", "gradients", "pairs", "Emission", "Environment", "Diffuse_Direct",
+                                      "Diffuse_Indirect", "Glossy_Direct", "Glossy_Indirect", "Transmission_Direct",
+                                      "Transmission_Indirect", "Denoising_Normal", "Denoising_Albedo", "Denoising_Depth", "passes"}));
   GradusSettings settings = small_settings(20, 10, 2);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;  // reads no features
