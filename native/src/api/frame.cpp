@@ -1,6 +1,8 @@
 // gradus_frame_*
 #include "frame/frame.h"
 
+#include <algorithm>
+
 #include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
@@ -44,12 +46,15 @@ uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
   }
 }
 
+uint32_t threads_for(const FrameObject& object, const Frame& frame) {
+  return frame.settings.threads > 0 ? frame.settings.threads : object.device->threads();
+}
+
 // RGBA, and the error unless it is nullptr, by as many threads as a render with the frame's settings has.
-void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba,
-                      float* error) {
+MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* error) {
   const auto never = [] { return false; };
   reconstruction = resolve(reconstruction, frame);
-  const uint32_t threads = frame.settings.threads > 0 ? frame.settings.threads : object->device->threads();
+  const uint32_t threads = threads_for(*object, frame);
   std::string why_not;
   if (denoiser == GRADUS_DENOISER_AUTO && !denoiser_pays(mean_samples(frame))) denoiser = GRADUS_DENOISER_NONE;
   const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
@@ -71,14 +76,59 @@ void reconstruct_into(FrameObject* object, const Frame& frame, uint32_t reconstr
       for (float& value : estimate) value *= denoised_error(reconstruction);
     }
   }
-  std::copy(image.begin(), image.end(), rgba);
   std::copy(estimate.begin(), estimate.end(), error);
+  return {std::move(image), reconstruction == GRADUS_RECONSTRUCTION_NONE && !library, {}};
+}
+
+// Light passes that are read from now on are those of this picture.
+std::shared_ptr<MadePicture> keep_made(FrameObject* object, const std::shared_ptr<const Frame>& frame, MadePicture made) {
+  const auto kept = std::make_shared<MadePicture>(std::move(made));
+  const std::lock_guard lock(object->mutex);
+  if (object->frame == frame && has_light_passes(*frame)) object->made = kept;
+  return kept;
+}
+
+void reconstruct_into(FrameObject* object, const std::shared_ptr<const Frame>& frame, uint32_t reconstruction, float alpha,
+                      uint32_t denoiser, float* rgba, float* error) {
+  MadePicture made = make_picture(object, *frame, reconstruction, alpha, denoiser, error);
+  std::copy(made.rgba.begin(), made.rgba.end(), rgba);
+  keep_made(object, frame, std::move(made));
+}
+
+std::vector<float> read_error(FrameObject* object, const Frame& frame) {
+  const GradusSettings& s = frame.settings;
+  std::vector<float> error(size_t(delivered_region(frame).area()));
+  make_picture(object, frame, s.reconstruction, s.reconstruction_alpha, GRADUS_DENOISER_NONE, error.data());
+  return error;
+}
+
+// Of the picture that was made last; of that of the frame's own settings where none was.
+void read_light(FrameObject* object, const std::shared_ptr<const Frame>& frame, uint32_t pass, float* pixels) {
+  const auto made_of_frame = [&] {
+    const std::lock_guard lock(object->mutex);
+    return object->frame == frame ? object->made : nullptr;
+  };
+  const GradusSettings& s = frame->settings;
+  std::shared_ptr<MadePicture> made = made_of_frame();
+  if (!made) {
+    made = keep_made(object, frame, make_picture(object, *frame, s.reconstruction, s.reconstruction_alpha, s.denoiser, nullptr));
+  }
+  const Region region = delivered_region(*frame);
+  if (made->is_noisy) return read_frame_pass(*frame, pass, region, pixels);
+  const std::lock_guard lock(object->mutex);
+  if (!made->light) {
+    tbb::task_arena(arena_size(threads_for(*object, *frame))).execute([&] {
+      const FlushDenormals flush;
+      made->light = LightPasses(*frame, region, made->rgba, [] { return false; });
+    });
+  }
+  made->light->read(pass, pixels);
 }
 
 // RGB of a component's picture.
 std::vector<float> reconstruct_color(FrameObject* object, const Frame& frame, int component) {
   const uint32_t reconstruction = resolve(frame.settings.reconstruction, frame);
-  const uint32_t threads = frame.settings.threads > 0 ? frame.settings.threads : object->device->threads();
+  const uint32_t threads = threads_for(*object, frame);
   std::vector<float> color;
   tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
@@ -120,6 +170,7 @@ GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other) {
     auto merged = std::make_shared<Frame>(*to->frame);
     merge_frames(merged.get(), *from);
     to->frame = std::move(merged);
+    to->made = nullptr;
   });
 }
 
@@ -140,7 +191,7 @@ GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction,
     api::check_array(rgba, count, "rgba");
     if (error != nullptr) api::check_array(error, count / 4, "error");
     check_alpha(alpha);
-    api::reconstruct_into(object.get(), *content, reconstruction, alpha, denoiser, rgba, error);
+    api::reconstruct_into(object.get(), content, reconstruction, alpha, denoiser, rgba, error);
   });
 }
 
@@ -153,11 +204,11 @@ GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixe
     api::check_array(pixels, count, "pixels");
     const GradusSettings& s = content->settings;
     if (pass == GRADUS_PASS_COMBINED) {
-      return api::reconstruct_into(object.get(), *content, s.reconstruction, s.reconstruction_alpha, s.denoiser, pixels, nullptr);
+      return api::reconstruct_into(object.get(), content, s.reconstruction, s.reconstruction_alpha, s.denoiser, pixels, nullptr);
     }
-    if (pass != GRADUS_PASS_ERROR) return read_frame_pass(*content, pass, region, pixels);
-    std::vector<float> rgba(4 * count);
-    api::reconstruct_into(object.get(), *content, s.reconstruction, s.reconstruction_alpha, GRADUS_DENOISER_NONE, rgba.data(), pixels);
+    if (pass == GRADUS_PASS_ERROR) return static_cast<void>(std::ranges::copy(api::read_error(object.get(), *content), pixels));
+    if (wants(light_passes(), pass) && has_pass(*content, pass)) return api::read_light(object.get(), content, pass, pixels);
+    read_frame_pass(*content, pass, region, pixels);
   });
 }
 

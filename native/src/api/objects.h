@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "api/registry.h"
 #include "base/device.h"
 #include "frame/frame.h"
+#include "render/light_passes.h"
 #include "render/render.h"
 #include "render/sequence/sequence.h"
 #include "scene/scene.h"
@@ -54,12 +56,20 @@ struct SequenceObject {
   std::weak_ptr<RenderObject> running;  // what was started last
 };
 
+// What was last made of a frame, and its light passes once they are read: none of the noisy image, whose own they are.
+struct MadePicture {
+  std::vector<float> rgba;
+  bool is_noisy = false;
+  std::optional<LightPasses> light;
+};
+
 // Frames of renders are shared and immutable; merging replaces the frame by a new one.
 struct FrameObject {
   explicit FrameObject(std::shared_ptr<Device> shared_device) : device(std::move(shared_device)) {}
   std::mutex mutex;
   std::shared_ptr<Device> device;
   std::shared_ptr<const Frame> frame;
+  std::shared_ptr<MadePicture> made;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no light passes
   std::shared_ptr<const Frame> get() {
     const std::lock_guard lock(mutex);
     return frame;

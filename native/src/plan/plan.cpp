@@ -1,6 +1,7 @@
 #include "plan/plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 
@@ -296,6 +297,15 @@ uint64_t denoiser_bytes(const Plan& plan) {
 
 bool reconstructs(const Plan& plan) { return plan.solves || plan.denoises; }
 
+uint64_t light_pass_count(const Plan& plan) { return reconstructs(plan) ? uint64_t(std::popcount(plan.passes & light_passes())) : 0; }
+
+// What light passes take at the end (render/light_passes.h): of each, and of what is in none of them, the picture, its error and room, the
+// colour; until they are there one more regression.
+uint64_t light_floats(const Plan& plan) {
+  const uint64_t count = light_pass_count(plan), features = 14, of_regression = 63;
+  return count > 0 ? 10 * (count + 1) + features + of_regression : 0;
+}
+
 // The frame of the picture that a watcher sees first (render/quarter_picture.h), and its reconstruction.
 uint64_t quarter_bytes(const Plan& plan) {
   const auto side = [](int32_t size) { return uint64_t(size) / 4 + 3; };
@@ -311,6 +321,8 @@ uint64_t planned_bytes(const Plan& plan) {
   uint64_t floats = reconstruction_floats(plan);
   if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is
   if (wants(plan.passes, GRADUS_PASS_ERROR)) floats = std::max(floats, error_floats(plan)) + 1;
+  floats = std::max(floats, light_floats(plan));
+  bytes += 3 * light_pass_count(plan) * sizeof(float);  // as they are delivered
   // One component's picture, those of all where they are wanted, and those that are shown meanwhile.
   const uint64_t channels = uint64_t(plan.channels), components = uint64_t(plan.components.count());
   if (components > 1) bytes += (channels + (channels + 3) * components) * sizeof(float);

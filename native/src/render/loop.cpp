@@ -85,6 +85,8 @@ void RenderLoop::render() {
   reconstruct_frame();
   if (denoises && !is_stopped()) denoise_frame();
   stop_if_asked();
+  if (has_light_passes(*frame_) && (denoises || frame_->settings.reconstruction != GRADUS_RECONSTRUCTION_NONE)) split_light();
+  stop_if_asked();
 }
 
 GradientMap RenderLoop::choose_gradients() {
@@ -276,6 +278,15 @@ void RenderLoop::denoise_frame() {
   if (!rgba.empty()) picture_.show_denoised(std::move(rgba), denoised_error(frame_->settings.reconstruction));
 }
 
+void RenderLoop::split_light() {
+  const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
+  const CancelTest cancel = [this] { return is_stopped(); };
+  LightPasses light;
+  arena_.execute([&] { light = LightPasses(*frame_, plan_.delivered, picture_.combined(), cancel); });
+  const std::lock_guard lock(mutex_);
+  light_ = std::move(light);
+}
+
 void RenderLoop::set_phase(GradusPhase phase) {
   const std::lock_guard lock(mutex_);
   phase_ = phase;
@@ -289,7 +300,9 @@ void RenderLoop::ending(GradusError) {
   picture_.end_tiles();
 }
 
-uint64_t RenderLoop::memory_bytes() const { return (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes(); }
+uint64_t RenderLoop::memory_bytes() const {
+  return (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes() + light_.memory_bytes();
+}
 
 void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   if (pass == GRADUS_PASS_COMBINED) live_view_.watch();
@@ -303,6 +316,7 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   std::shared_ptr<const Frame> frame;
   {
     const std::lock_guard lock(mutex_);
+    if (light_.read(pass, pixels)) return;
     if (!is_sampling()) frame = frame_;
   }
   if (frame && pass == GRADUS_PASS_ERROR && wants(plan_.passes, pass)) return read_error_of_noisy(*frame, plan_.delivered, pixels);

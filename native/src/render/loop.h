@@ -13,6 +13,7 @@
 #include "frame/frame.h"
 #include "plan/plan.h"
 #include "render/adaptive_sampling.h"
+#include "render/light_passes.h"
 #include "render/live_view.h"
 #include "render/loop_input.h"
 #include "render/picture.h"
@@ -51,6 +52,8 @@ class RenderLoop final : public RenderTask {
   // Of components, from what the scene knows of the frames around.
   void find_motion();
   void denoise_frame();
+  // Light passes follow what the picture has become.
+  void split_light();
   // False: nothing more to do.
   bool next_batch(uint32_t begin, uint32_t* end) const;
   uint32_t affordable_samples(uint32_t begin) const;
@@ -86,6 +89,7 @@ class RenderLoop final : public RenderTask {
   Stopwatch sampling_;        // without what a watcher is shown meanwhile
   uint32_t first_begin_ = 0;  // samples that were resumed
   RenderStats stats_;
+  LightPasses light_;  // of the picture
 };
 
 }  // namespace gradus

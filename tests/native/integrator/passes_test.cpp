@@ -8,6 +8,7 @@
 #include "render/render.h"
 #include "settings/pass_table.h"
 #include "shading/program_builder.h"
+#include "support/light_sum.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -43,22 +44,7 @@ Frame render_passes(Scenario scenario, bool gradient) {
 class Passes : public testing::TestWithParam<Scenario> {};
 
 void expect_light_to_add_up(const Frame& frame) {
-  const std::vector<float> noisy = read(frame, GRADUS_PASS_NOISY_IMAGE);
-  std::vector<float> sum = read(frame, GRADUS_PASS_EMISSION);
-  const std::vector<float> environment = read(frame, GRADUS_PASS_ENVIRONMENT);
-  for (size_t i = 0; i < sum.size(); ++i) sum[i] += environment[i];
-  for (uint32_t direct : {GRADUS_PASS_DIFFUSE_DIRECT, GRADUS_PASS_GLOSSY_DIRECT, GRADUS_PASS_TRANSMISSION_DIRECT}) {
-    const std::vector<float> d = read(frame, direct);
-    const std::vector<float> i = read(frame, direct + 1);
-    const std::vector<float> c = read(frame, direct + 2);
-    for (size_t k = 0; k < sum.size(); ++k) sum[k] += c[k] * (d[k] + i[k]);
-  }
-  for (size_t pixel = 0; pixel < sum.size() / 3; ++pixel) {
-    for (size_t c = 0; c < 3; ++c) {
-      const float expected = noisy[4 * pixel + c];
-      EXPECT_NEAR(sum[3 * pixel + c], expected, 1e-4f * (1.0f + std::fabs(expected))) << "pixel " << pixel;
-    }
-  }
+  test::expect_light_to_add_up([&](uint32_t pass) { return read(frame, pass); }, read(frame, GRADUS_PASS_NOISY_IMAGE));
   EXPECT_EQ(frame.counters.nonfinite_feature, 0u);
 }
 

@@ -66,6 +66,7 @@ void FrameDelivery::render() {
   if (denoises) denoise();
   if (!denoises) frame_->settings.denoiser = GRADUS_DENOISER_NONE;
   stop_if_asked();
+  if (has_light_passes(*frame_)) arena.execute([&] { split_light(); });
   sequence_->forget_before(sequence_->needs(number_).first);
   const std::lock_guard lock(mutex_);
   record_.stats.total_seconds += seconds();
@@ -152,6 +153,13 @@ void FrameDelivery::denoise() {
   for (float& value : error_) value *= denoised_error(frame_->settings.reconstruction);
 }
 
+void FrameDelivery::split_light() {
+  const Bill bill(&record_.stats.seconds.reconstruct, &record_.stats.cpu_seconds.reconstruct);
+  LightPasses light(*frame_, record_.plan.delivered, combined_, [this] { return is_stopped(); });
+  const std::lock_guard lock(mutex_);
+  light_ = std::move(light);
+}
+
 void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusSettings& asked, const CancelTest& cancel) {
   const Region region = delivered_region(frame);
   const float exposure = asked.film_exposure;
@@ -207,6 +215,7 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
     std::copy(made->begin(), made->end(), pixels);
     return;
   }
+  if (light_.read(pass, pixels)) return;
   const Region& region = record_.plan.delivered;
   if (pass == GRADUS_PASS_ERROR) {  // it was cancelled: nothing is known of the picture
     std::fill_n(pixels, size_t(region.area()), 0.0f);

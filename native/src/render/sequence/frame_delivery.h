@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/light_passes.h"
 #include "render/sequence/sequence.h"
 
 namespace gradus {
@@ -27,6 +28,8 @@ class FrameDelivery final : public RenderTask {
   void deliver_as(const GradusSettings& asked, bool is_planned, Frame* frame) const;
   void reconstruct();
   void denoise();
+  // Light passes follow what the picture has become.
+  void split_light();
   // Passes Gradient T and Gradient T Link, of the frame's own half.
   void read_differences_over_time(const Frame& base, const GradusSettings& asked, const CancelTest& cancel);
 
@@ -37,7 +40,8 @@ class FrameDelivery final : public RenderTask {
   std::shared_ptr<Frame> frame_;
   std::vector<float> combined_, error_;         // of the region: RGBA, and pass Error where it is asked for
   std::vector<std::vector<float>> components_;  // RGB of each
-  std::vector<float> difference_, link_;        // to the next frame; three values per pixel of the region
+  LightPasses light_;
+  std::vector<float> difference_, link_;  // to the next frame; three values per pixel of the region
 };
 
 }  // namespace gradus

@@ -1,0 +1,114 @@
+#include "reconstruct/partition.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct/box_mean.h"
+#include "reconstruct/field_values.h"
+#include "reconstruct/solver_planes.h"
+
+namespace gradus {
+namespace {
+
+bool is_anywhere(const Field& field, bool (*is_such)(float)) {
+  for (int y = 0; y < field.height(); ++y) {
+    for (int c = 0; c < field.channels(); ++c) {
+      const float* row = field.row(y, c);
+      if (std::any_of(row, row + field.width(), is_such)) return true;
+    }
+  }
+  return false;
+}
+
+bool is_not_zero(float value) { return value != 0.0f; }
+bool is_negative(float value) { return value < 0.0f; }
+
+void multiply(float factor, Field* field) {
+  for_values(field, [factor](float& value, int, int, int) { value *= factor; });
+}
+
+// What was sampled there errs by no more, and where nothing of a part was met there is nothing to be wrong.
+void limit_by_noise(const Field& half_difference, Field* error) {
+  const int w = error->width(), h = error->height();
+  const Field noise = box_mean(make_field(w, h, [&](int x, int y) { return mean_of_squares(half_difference, x, y); }), 1);
+  for_values(error, [&](float& value, int x, int y, int) { value = std::min(value, noise.row(y)[x]); });
+}
+
+// A value of one channel and pixel in one part.
+struct Share {
+  float* value;
+  float weight;
+  float least;
+};
+
+// All of `lack` by weight, what may not go below its least value no further than that. Returns what is left of it.
+float spread(float lack, std::vector<Share>& shares, float (*weight_of)(const Share&)) {
+  for (size_t round = 0; round < shares.size() && lack != 0.0f; ++round) {
+    const auto is_open = [lack](const Share& share) { return lack > 0.0f || *share.value > share.least; };
+    float total = 0.0f;
+    for (const Share& share : shares) total += is_open(share) ? weight_of(share) : 0.0f;
+    if (!(total > 0.0f)) return lack;
+    float left = 0.0f;
+    for (Share& share : shares) {
+      if (!is_open(share)) continue;
+      const float wanted = *share.value + lack * (weight_of(share) / total);
+      *share.value = lack > 0.0f ? wanted : std::max(wanted, share.least);
+      left += wanted - *share.value;
+    }
+    lack = left;
+  }
+  return lack;
+}
+
+void settle(float whole, std::vector<Share>& shares) {
+  float lack = whole;
+  for (const Share& share : shares) lack -= *share.value;
+  lack = spread(lack, shares, [](const Share& share) { return share.weight; });
+  lack = spread(lack, shares, [](const Share& share) { return std::fabs(*share.value); });
+  if (lack != 0.0f && !shares.empty()) *shares.back().value += lack;
+}
+
+}  // namespace
+
+PartPicture regress_part(const Features& guides, HalvedImage sampled, const CancelTest& cancel) {
+  PartPicture part;
+  part.may_be_negative = is_anywhere(sampled.mean, is_negative);
+  if (!is_anywhere(sampled.half_difference, is_not_zero)) {
+    part.error = Field(sampled.mean.width(), sampled.mean.height(), 1);
+    part.image = std::move(sampled.mean);
+    return part;
+  }
+  const float scale = robust_scale(sampled.mean);
+  normalise(scale, &sampled);
+  const FeatureRegression regression(guides, sampled, cancel);
+  part.image = regression.image();
+  part.error = regression.error();
+  limit_by_noise(sampled.half_difference, &part.error);
+  multiply(scale, &part.image);
+  multiply(scale * scale, &part.error);
+  if (!part.may_be_negative) for_values(&part.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
+  return part;
+}
+
+void add_up(const Field& whole, std::vector<PartPicture>* parts) {
+  for_rows(whole.height(), [&](int y) {
+    std::vector<Share> shares;
+    for (int c = 0; c < whole.channels(); ++c) {
+      for (int x = 0; x < whole.width(); ++x) {
+        shares.clear();
+        for (PartPicture& part : *parts) {
+          float* const value = part.image.row(y, c) + x;
+          const float room = part.room.width() > 0 ? part.room.row(y, c)[x] : 1.0f;
+          if (room == 0.0f) {
+            *value = 0.0f;
+          } else {
+            shares.push_back({value, room * room * part.error.row(y)[x], part.may_be_negative ? -INFINITY : 0.0f});
+          }
+        }
+        settle(whole.row(y, c)[x], shares);
+      }
+    }
+  });
+}
+
+}  // namespace gradus

@@ -1,0 +1,168 @@
+// Light passes beside a reconstructed picture: they are as clean, and add up to it (contract 6.5).
+#include "render/light_passes.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "render/render.h"
+#include "settings/pass_table.h"
+#include "support/light_sum.h"
+#include "support/path_scene.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+using test::Scenario;
+
+constexpr int kSide = 40;
+
+GradusSettings settings_for(uint32_t reconstruction, uint64_t passes = light_passes()) {
+  GradusSettings settings = test::test_settings(kSide, kSide);
+  settings.independent_sampler = 0;
+  settings.samples = 8;
+  settings.threads = 2;
+  settings.passes = needed_passes(passes);
+  settings.reconstruction = reconstruction;
+  if (reconstruction != GRADUS_RECONSTRUCTION_NONE) settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  return settings;
+}
+
+std::unique_ptr<Render> rendered(PathScene* scene, const GradusSettings& settings) {
+  auto render = std::make_unique<Render>(test::test_device(), scene->context(settings).snapshot, settings);
+  render->wait(-1.0);
+  std::string text;
+  EXPECT_EQ(render->outcome(&text), GRADUS_OK) << text;
+  return render;
+}
+
+std::unique_ptr<Render> rendered(Scenario scenario, const GradusSettings& settings) {
+  PathScene scene;
+  test::build(scenario, &scene);
+  return rendered(&scene, settings);
+}
+
+std::vector<float> read(const Render& render, uint32_t pass) {
+  std::vector<float> pixels(pass_info(pass).channels * kSide * kSide);
+  render.read_pass(pass, pixels.data(), pixels.size());
+  return pixels;
+}
+
+void expect_to_add_up(const Render& render) {
+  test::expect_light_to_add_up([&](uint32_t pass) { return read(render, pass); }, read(render, GRADUS_PASS_COMBINED));
+}
+
+class LightPassesBy : public testing::TestWithParam<uint32_t> {};
+
+TEST_P(LightPassesBy, AddUpToCombined) {
+  for (const Scenario scenario : {Scenario::Glass, Scenario::GlossyFloor, Scenario::LampsSeen}) {
+    GradusSettings settings = settings_for(GetParam());
+    settings.film_exposure = 1.7f;
+    expect_to_add_up(*rendered(scenario, settings));
+  }
+}
+
+TEST_P(LightPassesBy, AddUpBesideComponents) {
+  GradusSettings settings = settings_for(GetParam());
+  settings.use_decomposition = 1;
+  settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
+  expect_to_add_up(*rendered(Scenario::Glass, settings));
+}
+
+TEST_P(LightPassesBy, AddUpOnATransparentFilm) {
+  GradusSettings settings = settings_for(GetParam());
+  settings.film_transparent = 1;
+  expect_to_add_up(*rendered(Scenario::World, settings));
+}
+
+// What was smoothed into a pixel without a colour was divided by 0 and lost.
+TEST_P(LightPassesBy, LightBesideBlackIsNotLost) {
+  PathScene scene;
+  test::add_box(&scene, test::matte(Rgb(0.0f)));
+  test::add_ceiling_light(&scene, 8.0f, 0.6f);
+  scene.ball(Vec3(0.0f, -0.3f, 0.0f), 0.4f, scene.material(test::matte(Rgb(0.8f, 0.0f, 0.4f))), 10, true);
+  expect_to_add_up(*rendered(&scene, settings_for(GetParam())));
+}
+
+INSTANTIATE_TEST_SUITE_P(Reconstructions, LightPassesBy,
+                         testing::Values(uint32_t{GRADUS_RECONSTRUCTION_NONE}, uint32_t{GRADUS_RECONSTRUCTION_L2},
+                                         uint32_t{GRADUS_RECONSTRUCTION_WEIGHTED}, uint32_t{GRADUS_RECONSTRUCTION_L1},
+                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+
+std::vector<float> light_of(const Render& render, uint32_t pass) {
+  std::vector<float> light = read(render, pass);
+  const std::vector<float> color = read(render, pass_info(pass).color);
+  for (size_t i = 0; i < light.size(); ++i) light[i] *= color[i];
+  return light;
+}
+
+// Not of squares, which the few pixels at the edges of a lamp decide.
+double distance(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += std::fabs(double(a[i]) - b[i]);
+  return sum;
+}
+
+// By how much two renders with other random numbers differ.
+double noise_of(uint32_t pass, uint32_t reconstruction) {
+  GradusSettings settings = settings_for(reconstruction);
+  const auto a = light_of(*rendered(Scenario::GlossyFloor, settings), pass);
+  settings.seed = 9;
+  const auto b = light_of(*rendered(Scenario::GlossyFloor, settings), pass);
+  return distance(a, b);
+}
+
+TEST(LightPasses, AreCleanerThanSampled) {
+  for (const uint32_t pass : {GRADUS_PASS_DIFFUSE_DIRECT, GRADUS_PASS_DIFFUSE_INDIRECT, GRADUS_PASS_GLOSSY_INDIRECT}) {
+    const double noisy = noise_of(pass, GRADUS_RECONSTRUCTION_NONE);
+    ASSERT_GT(noisy, 0.0);
+    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_REGULARIZED), 0.75 * noisy) << pass_info(pass).name;
+    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_WEIGHTED), 0.85 * noisy) << pass_info(pass).name;
+  }
+}
+
+TEST(LightPasses, OfTheNoisyImageAreThoseSampled) {
+  const auto render = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_NONE));
+  const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE), combined = read(*render, GRADUS_PASS_COMBINED);
+  EXPECT_EQ(noisy, combined);
+  expect_to_add_up(*render);
+}
+
+// A pass is a part of the picture, whoever else is there: what nobody asked for is one part more.
+TEST(LightPasses, OneAloneIsCleanToo) {
+  const auto direct = uint64_t{1} << GRADUS_PASS_DIFFUSE_DIRECT;
+  const auto alone = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, direct));
+  const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
+  const auto noisy = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_NONE));
+  const std::vector<float> light = light_of(*all, GRADUS_PASS_DIFFUSE_DIRECT);
+  EXPECT_LT(distance(light_of(*alone, GRADUS_PASS_DIFFUSE_DIRECT), light),
+            0.3 * distance(light_of(*noisy, GRADUS_PASS_DIFFUSE_DIRECT), light));
+  EXPECT_THROW(read(*alone, GRADUS_PASS_DIFFUSE_INDIRECT), Error);
+}
+
+TEST(LightPasses, ThatNobodyAskedForTakeNoRoom) {
+  const auto none = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, 0));
+  EXPECT_FALSE(has_light_passes(*none->frame()));
+  const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
+  const auto kept = [](const Render& render) { return render.progress().memory_bytes - render.frame()->memory_bytes(); };
+  EXPECT_EQ(kept(*all) - kept(*none), 8 * 3 * sizeof(float) * kSide * kSide);
+}
+
+// With one sample nothing is known of the noise.
+TEST(LightPasses, OfOneSampleAddUp) {
+  GradusSettings settings = settings_for(GRADUS_RECONSTRUCTION_REGULARIZED);
+  settings.samples = 1;
+  expect_to_add_up(*rendered(Scenario::Glass, settings));
+}
+
+TEST(LightPasses, OfACancelledRenderAreThoseSampled) {
+  const CancelTest at_once = [] { return true; };
+  const auto render = rendered(Scenario::Glass, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
+  const std::vector<float> rgba = read(*render, GRADUS_PASS_COMBINED);
+  EXPECT_THROW(LightPasses(*render->frame(), {0, 0, kSide, kSide}, rgba, at_once), Error);
+}
+
+}  // namespace
+}  // namespace gradus
