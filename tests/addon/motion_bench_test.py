@@ -45,40 +45,51 @@ def parts_of(now: np.ndarray, following: np.ndarray, own: np.ndarray, deviation:
     motion[0, ..., 2:] = own
     passes = {"Vector": np.zeros((2, HEIGHT, WIDTH, 4)), "Path Reflection Motion": motion}
     passes["Path Reflection Tracked"] = np.ones((2, HEIGHT, WIDTH, 1))
+    passes["Path Reflection Reflectance"] = 0.5 * both
     noise = [deviation * random.normal(size=(2, HEIGHT, WIDTH, 1)) for _ in range(count)]
     return [passes | {"Path Reflection": both + n, "Combined": both + n} for n in noise]
 
 
 def test_the_right_vectors_predict_the_next_frame_and_the_surface_does_not() -> None:
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT)), "Reflection").row()
+    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT)), "Reflection")[0].row()
     assert found["all"]["own"] > 0.99
     assert found["all"]["surface"] < 0.2
     assert found["moving"]["pixels"] == found["all"]["pixels"] > 0.8 * HEIGHT * WIDTH, "what leaves the picture does not count"
 
 
 def test_vectors_of_the_wrong_sign_predict_nothing() -> None:
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), -forward(*SHIFT)), "Reflection").row()
+    found = metrics.predict(parts_of(waves(), waves(*SHIFT), -forward(*SHIFT)), "Reflection")[0].row()
     assert found["all"]["own"] < 0.2
 
 
 def test_noise_of_independent_parts_is_no_error_of_prediction() -> None:
     """Each part is off by 4 %, their mean by 2 %."""
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.04), "Reflection").row()
+    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.04), "Reflection")[0].row()
     assert found["all"]["own"] > 0.9
     assert found["all"]["noise"] > 0.9
-    loud = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.4), "Reflection").row()
+    loud = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.4), "Reflection")[0].row()
     assert loud["all"]["noise"] < 0.8, "too much noise must be seen in what is told of it"
 
 
 def test_light_that_changes_is_an_error_of_prediction() -> None:
-    found = metrics.predict(parts_of(waves(), 1.05 * waves(*SHIFT), forward(*SHIFT), deviation=0.02), "Reflection").row()
+    found = metrics.predict(parts_of(waves(), 1.05 * waves(*SHIFT), forward(*SHIFT), deviation=0.02), "Reflection")[0].row()
     assert found["all"]["own"] < 0.1
+
+
+def test_light_that_changes_is_none_of_what_is_shown() -> None:
+    """Reflectance goes along while the light changes."""
+    parts = parts_of(waves(), waves(*SHIFT), forward(*SHIFT))
+    for part in parts:
+        part["Path Reflection"] = part["Path Reflection"] * np.array((1.0, 1.2))[:, None, None, None]
+    light, shown = metrics.predict(parts, "Reflection")
+    assert light.row()["all"]["own"] < 0.1
+    assert shown.row()["all"]["own"] > 0.99
 
 
 def test_pixels_without_a_track_do_not_count() -> None:
     parts = parts_of(waves(), waves(*SHIFT), forward(*SHIFT))
     parts[0]["Path Reflection Tracked"][0, :, : WIDTH // 2] = -4.0
-    assert metrics.predict(parts, "Reflection").counts[:, : WIDTH // 2].sum() == 0
+    assert metrics.predict(parts, "Reflection")[0].counts[:, : WIDTH // 2].sum() == 0
 
 
 def test_own_ways_are_those_of_what_a_pixel_mostly_shows() -> None:
@@ -194,5 +205,5 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     reflected = next(row for row in rows if (row["part"], row["component"]) == ("truth", "Reflection"))
     assert reflected["check"]["error"]["quantile_95"] < 0.5
     assert (tmp_path / pictures.file_name(animation.name)).exists()
-    assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 6
+    assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 7
     assert variants.of_row(rows[0]).size == (64, 36)

@@ -107,10 +107,11 @@ class MotionBench:
         parts = [self.renderer.passes(job.mode, job.samples // LIGHT_PARTS, 1000 + part, frames) for part in range(LIGHT_PARTS)]
         found = {name: motion_metrics.predict(parts, name) for name in motion_metrics.components(parts[0])}
         if self.animation.scene.own:
-            motion_pictures.store(self.animation.name, self.variant, parts[0], found)
-        for name, prediction in found.items():
-            if prediction.counts.any():
-                yield {"component": name, **prediction.row()}
+            motion_pictures.store(self.animation.name, self.variant, parts[0], {name: light for name, (light, _) in found.items()})
+        for name, (light, shown) in found.items():
+            if light.counts.any():
+                again = {f"reflectance_{name}": shares for name, shares in shown.row().items()}
+                yield {"component": name, **light.row(), **again}
 
     def _flicker(self, job: Job) -> Iterator[dict]:
         converged, ways = reference(self.renderer, "path", self.samples), self._own_ways()

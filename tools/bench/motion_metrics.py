@@ -16,10 +16,11 @@ from scipy.ndimage import gaussian_filter, map_coordinates
 Passes = dict[str, np.ndarray]
 
 WITHIN = 0.02  # of the light: what is predicted
-DARK = 0.05  # of the picture's mean: a component with less light says nothing of motion
+DARK = 0.05  # of the picture's mean: a component with less light says nothing of motion; so does less reflectance
 AROUND, REACH = 2.0, 2.5  # pixels: deviation of the mean around a pixel, and how many deviations it reaches
 MOVES = 0.5  # pixels from which a pixel counts as moving
 MAIN = 0.5  # share of the light from which a pixel shows a component
+REFLECTANCE = " Reflectance"
 SMOOTH = ("Reflection", "Transmission")
 NOWHERE = 1e6  # pixels: a way that leaves every picture
 
@@ -76,14 +77,22 @@ class Prediction:
         return {"pixels": int(where.sum())} | shares | {"median": float(np.sqrt(max(np.median(self.own[where]), 0.0)))}
 
 
-def predict(parts: list[Passes], component: str) -> Prediction:
-    """From the first of two frames to the second one; the parts, four or more of an even number, are renderings with seeds of their own."""
-    now, following = (np.stack([gray(part[f"Path {component}"][frame]) for part in parts]) for frame in (0, 1))
+def predict(parts: list[Passes], component: str) -> tuple[Prediction, Prediction]:
+    """From the first of two frames to the second one, of light and, where there is light, of reflectance. parts: renderings with seeds of
+    their own, four or more of an even number."""
+    now = np.stack([gray(part[f"Path {component}"][0]) for part in parts])
+    lit = now.mean(axis=0) > DARK * gray(parts[0]["Combined"][0]).mean()
+    light = _predict(parts, component, "", lit)
+    reflecting = gray(parts[0][f"Path {component}{REFLECTANCE}"][0]) > DARK
+    return light, _predict(parts, component, REFLECTANCE, lit & reflecting)
+
+
+def _predict(parts: list[Passes], component: str, plane: str, lit: np.ndarray) -> Prediction:
+    now, following = (np.stack([gray(part[f"Path {component}{plane}"][frame]) for part in parts]) for frame in (0, 1))
     first, mean = parts[0], np.maximum(now.mean(axis=0), 1e-9)
     forward, surface = first[f"Path {component} Motion"][0, ..., 2:], first["Vector"][0, ..., 2:]
     own, along = (np.stack([warped(after, vectors) for after in following]) - now for vectors in (forward, surface))
     tracked = first[f"Path {component} Tracked"][0, ..., 0] > 0.0
-    lit = mean > DARK * gray(first["Combined"][0]).mean()
     counts = tracked & lit & np.isfinite(own[0])
     moves = np.maximum(np.hypot(*np.moveaxis(forward, -1, 0)), np.hypot(*np.moveaxis(surface, -1, 0))) > MOVES
 

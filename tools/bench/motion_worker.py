@@ -27,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import component_sheet  # noqa: E402
 
 WHOLE = ("Combined", "Vector")
-OF_A_COMPONENT = ("", " Motion", " Tracked")
+OF_A_COMPONENT = ("", " Reflectance", " Motion", " Tracked")
 
 
 @contextmanager
@@ -42,7 +42,9 @@ def options(**values: str) -> Iterator[None]:
 
 
 def set_passes(layer: bpy.types.ViewLayer, wanted: bool) -> None:
-    layer.use_pass_vector = layer.gradus.use_pass_components = layer.gradus.use_pass_component_motion = wanted
+    layer.use_pass_vector = wanted
+    for name in ("components", "component_reflectance", "component_motion"):
+        setattr(layer.gradus, f"use_pass_{name}", wanted)
     worker.choose_file(layers=wanted)
 
 
