@@ -152,6 +152,19 @@ def test_the_newest_version_of_a_part_replaces_the_one_before(tmp_path: Path, mo
     assert [row[5] for row in table.rows] == ["2.0000", "1.0000"]
 
 
+def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its times were never shown, and its jobs passed for done."""
+    import motion
+
+    loaded, quiet = flicker_row("windows-l2", 1.0, loaded=True, frame=0), flicker_row("windows-l2", 2.0, frame=0)
+    assert [row[5] for row in tables(tmp_path, monkeypatch, loaded, quiet)[-1].rows] == ["2.0000"]
+    monkeypatch.setattr(motion, "RESULTS", tmp_path / "motion.jsonl")
+    (animation,) = motion.select("mirror_and_glass", 6)
+    for row, done in ((loaded, 0), (quiet, 1)):
+        motion.RESULTS.write_text(json.dumps(row) + "\n")
+        assert len(motion.done_jobs(animation, variants.Variant((320, 180), 6), "new", loaded=False)) == done
+
+
 def cost_row(mode: str, **seconds: float) -> dict:
     times = {"sample": 1.0, "reconstruct": 0.5, "links": 0.0} | seconds
     return flicker_row(mode, 0.0) | {"part": "cost", "seconds": times, "frame": 12}

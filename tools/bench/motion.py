@@ -31,6 +31,7 @@ from version import cpu_name
 
 RESULTS = FOLDER / "motion.jsonl"
 TRUTH, PREDICTION, FLICKERS, COST = PARTS = ("truth", "prediction", "flicker", "cost")
+TIMED = (FLICKERS, COST)
 CHECKED = 400  # pixels of each component that are held against the truth
 LIGHT, LIGHT_PARTS = 256, 4  # samples of the pictures whose change is predicted, and renderings that share them
 COST_SAMPLES = 16
@@ -61,13 +62,14 @@ def variant_of(arguments: argparse.Namespace) -> Variant:
     return Variant(arguments.size, arguments.frames, SHUTTER if arguments.blur else 0.0)
 
 
-def done_jobs(animation: Animation, variant: Variant, version: str) -> set[Job]:
+def done_jobs(animation: Animation, variant: Variant, version: str, loaded: bool) -> set[Job]:
+    """Runs whose times say nothing are run again where they would."""
     if not RESULTS.exists():
         return set()
     wanted = (animation.name, list(animation.frames), variant, version)
     rows = [json.loads(line) for line in RESULTS.read_text().splitlines()]
     rows = [row for row in rows if (row["scene"], row["frames"], of_row(row), row["version"]) == wanted]
-    rows = [row for row in rows if not (row.get("loaded") and row["part"] == COST)]  # of no use: to be run again
+    rows = [row for row in rows if loaded or not row.get("loaded") or row["part"] not in TIMED]
     return {Job(*(row[name] for name in ("part", "mode", "samples", "seed", "frame"))) for row in rows}
 
 
@@ -142,7 +144,7 @@ class MotionBench:
 
 
 def bench_motion(animation: Animation, arguments: argparse.Namespace, version: str, deadline: float) -> None:
-    done = done_jobs(animation, variant_of(arguments), version)
+    done = done_jobs(animation, variant_of(arguments), version, arguments.loaded)
     jobs = [job for job in jobs_of(animation, arguments) if job not in done]
     if not jobs:
         return

@@ -40,8 +40,14 @@ def load() -> dict[str, Rows]:
     for scene in (animation.name for animation in ANIMATIONS):
         for (part, name, _, _), rows in found.items():
             if name == scene:
-                parts[part] += [row for row in rows if row["version"] == rows[-1]["version"]]
+                parts[part] += newest(rows)
     return parts
+
+
+def newest(rows: Rows) -> Rows:
+    """Of the newest version; of it those of a quiet machine, if there are any."""
+    last = [row for row in rows if row["version"] == rows[-1]["version"]]
+    return list(filter(timed_row, last)) or last
 
 
 def blocks() -> list[Block]:
