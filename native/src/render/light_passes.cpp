@@ -147,6 +147,24 @@ Features guides_by(const Field& picture, const Frame& frame, const Region& regio
   return guides;
 }
 
+FeatureImage read_color(const Frame& frame, const PassPlane& plane) {
+  FeatureImage color{3, std::vector<float>(3 * size_t(frame.region.area())), {}};
+  for (size_t i = 0; i < color.values.size(); ++i) {
+    const uint32_t n = samples_at(frame, i / 3);
+    color.values[i] = n > 0 ? plane.values[0][i] / float(n) : 0.0f;
+  }
+  return color;
+}
+
+// Diffuse light has the texture of its own colour. That of reflections and of what is behind glass is their surfaces' as the mirror or the
+// glass shows them: the albedo of the features has it, where there are any.
+Features guides_of(const Features& guides, bool has_albedo, const Frame& frame, const PassInfo& info) {
+  const bool by_own = info.kind == PassKind::Light && (!has_albedo || info.color == GRADUS_PASS_DIFFUSE_COLOR);
+  Features own = guides;
+  if (by_own) own.albedo = read_color(frame, *find_plane(frame, info.color));
+  return own;
+}
+
 }  // namespace
 
 bool has_light_passes(const Frame& frame) { return (kept_passes(frame) & light_passes()) != 0; }
@@ -154,14 +172,15 @@ bool has_light_passes(const Frame& frame) { return (kept_passes(frame) & light_p
 LightPasses::LightPasses(const Frame& frame, const Region& region, const std::vector<float>& rgba, const CancelTest& cancel) {
   const std::vector<const PassPlane*> planes = light_planes(frame);
   const Field whole = rgb_of(rgba, region);
-  const Features guides = has_features(frame) ? filter_features(read_features(frame)) : guides_by(whole, frame, region);
+  const bool has_albedo = has_features(frame);
+  const Features guides = has_albedo ? filter_features(read_features(frame)) : guides_by(whole, frame, region);
   const float exposure = frame.settings.film_exposure;
   std::vector<PartPicture> parts;
-  const auto add_part = [&](const auto& sums_at) {
+  const auto add_part = [&](const Features& own, const auto& sums_at) {
     stop_if(cancel);
     HalvedImage sampled = read_halves(frame, sums_at);
     guess_noise(frame, &sampled);
-    PartPicture part = regress_part(guides, std::move(sampled), cancel);
+    PartPicture part = regress_part(own, std::move(sampled), cancel);
     part.image = crop(part.image, frame, region);
     part.error = crop(part.error, frame, region);
     for_values(&part.image, [exposure](float& value, int, int, int) { value *= exposure; });
@@ -170,13 +189,13 @@ LightPasses::LightPasses(const Frame& frame, const Region& region, const std::ve
   };
   std::vector<Field> colors;
   for (const PassPlane* plane : planes) {
-    add_part([plane](size_t i) { return sums_of(*plane, i); });
     const PassInfo& info = pass_info(plane->pass);
+    add_part(guides_of(guides, has_albedo, frame, info), [plane](size_t i) { return sums_of(*plane, i); });
     colors.push_back(info.kind == PassKind::Light ? color_of(frame, *find_plane(frame, info.color), region) : Field());
     if (info.kind != PassKind::Light) continue;
     parts.back().room = room_of(colors.back());
   }
-  if (!are_all(planes)) add_part([&](size_t i) { return rest_of(frame, planes, i); });
+  if (!are_all(planes)) add_part(guides, [&](size_t i) { return rest_of(frame, planes, i); });
   stop_if(cancel);
   add_up(whole, &parts);
   for (size_t k = 0; k < planes.size(); ++k) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/device.h"
 #include "base/error.h"
 #include "render/render.h"
 #include "settings/pass_table.h"
@@ -75,6 +76,21 @@ TEST_P(LightPassesBy, AddUpOnATransparentFilm) {
   GradusSettings settings = settings_for(GetParam());
   settings.film_transparent = 1;
   expect_to_add_up(*rendered(Scenario::World, settings));
+}
+
+// The stand-in adds light everywhere, also where nothing was met.
+TEST_P(LightPassesBy, AddUpBehindADenoiser) {
+  GradusDeviceSettings of_device{};
+  of_device.struct_size = sizeof(of_device);
+  of_device.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+  GradusSettings settings = settings_for(GetParam());
+  settings.denoiser = GRADUS_DENOISER_OIDN;
+  PathScene scene;
+  test::build(Scenario::Glass, &scene);
+  Render render(std::make_shared<Device>(of_device), scene.context(settings).snapshot, settings);
+  render.wait(-1.0);
+  expect_to_add_up(render);
+  EXPECT_GT(read(render, GRADUS_PASS_COMBINED)[0], read(render, GRADUS_PASS_NOISY_IMAGE)[0] + 0.5f);
 }
 
 // What was smoothed into a pixel without a colour was divided by 0 and lost.

@@ -1,0 +1,94 @@
+// Light passes of a stored frame belong to the picture that was last made of it; until one is, to that of the frame's own settings.
+#include <algorithm>
+
+#include "api/test_scene.h"
+#include "settings/pass_table.h"
+#include "support/light_sum.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+class FrameLightPasses : public WithScene<::testing::Test> {
+ protected:
+  static constexpr uint32_t kSide = 24;
+
+  void SetUp() override {
+    WithScene::SetUp();
+    GradusSettings settings = small_render(kSide, kSide, 4);
+    settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+    settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+    settings.passes |= needed_passes(light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
+    ASSERT_OK(gradus_render_start(scene, &settings, &render));
+    ASSERT_OK(gradus_render_wait(render, -1.0));
+    ASSERT_OK(gradus_render_frame(render, &frame));
+  }
+  void TearDown() override {
+    EXPECT_OK(gradus_frame_release(frame));
+    EXPECT_OK(gradus_render_release(render));
+    WithScene::TearDown();
+  }
+
+  std::vector<float> read(uint32_t pass) const {
+    std::vector<float> pixels(pass_info(pass).channels * kSide * kSide);
+    EXPECT_OK(gradus_frame_read_pass(frame, pass, pixels.data(), pixels.size()));
+    return pixels;
+  }
+  std::vector<float> reconstruct(uint32_t reconstruction) const {
+    std::vector<float> rgba(4 * kSide * kSide);
+    EXPECT_OK(gradus_frame_reconstruct(frame, reconstruction, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+    return rgba;
+  }
+  void expect_to_add_up(const std::vector<float>& rgba) const {
+    expect_light_to_add_up([this](uint32_t pass) { return read(pass); }, rgba);
+  }
+
+  GradusRender render = 0;
+  GradusFrame frame = 0;
+};
+
+TEST_F(FrameLightPasses, AreThoseOfTheRenderAtFirst) {
+  std::vector<float> of_render(3 * kSide * kSide);
+  ASSERT_OK(gradus_render_read_pass(render, GRADUS_PASS_DIFFUSE_DIRECT, of_render.data(), of_render.size()));
+  EXPECT_GT(*std::max_element(of_render.begin(), of_render.end()), 0.01f);
+  EXPECT_EQ(read(GRADUS_PASS_DIFFUSE_DIRECT), of_render);
+}
+
+// `gradus reconstruct --reconstruction l2 --passes all` wrote L2's picture and the light passes of another.
+TEST_F(FrameLightPasses, FollowTheLastReconstruction) {
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED, GRADUS_RECONSTRUCTION_NONE}) {
+    expect_to_add_up(reconstruct(reconstruction));
+  }
+  EXPECT_EQ(reconstruct(GRADUS_RECONSTRUCTION_NONE), read(GRADUS_PASS_NOISY_IMAGE));
+  expect_to_add_up(read(GRADUS_PASS_COMBINED));
+}
+
+// The error is that of the frame's own picture, and no picture that anybody was given.
+TEST_F(FrameLightPasses, StayWhenTheErrorIsRead) {
+  const std::vector<float> rgba = reconstruct(GRADUS_RECONSTRUCTION_L2);
+  read(GRADUS_PASS_ERROR);
+  expect_to_add_up(rgba);
+}
+
+TEST_F(FrameLightPasses, AreMadeAnewOfAMergedFrame) {
+  const std::vector<float> before = read(GRADUS_PASS_DIFFUSE_DIRECT);
+  GradusSettings settings = small_render(kSide, kSide, 4);
+  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  settings.passes |= needed_passes(light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
+  settings.first_sample = 4;
+  GradusRender more = 0;
+  GradusFrame other = 0;
+  ASSERT_OK(gradus_render_start(scene, &settings, &more));
+  ASSERT_OK(gradus_render_wait(more, -1.0));
+  ASSERT_OK(gradus_render_frame(more, &other));
+  ASSERT_OK(gradus_frame_merge(frame, other));
+  EXPECT_NE(read(GRADUS_PASS_DIFFUSE_DIRECT), before);
+  expect_to_add_up(read(GRADUS_PASS_COMBINED));
+  EXPECT_OK(gradus_frame_release(other));
+  EXPECT_OK(gradus_render_release(more));
+}
+
+}  // namespace
+}  // namespace gradus
