@@ -19,13 +19,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from fault import Fault, Test
+from light_faults import LIGHT
 from motion_faults import MOTION
 from reconstruction_faults import RECONSTRUCTION
 from renderer_faults import RENDERER
 from sequence_faults import SEQUENCES
 
 ROOT = Path(__file__).resolve().parents[2]
-FAULTS = (*RENDERER, *RECONSTRUCTION, *MOTION, *SEQUENCES)
+FAULTS = (*RENDERER, *RECONSTRUCTION, *MOTION, *SEQUENCES, *LIGHT)
 COPY = ROOT / "build-faults"
 LIMIT = 200  # seconds for one choice of tests; one that does not end has caught its fault, too
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
@@ -9,6 +10,8 @@
 
 namespace gradus {
 namespace {
+
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
 bool is_anywhere(const Field& field, bool (*is_such)(float)) {
   for (int y = 0; y < field.height(); ++y) {
@@ -34,38 +37,41 @@ void limit_by_noise(const Field& half_difference, Field* error) {
   for_values(error, [&](float& value, int x, int y, int) { value = std::min(value, noise.row(y)[x]); });
 }
 
-// A value of one channel and pixel in one part.
+// Squares of strong light are beyond single precision.
+void scale_error(float scale, Field* error) {
+  for_values(error, [scale](float& value, int, int, int) { value = std::min(scale * (scale * value), kMaxFloat); });
+}
+
+// A value of one channel and pixel in one part. In double: weights are squares.
 struct Share {
-  float* value;
-  float weight;
-  float least;
+  double value, weight, least;
 };
 
 // All of `lack` by weight, what may not go below its least value no further than that. Returns what is left of it.
-float spread(float lack, std::vector<Share>& shares, float (*weight_of)(const Share&)) {
-  for (size_t round = 0; round < shares.size() && lack != 0.0f; ++round) {
-    const auto is_open = [lack](const Share& share) { return lack > 0.0f || *share.value > share.least; };
-    float total = 0.0f;
-    for (const Share& share : shares) total += is_open(share) ? weight_of(share) : 0.0f;
-    if (!(total > 0.0f)) return lack;
-    float left = 0.0f;
+double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const Share&)) {
+  for (size_t round = 0; round < shares.size() && lack != 0.0; ++round) {
+    const auto is_open = [lack](const Share& share) { return lack > 0.0 || share.value > share.least; };
+    double total = 0.0;
+    for (const Share& share : shares) total += is_open(share) ? weight_of(share) : 0.0;
+    if (!(total > 0.0)) return lack;
+    double left = 0.0;
     for (Share& share : shares) {
       if (!is_open(share)) continue;
-      const float wanted = *share.value + lack * (weight_of(share) / total);
-      *share.value = lack > 0.0f ? wanted : std::max(wanted, share.least);
-      left += wanted - *share.value;
+      const double wanted = share.value + lack * (weight_of(share) / total);
+      share.value = lack > 0.0 ? wanted : std::max(wanted, share.least);
+      left += wanted - share.value;
     }
     lack = left;
   }
   return lack;
 }
 
-void settle(float whole, std::vector<Share>& shares) {
-  float lack = whole;
-  for (const Share& share : shares) lack -= *share.value;
+void settle(double whole, std::vector<Share>& shares) {
+  double lack = whole;
+  for (const Share& share : shares) lack -= share.value;
   lack = spread(lack, shares, [](const Share& share) { return share.weight; });
-  lack = spread(lack, shares, [](const Share& share) { return std::fabs(*share.value); });
-  if (lack != 0.0f && !shares.empty()) *shares.back().value += lack;
+  lack = spread(lack, shares, [](const Share& share) { return std::fabs(share.value); });
+  if (!shares.empty()) shares.back().value += lack;
 }
 
 }  // namespace
@@ -85,7 +91,7 @@ PartPicture regress_part(const Features& guides, HalvedImage sampled, const Canc
   part.error = regression.error();
   limit_by_noise(sampled.half_difference, &part.error);
   multiply(scale, &part.image);
-  multiply(scale * scale, &part.error);
+  scale_error(scale, &part.error);
   if (!part.may_be_negative) for_values(&part.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
   return part;
 }
@@ -93,19 +99,23 @@ PartPicture regress_part(const Features& guides, HalvedImage sampled, const Canc
 void add_up(const Field& whole, std::vector<PartPicture>* parts) {
   for_rows(whole.height(), [&](int y) {
     std::vector<Share> shares;
+    std::vector<float*> values;
     for (int c = 0; c < whole.channels(); ++c) {
       for (int x = 0; x < whole.width(); ++x) {
         shares.clear();
+        values.clear();
         for (PartPicture& part : *parts) {
           float* const value = part.image.row(y, c) + x;
-          const float room = part.room.width() > 0 ? part.room.row(y, c)[x] : 1.0f;
-          if (room == 0.0f) {
+          const double room = part.room.width() > 0 ? part.room.row(y, c)[x] : 1.0;
+          if (room == 0.0) {
             *value = 0.0f;
           } else {
-            shares.push_back({value, room * room * part.error.row(y)[x], part.may_be_negative ? -INFINITY : 0.0f});
+            shares.push_back({*value, room * room * part.error.row(y)[x], part.may_be_negative ? -INFINITY : 0.0});
+            values.push_back(value);
           }
         }
         settle(whole.row(y, c)[x], shares);
+        for (size_t i = 0; i < values.size(); ++i) *values[i] = std::clamp(float(shares[i].value), -kMaxFloat, kMaxFloat);
       }
     }
   });

@@ -45,12 +45,12 @@ Field to_field(const std::vector<float>& values, size_t channels, const Region& 
   return field;
 }
 
-// With the film's exposure, by that power.
-Field deliver(const Field& field, const Frame& frame, const Region& region, int power) {
+// The part of what is known of the frame that lies in the region.
+Field crop(const Field& field, const Frame& frame, const Region& region, float factor = 1.0f) {
   Field part(region.width(), region.height(), field.channels());
   const int x0 = region.x0 - frame.region.x0, y0 = region.y0 - frame.region.y0;
-  const float factor = std::pow(frame.settings.film_exposure, float(power));
-  for_values(&part, [&](float& value, int x, int y, int c) { value = factor * field.row(y + y0, c)[x + x0]; });
+  for_values(&part,
+             [&](float& value, int x, int y, int c) { value = std::clamp(factor * field.row(y + y0, c)[x + x0], -kMaxFloat, kMaxFloat); });
   return part;
 }
 
@@ -117,8 +117,8 @@ class Guides {
 PartPicture make_part(const Frame& frame, const Region& region, const Features& guides, HalvedImage sampled, const CancelTest& cancel) {
   stop_if(cancel);
   PartPicture part = regress_part(guides, std::move(sampled), cancel);
-  part.image = deliver(part.image, frame, region, 1);
-  part.error = deliver(part.error, frame, region, 2);
+  part.image = crop(part.image, frame, region, frame.settings.film_exposure);
+  part.error = crop(part.error, frame, region);  // by which parts compare, whatever the exposure
   return part;
 }
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reconstruct/box_mean.h"
 #include "reconstruct/feature_frame.h"
 #include "reconstruct/field_values.h"
 
@@ -91,6 +92,17 @@ TEST(Partition, APartLosesMostOfItsNoise) {
   EXPECT_LT(squared_error(part.image, 1.0f), 0.1 * squared_error(image.mean, 1.0f));
 }
 
+// Windows of little noise over edges are wrong by more than the samples are: light of lamps' edges went to what is not there.
+TEST(Partition, NoPartIsWrongByMoreThanItsSamples) {
+  HalvedImage image = noisy(0.0f, 0.02f, 4);
+  for_values(&image.mean, [](float& value, int x, int y, int) { value += (x / 3 + y / 3) % 2 == 0 ? 4.0f : 0.5f; });
+  const PartPicture part = regress_part(flat_features(), image, kNever);
+  const Field noise = box_mean(make_field(kWidth, kHeight, [&](int x, int y) { return mean_of_squares(image.half_difference, x, y); }), 1);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) ASSERT_LE(part.error.row(y)[x], 1.0001f * noise.row(y)[x]) << x << " " << y;
+  }
+}
+
 TEST(Partition, WhatLacksGoesToTheUncertainParts) {
   std::vector<PartPicture> parts{part_of(1.0f, 0.0f), part_of(2.0f, 1.0f), part_of(3.0f, 3.0f)};
   add_up(flat(7.0f), &parts);
@@ -128,6 +140,25 @@ TEST(Partition, APictureBelowZeroIsMetToo) {
   std::vector<PartPicture> parts{part_of(1.0f, 1.0f), part_of(1.0f, 0.0f), part_of(0.0f, 0.0f)};
   add_up(flat(-2.0f), &parts);
   EXPECT_NEAR(sum_at(parts, 3, 4, 1), -2.0f, 1e-6f);
+}
+
+// Squared errors of strong light were infinite, and what they were to weigh no number.
+TEST(Partition, LightOfAnyStrengthStaysFinite) {
+  for (const float strength : {1e-25f, 1e25f, 1e37f}) {
+    std::vector<PartPicture> parts;
+    for (const unsigned seed : {1u, 2u}) {
+      HalvedImage image = noisy(1.0f, 0.3f, seed);
+      for (Field* field : {&image.mean, &image.half_difference}) {
+        for_values(field, [strength](float& value, int, int, int) { value *= strength; });
+      }
+      parts.push_back(regress_part(flat_features(), std::move(image), kNever));
+    }
+    add_up(flat(2.5f * strength), &parts);
+    for (int x = 0; x < kWidth; ++x) {
+      EXPECT_NEAR(sum_at(parts, x, 7, 1) / strength, 2.5f, 1e-4f) << strength;
+      EXPECT_NEAR(parts[0].image.row(7, 1)[x] / strength, 1.25f, 0.5f) << strength;
+    }
+  }
 }
 
 TEST(Partition, AddsUpWhateverThePartsAre) {

@@ -139,6 +139,19 @@ TEST(LightPasses, AreCleanerThanSampled) {
   }
 }
 
+// What lacked of the brighter picture went to the noisy ones, and the sum was right.
+TEST(LightPasses, AreExposedAsThePictureIs) {
+  GradusSettings settings = settings_for(GRADUS_RECONSTRUCTION_REGULARIZED);
+  const auto once = rendered(Scenario::GlossyFloor, settings);
+  settings.film_exposure = 4.0f;
+  const auto bright = rendered(Scenario::GlossyFloor, settings);
+  for (const PassInfo& info : stored_passes(light_passes())) {
+    if (!is_of_light(info.kind)) continue;
+    const std::vector<float> a = read(*once, info.pass), b = read(*bright, info.pass);
+    for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(4.0f * a[i], b[i], 1e-3f * (1.0f + b[i])) << info.name;
+  }
+}
+
 TEST(LightPasses, OfTheNoisyImageAreThoseSampled) {
   const auto render = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_NONE));
   const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE), combined = read(*render, GRADUS_PASS_COMBINED);

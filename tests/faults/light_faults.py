@@ -1,0 +1,86 @@
+"""Faults in light passes beside a reconstructed picture: their sum, what it is spread by, and whose picture they are parts of."""
+
+from __future__ import annotations
+
+from fault import Fault, native
+
+PARTITION = "native/src/reconstruct/partition.cpp"
+LIGHT_PASSES = "native/src/render/light_passes.cpp"
+FRAME = "native/src/api/frame.cpp"
+
+APART = "light passes apart"
+
+LIGHT = (
+    Fault(
+        32,
+        APART,
+        "what lacks of the picture is left out",
+        PARTITION,
+        "        settle(whole.row(y, c)[x], shares);\n",
+        "        if (x < 0) settle(whole.row(y, c)[x], shares);\n",
+        (native("Reconstructions/LightPassesBy.*"), native("Reconstructions/SequenceLightPasses.*"), native("Partition.AddsUp*")),
+    ),
+    Fault(
+        32,
+        APART,
+        "it goes to all alike",
+        PARTITION,
+        "{ return share.weight; }",
+        "{ return share.weight > 0.0 ? 1.0 : 0.0; }",
+        (native("Partition.WhatLacksGoesToTheUncertainParts"),),
+    ),
+    Fault(
+        32,
+        APART,
+        "parts go below 0",
+        PARTITION,
+        "std::max(wanted, share.least)",
+        "wanted",
+        (native("Partition.NoPartGoesBelowZeroWhileAnotherHasLight"),),
+    ),
+    Fault(
+        32,
+        APART,
+        "light stays where there is no colour",
+        PARTITION,
+        "if (room == 0.0) {",
+        "if (room < 0.0) {",
+        (native("Partition.LightGoesWhereItCanBe"), native("Reconstructions/LightPassesBy.LightBesideBlackIsNotLost/*")),
+    ),
+    Fault(
+        32,
+        APART,
+        "parts are wrong by more than their samples",
+        PARTITION,
+        "  limit_by_noise(sampled.half_difference, &part.error);\n",
+        "  if (part.may_be_negative) limit_by_noise(sampled.half_difference, &part.error);\n",
+        (native("Partition.NoPartIsWrongByMoreThanItsSamples"),),
+    ),
+    Fault(
+        32,
+        APART,
+        "squares of strong light are infinite",
+        PARTITION,
+        "std::min(scale * (scale * value), kMaxFloat)",
+        "scale * scale * value",
+        (native("Partition.LightOfAnyStrengthStaysFinite"),),
+    ),
+    Fault(
+        32,
+        APART,
+        "they are not exposed",
+        LIGHT_PASSES,
+        ", frame.settings.film_exposure);",
+        ");",
+        (native("LightPasses.AreExposedAsThePictureIs"),),
+    ),
+    Fault(
+        32,
+        APART,
+        "those of a stored frame are the first picture's",
+        FRAME,
+        "has_light_passes(*frame)) object->made = kept;",
+        "has_light_passes(*frame) && !object->made) object->made = kept;",
+        (native("FrameLightPasses.FollowTheLastReconstruction"),),
+    ),
+)
