@@ -54,12 +54,18 @@ def blocks() -> list[Block]:
     parts = load()
     if not parts:
         return []
-    made: list[Block] = [Text(PREFACE.read_text()), about()]
+    made: list[Block] = [Text(PREFACE.read_text()), conditions(parts), about()]
     makers = {"truth": truth, "prediction": prediction, "flicker": flicker, "cost": cost}
     for part, make in makers.items():
         if parts.get(part):
             made += make(parts[part])
     return [*made, *sheets()]
+
+
+def conditions(parts: dict[str, Rows]) -> Text:
+    rows = [row for found in parts.values() for row in found]
+    versions, machines = (sorted({row[name] for row in rows if name in row}) for name in ("version", "machine"))
+    return Text(f"Version {', '.join(versions)}; {', '.join(machines)}.")
 
 
 def about() -> Table:
