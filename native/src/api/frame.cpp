@@ -82,7 +82,7 @@ MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t recon
 
 // Light passes that are read from now on are those of this picture.
 std::shared_ptr<MadePicture> keep_made(FrameObject* object, const std::shared_ptr<const Frame>& frame, MadePicture made) {
-  const auto kept = std::make_shared<MadePicture>(std::move(made));
+  auto kept = std::make_shared<MadePicture>(std::move(made));
   const std::lock_guard lock(object->mutex);
   if (object->frame == frame && has_light_passes(*frame)) object->made = kept;
   return kept;
