@@ -25,6 +25,8 @@ struct OtherFrame {
   ChainTracer tracer;
 };
 
+static_assert(float(Tracking::NoPath) == kNothingToTrack, "what planes of motion begin with");
+
 // Rows of the film that are done together: chains of all pixels would take more memory than a frame.
 constexpr int32_t kBand = 64;
 

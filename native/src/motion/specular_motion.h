@@ -7,22 +7,9 @@
 
 #include "motion/chain_view.h"
 #include "motion/film_search.h"
+#include "motion/tracked.h"
 
 namespace gradus {
-
-// Of a pixel: 1, or why it has no motion. Values of the pass Path <Component> Tracked (contract 6.6).
-enum class Tracking : int8_t {
-  Tracked = 1,
-  NoPath = -1,        // the component shows nothing here
-  Gone = -2,          // what it shows is not in the other frame, or is another mesh there
-  NotConverged = -3,  // no place on the film was found
-  Occluded = -4,      // something stands before it
-  Broken = -5,        // no way leads there any more: an edge, total reflection, another object
-  Outside = -6,       // further away than the film is wide or high
-  Elsewhere = -7,     // it is seen at several places, and what was found is not what this image of it becomes
-  Cut = -8,           // the two frames are not one shot
-};
-inline constexpr int kTrackingCauses = 8;
 
 struct TrackingCounts {
   std::array<uint64_t, kTrackingCauses + 1> pixels{};  // by -cause; 0: tracked

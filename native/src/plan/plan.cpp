@@ -154,8 +154,8 @@ void choose_components(const GradusSettings& settings, const SceneFeatures& feat
   const std::string text = get_text(settings, *find_option("components"));
   const ComponentSet all = ComponentSet::parse(text);
   const uint32_t seen = shows_light(features) ? 1u << all.component(PathWord{0}) : 0;
-  plan->rough_vertices = wants_rough_vertices(settings.component_passes);
-  plan->component_motion = wants_motion(settings.component_passes);
+  plan->rough_vertices = wants_any(settings.component_passes, is_of_rough_vertices);
+  plan->component_motion = wants_any(settings.component_passes, is_motion);
   const uint32_t kept = all.reached(letters_of(settings, features)) | seen;
   plan->components = all.without_empty(kept);
   std::string names, absent;

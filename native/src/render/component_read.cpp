@@ -57,7 +57,7 @@ void read_component_pass(const Frame& frame, int component, uint32_t pass, const
   const ComponentPassInfo& info = component_pass_info(pass);
   if (pass == GRADUS_COMPONENT_COLOR) return static_cast<void>(std::copy(color.begin(), color.end(), pixels));
   const ComponentPlanes& planes = frame.components[size_t(component)];
-  if (wants_motion(1u << pass)) return read_motion(frame, planes, info, region, pixels);
+  if (is_motion(pass)) return read_motion(frame, planes, info, region, pixels);
   if (planes.rough[0].empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x, pixels += 3) {

@@ -1,5 +1,6 @@
 #include "settings/pass_table.h"
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -87,6 +88,11 @@ const PassInfo& pass_info(uint32_t pass) {
 const ComponentPassInfo& component_pass_info(uint32_t pass) {
   if (pass >= GRADUS_COMPONENT_PASS_COUNT) throw invalid_argument("components have no pass " + std::to_string(pass));
   return kComponentPasses[pass];
+}
+
+bool wants_any(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass)) {
+  return std::any_of(std::begin(kComponentPasses), std::end(kComponentPasses),
+                     [&](const ComponentPassInfo& info) { return wants(component_passes, info.pass) && is_of_kind(info.pass); });
 }
 
 uint64_t needed_passes(uint64_t passes) {

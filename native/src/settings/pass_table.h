@@ -49,25 +49,24 @@ struct ComponentPassInfo {
 // Throws invalid_argument for a number that is none.
 const ComponentPassInfo& component_pass_info(uint32_t pass);
 
-// Those that are made of a component's picture, and of the first rough vertices of its paths.
+inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
+
+// Passes of a component that are made of its picture, of the first rough vertices of its paths, of its motion.
 constexpr bool is_of_picture(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_COLOR || component_pass == GRADUS_COMPONENT_IRRADIANCE;
 }
-// Some pass of the components' pictures is wanted.
+constexpr bool is_of_rough_vertices(uint32_t component_pass) {
+  return component_pass == GRADUS_COMPONENT_REFLECTANCE || component_pass == GRADUS_COMPONENT_IRRADIANCE ||
+         component_pass == GRADUS_COMPONENT_NORMAL;
+}
+constexpr bool is_motion(uint32_t component_pass) {
+  return component_pass == GRADUS_COMPONENT_MOTION || component_pass == GRADUS_COMPONENT_TRACKED;
+}
+// Whether some pass of that kind is wanted.
+bool wants_any(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass));
 inline bool wants_pictures(const GradusSettings& settings) {
-  constexpr uint32_t of_pictures = 1u << GRADUS_COMPONENT_COLOR | 1u << GRADUS_COMPONENT_IRRADIANCE;
-  return settings.use_decomposition != 0 && (settings.component_passes & of_pictures) != 0;
+  return settings.use_decomposition != 0 && wants_any(settings.component_passes, is_of_picture);
 }
-constexpr bool wants_rough_vertices(uint32_t component_passes) {
-  return (component_passes >> GRADUS_COMPONENT_REFLECTANCE & 1) != 0 || (component_passes >> GRADUS_COMPONENT_IRRADIANCE & 1) != 0 ||
-         (component_passes >> GRADUS_COMPONENT_NORMAL & 1) != 0;
-}
-
-constexpr bool wants_motion(uint32_t component_passes) {
-  return (component_passes >> GRADUS_COMPONENT_MOTION & 1) != 0 || (component_passes >> GRADUS_COMPONENT_TRACKED & 1) != 0;
-}
-
-inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
 
 // `passes` plus what they need: the colours that light passes are divided by.
 uint64_t needed_passes(uint64_t passes);
