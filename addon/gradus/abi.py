@@ -172,7 +172,9 @@ class ComponentPass(IntEnum):
     NORMAL = 3
     MOTION = 4
     TRACKED = 5
-    PASS_COUNT = 6
+    IRRADIANCE_MOTION = 6
+    IRRADIANCE_TRACKED = 7
+    PASS_COUNT = 8
 
 
 class OptionType(IntEnum):
@@ -499,6 +501,8 @@ class SequenceSettings(Struct):
         ("window_size", c_uint32),
         ("window_overlap", c_uint32),
         ("folder", c_char_p),
+        ("with_flow", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

@@ -24,7 +24,7 @@ from typing import Any
 
 import bpy
 
-from . import compat, frame_store, native, simulation, store
+from . import compat, frame_store, native, passes, simulation, store
 from .export import Cancelled as ExportCancelled
 from .progress import Display, is_watched, open_result, wait
 from .store import Cancelled
@@ -104,6 +104,7 @@ class Animation:
     def _create(self, job: Any, view: str, folder: str) -> int:
         settings = native.SequenceSettings(first=self.frames.first, last=self.frames.last, step=self.frames.step)
         settings.window_size, settings.window_overlap = job.host_value("window_size"), job.host_value("window_overlap")
+        settings.with_flow = int(passes.needs_next_frame(job.filled()))
         if folder:
             settings.folder = native.text(str(frame_store.folder_of(folder, job.scene.name, job.layer.name, view)))
         handle = ctypes.c_uint64()

@@ -10,6 +10,12 @@ from typing import Any
 from .abi import ComponentPass, Pass
 
 LONG_NAMES_SINCE = (5, 0, 0)
+MOTION_OF_COMPONENTS = (
+    ComponentPass.MOTION,
+    ComponentPass.TRACKED,
+    ComponentPass.IRRADIANCE_MOTION,
+    ComponentPass.IRRADIANCE_TRACKED,
+)
 
 
 @dataclass(frozen=True)
@@ -39,7 +45,7 @@ class PassInfo:
     def is_motion(self) -> bool:
         """Whether it needs the moments before and after the frame."""
         if isinstance(self.plane, Part):
-            return self.plane.plane in (ComponentPass.MOTION, ComponentPass.TRACKED)
+            return self.plane.plane in MOTION_OF_COMPONENTS
         return self.plane == Pass.VECTOR
 
     def blender_name(self, version: tuple[int, ...]) -> str:
@@ -112,6 +118,8 @@ PARTS: tuple[PartInfo, ...] = (
     PartInfo(ComponentPass.NORMAL, " Normal", "XYZ", "VECTOR", "gradus.use_pass_component_normal"),
     PartInfo(ComponentPass.MOTION, " Motion", "XYZW", "VECTOR", "gradus.use_pass_component_motion"),
     PartInfo(ComponentPass.TRACKED, " Tracked", "X", "VALUE", "gradus.use_pass_component_motion"),
+    PartInfo(ComponentPass.IRRADIANCE_MOTION, " Irradiance Motion", "XYZW", "VECTOR", "gradus.use_pass_component_irradiance_motion"),
+    PartInfo(ComponentPass.IRRADIANCE_TRACKED, " Irradiance Tracked", "X", "VALUE", "gradus.use_pass_component_irradiance_motion"),
 )
 """Passes of a component: Path NAME, Path NAME Reflectance … (contract 6.6)."""
 
@@ -168,6 +176,11 @@ def mask(infos: Iterable[PassInfo]) -> int:
 def component_mask(infos: Iterable[PassInfo]) -> int:
     """GradusSettings.component_passes."""
     return _bits(info.plane.plane for info in infos if isinstance(info.plane, Part))
+
+
+def needs_next_frame(infos: Iterable[PassInfo]) -> bool:
+    """Whether some are made of two frames of an animation, by optical flow: irradiance's motion, and Residual's."""
+    return any(info.is_motion and isinstance(info.plane, Part) for info in infos)
 
 
 def _bits(planes: Iterable[int]) -> int:

@@ -71,6 +71,10 @@ class GradusViewLayerSettings(bpy.types.PropertyGroup):
     use_pass_component_motion: _switch(
         "Motion", "Where the component comes from and goes to, as pass Vector tells it of surfaces, and Tracked: 1 where that is known"
     )
+    use_pass_component_irradiance_motion: _switch(
+        "Irradiance Motion",
+        "Where the light on the component's surfaces comes from and goes to: its shadows. In animations, from the frames before and after",
+    )
 
 
 class GradusWindowState(bpy.types.PropertyGroup):

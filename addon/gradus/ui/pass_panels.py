@@ -20,6 +20,7 @@ OF_COMPONENTS = (
     "use_pass_component_irradiance",
     "use_pass_component_normal",
     "use_pass_component_motion",
+    "use_pass_component_irradiance_motion",
 )
 OURS = ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising")
 

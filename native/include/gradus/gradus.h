@@ -486,6 +486,8 @@ typedef enum GradusComponentPass {
   GRADUS_COMPONENT_NORMAL,         /* at the first rough vertex, in the world */
   GRADUS_COMPONENT_MOTION,         /* previous - now, now - next: pixels, y up (docs/contract.md 6.6) */
   GRADUS_COMPONENT_TRACKED,        /* 1, or a negative cause */
+  GRADUS_COMPONENT_IRRADIANCE_MOTION,  /* likewise, of the light that falls on what is shown: by optical flow, in sequences */
+  GRADUS_COMPONENT_IRRADIANCE_TRACKED,
   GRADUS_COMPONENT_PASS_COUNT
 } GradusComponentPass;
 
@@ -592,6 +594,8 @@ typedef struct GradusSequenceSettings {
   uint32_t window_size;            /* frames that are reconstructed together; 0 = 10 */
   uint32_t window_overlap;         /* those that two windows share, at most half; taken where window_size is not 0 */
   const char* folder;              /* where raw frames are kept and found again, UTF-8; NULL: a temporary one, which release removes */
+  uint32_t with_flow;              /* 1: component passes by optical flow are asked for; a frame is delivered when the next one is there */
+  uint32_t reserved;
 } GradusSequenceSettings;
 
 /* Whether frames of an animation with these settings have differences over time; *why_not says what is against it, "" nothing. Valid until

@@ -14,6 +14,7 @@ namespace {
 
 SequenceSettings settings_of(const GradusSequenceSettings& given) {
   SequenceSettings settings{given.first, given.last, given.step, {}, given.folder != nullptr ? given.folder : ""};
+  settings.with_flow = given.with_flow != 0;
   if (given.window_size > 0) settings.windows = {int(given.window_size), int(given.window_overlap)};
   return settings;
 }

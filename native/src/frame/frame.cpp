@@ -39,7 +39,8 @@ uint64_t Frame::memory_bytes() const {
   uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + replayed.pixel.size() * sizeof(int32_t);
   for (const std::vector<int32_t>& own : replayed.of_component) bytes += own.size() * sizeof(int32_t);
   for (const ComponentPlanes& component : components) {
-    bytes += component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float);
+    bytes +=
+        component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float) + component.shown.size() * sizeof(ShownPoint);
     for (int half = 0; half < kHalves; ++half) {
       bytes += component.primal[half].size() * sizeof(Radiance) + component.rough[half].size() * sizeof(RoughVertices);
       for (const auto& plane : component.gradient[half]) {
@@ -83,6 +84,7 @@ void keep_component(std::string_view name, Frame* frame) {
     kept.name = name;
     std::fill(kept.motion.begin(), kept.motion.end(), Vec4(0.0f));
     std::fill(kept.tracked.begin(), kept.tracked.end(), kNothingToTrack);
+    std::fill(kept.shown.begin(), kept.shown.end(), ShownPoint{});
     for (int half = 0; half < kHalves; ++half) {
       std::fill(kept.primal[half].begin(), kept.primal[half].end(), Radiance(0.0f));
       for (auto& plane : kept.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));

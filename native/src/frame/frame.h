@@ -48,6 +48,12 @@ struct RoughVertices {
   float samples = 0.0f;
 };
 
+// What a component shows at the centre of a pixel, through smooth surfaces.
+struct ShownPoint {
+  float object = 0.0f;  // a number of the way and of the object at its end, not above 2^24: others have others; 0: it shows nothing
+  float depth = 0.0f;   // length of the way; 0: it does not end
+};
+
 // One component of the decomposition: primal sums and gradient sums of both halves. Row-major over Frame::region.
 struct ComponentPlanes {
   std::string name, expression;  // path/components.h
@@ -58,6 +64,7 @@ struct ComponentPlanes {
   // (motion/component_motion.h). Empty unless asked for.
   std::vector<Vec4> motion;
   std::vector<float> tracked;
+  std::vector<ShownPoint> shown;  // for optical flow (motion/irradiance_motion.h); empty unless that is asked for
 };
 
 // Of a pixel in which a component shows nothing.

@@ -13,6 +13,7 @@ struct FrameHeader {
   uint64_t planes = 0;  // of passes, a bit each
   bool rough = false;   // the first rough vertices of components
   bool motion = false;  // of components
+  bool shown = false;   // and what they show
   GradusSettings settings{};
   SampleRanges samples;
   uint64_t scene_key = 0;
@@ -31,6 +32,7 @@ inline FrameHeader header_of(const Frame& frame) {
           kept_passes(frame),
           !frame.components[0].rough[0].empty(),
           !frame.components[0].motion.empty(),
+          !frame.components[0].shown.empty(),
           frame.settings,
           frame.samples,
           frame.scene_key,

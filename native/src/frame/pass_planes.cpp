@@ -34,6 +34,10 @@ void keep_motion(Frame* frame) {
   }
 }
 
+void keep_shown(Frame* frame) {
+  for (ComponentPlanes& planes : frame->components) planes.shown.assign(size_t(frame->region.area()), ShownPoint{});
+}
+
 uint64_t kept_passes(const Frame& frame) {
   uint64_t passes = 0;
   for (const PassPlane& plane : frame.passes) passes |= uint64_t{1} << plane.pass;
@@ -45,11 +49,11 @@ const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
   return plane != frame.passes.end() ? &*plane : nullptr;
 }
 
-uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, bool rough, bool motion) {
+uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, bool rough, bool motion, bool shown) {
   const uint64_t offsets = gradients ? uint64_t{kOffsets} : 0, radiances = uint64_t(components) * (1 + offsets);
   const uint64_t features = rough ? uint64_t(components) * sizeof(RoughVertices) : 0;
   const uint64_t half = radiances * sizeof(Radiance) + features + sizeof(uint32_t) + offsets * sizeof(float);
-  const uint64_t moves = motion ? uint64_t(components) * (sizeof(Vec4) + sizeof(float)) : 0;
+  const uint64_t moves = uint64_t(components) * ((motion ? sizeof(Vec4) + sizeof(float) : 0) + (shown ? sizeof(ShownPoint) : 0));
   return kHalves * half + moves + pass_bytes_per_pixel(passes) + (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
 }
 

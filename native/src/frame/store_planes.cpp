@@ -34,6 +34,11 @@ class PlaneList {
     if (plane->empty()) return;
     for (int c = 0; c < 4; ++c) add(layer + "." + kVectorNames[c], false, &(*plane)[0][c], sizeof(Vec4));
   }
+  void shown(const std::string& layer, std::vector<ShownPoint>* plane) {
+    if (plane->empty()) return;
+    add(layer + ".object.V", false, &(*plane)[0].object, sizeof(ShownPoint));
+    add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(ShownPoint));
+  }
   void links(const std::string& layer, std::vector<int32_t>* plane) {
     if (!plane->empty()) add(layer + ".V", true, plane->data(), sizeof(int32_t));
   }
@@ -118,6 +123,7 @@ std::vector<StoredPlane> motion(Frame* frame, size_t component) {
   const std::string layer = layer_of(component);
   list.vectors(layer + ".motion", &planes.motion);
   list.vectors(layer + ".tracked", 1, &planes.tracked);
+  list.shown(layer + ".shown", &planes.shown);
   return list.take();
 }
 

@@ -57,4 +57,26 @@ std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettin
   return views;
 }
 
+ChainView view_surfaces(const CentreView& centres, const GradusSettings& settings, const Change* change) {
+  const Region& region = centres.region;
+  const auto width = size_t(region.width()), pixels = centres.hits.size();
+  const float time = centres.snapshot->shutter.time_of_frame();
+  ChainView view{&centres, &settings, std::vector<int32_t>(pixels), std::vector<SpecularChain>(pixels)};
+  tbb::parallel_for(size_t{0}, pixels, [&](size_t i) {
+    const Vec2 film = pixel_centre(region.x0 + int32_t(i % width), region.y0 + int32_t(i / width));
+    SpecularChain& chain = view.chains[i];
+    chain.ray = {centres.camera.ray({film, Vec2(0.0f), time}), GRADUS_VISIBLE_CAMERA, {}};
+    view.places[i] = is_none(chain.ray.ray) ? -1 : int32_t(i);
+    if (view.places[i] < 0) return;
+    const Hit& hit = centres.hits[i];
+    const bool is_surface = hit.valid();
+    chain.end = is_surface ? ChainEnd::Surface : ChainEnd::Sky;
+    chain.last = hit;
+    chain.length = is_surface ? hit.t : 0.0f;
+    chain.shown = chain.ray.ray.origin + chain.length * chain.ray.ray.direction;
+    chain.rests = change != nullptr && !change->of_camera() && change->rests(chain.ray.ray, hit, hit.t);
+  });
+  return view;
+}
+
 }  // namespace gradus

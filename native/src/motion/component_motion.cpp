@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "path/context.h"
 #include "scene/moved_snapshot.h"
 
@@ -51,14 +52,35 @@ void join(const Camera& camera, const Region& band, const ChainMotion& previous,
   }
 }
 
+constexpr uint64_t kNumbers = uint64_t{1} << 24;  // that a float tells apart
+
+// The same in every frame: of the way, and of the object at its end.
+float number_of(const Snapshot& snapshot, const SpecularChain& chain) {
+  const uint64_t end = chain.last.valid() ? snapshot.instances[chain.last.instance].id + 1 : 0;
+  const uint64_t hash = mix_bits(mix_bits(chain.way.surfaces + 5 * chain.way.letters + chain.way.length) + 3 * end + uint64_t(chain.end));
+  return float(1 + hash % (kNumbers - 1));
+}
+
+// shown: from the first pixel of the band on.
+void tell_shown(const ChainView& view, const Region& band, ShownPoint* shown) {
+  for (int32_t y = band.y0; y < band.y1; ++y) {
+    for (int32_t x = band.x0; x < band.x1; ++x, ++shown) {
+      const SpecularChain* chain = view.at(x, y);
+      if (chain) *shown = {number_of(*view.centres->snapshot, *chain), chain->length};
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const GradusSettings& settings, const ComponentSet& components,
                                               uint32_t wanted, const Region& region, const CancelTest& is_cancelled) {
   const auto pixels = size_t(region.area()), width = size_t(region.width());
-  wanted &= (uint32_t{1} << components.count()) - 1;
-  std::vector<ComponentMotion> motion(size_t(std::popcount(wanted)),
-                                      {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), {}});
+  const uint32_t residual = uint32_t{1} << (components.count() - 1);
+  wanted &= 2 * residual - 1;
+  std::vector<ComponentMotion> motion(
+      size_t(std::popcount(wanted)),
+      {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), std::vector<ShownPoint>(pixels), {}});
   if (wanted == 0) return motion;
   const OtherFrame previous(snapshot, Moment::Previous, settings, is_cancelled), next(snapshot, Moment::Next, settings, is_cancelled);
   Change change(snapshot);
@@ -66,10 +88,14 @@ std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const Gr
   for (int32_t y = region.y0; y < region.y1; y += kBand) {
     const Region band{region.x0, y, region.x1, std::min(y + kBand, region.y1)};
     const CentreView centres = view_centres(snapshot, settings.width, settings.height, with_neighbours(band, settings), is_cancelled);
-    const std::vector<ChainView> views = view_chains(centres, settings, components, wanted, is_cancelled, &change);
-    for (size_t k = 0; k < views.size(); ++k)
+    std::vector<ChainView> views = view_chains(centres, settings, components, wanted & ~residual, is_cancelled, &change);
+    if ((wanted & residual) != 0) views.push_back(view_surfaces(centres, settings, &change));
+    for (size_t k = 0; k < views.size(); ++k) {
+      const size_t first = width * size_t(y - region.y0);
       join(centres.camera, band, track_chains(views[k], previous.tracer, band, is_cancelled),
-           track_chains(views[k], next.tracer, band, is_cancelled), width * size_t(y - region.y0), &motion[k]);
+           track_chains(views[k], next.tracer, band, is_cancelled), first, &motion[k]);
+      tell_shown(views[k], band, &motion[k].shown[first]);
+    }
     if (is_cancelled()) throw cancelled();
   }
   return motion;

@@ -107,11 +107,7 @@ struct ChainTracer::Search {
 
   bool reaches(PathWord word) const { return (components.ahead(word) >> component & 1) != 0; }
   bool is_lit(PathWord word) const { return components.component(word) == component; }
-  bool rests(const PathRay& ray, const Hit& hit) const {
-    const bool met = hit.valid();
-    return change != nullptr && !change->may_meet(ray.ray, met ? ray.state.length : kInfinity) &&
-           !(met && change->of_instance(hit.instance));
-  }
+  bool rests(const PathRay& ray, const Hit& hit) const { return change != nullptr && change->rests(ray.ray, hit, ray.state.length); }
   // A rough surface or one that shines, where that belongs to the component.
   bool ends_at(const Arrival& arrival, PathWord word) const {
     if (arrival.surely_rough) return reaches(components.next(word, ScatterClass::Diffuse));
@@ -135,6 +131,7 @@ std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, c
 // In the sky.
 bool ChainTracer::is_seen(const Search& search, PathWord word, SpecularChain* chain) const {
   chain->end = ChainEnd::Sky;
+  chain->length = 0.0f;
   return snapshot_.features.world_shines && search.is_lit(word);
 }
 
@@ -145,6 +142,7 @@ bool ChainTracer::extend(Search* search, PathRay ray, PathWord word, SpecularCha
   chain->ray = ray;
   const bool is_surface = advance(Shades::All, nullptr, &ray, &arrival);
   chain->rests = chain->rests && search->rests(ray, arrival.hit);
+  if (is_surface) chain->length += ray.state.length;
   return is_surface ? go_on(search, arrival, ray, word, chain) : is_seen(*search, word, chain);
 }
 
@@ -185,6 +183,7 @@ uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSe
     chain = {};
     chain.ray = start;
     chain.rests = change != nullptr && !change->of_camera() && search.rests(ray, arrival.hit);
+    if (is_surface) chain.length = ray.state.length;
     const bool is_found = is_surface ? go_on(&search, arrival, ray, PathWord{0}, &chain) : is_seen(search, PathWord{0}, &chain);
     found |= is_found ? 1u << c : 0u;
   }

@@ -34,6 +34,7 @@ struct SpecularChain {
   Hit first;                // its first smooth vertex; not valid where there is none
   Hit last;                 // what it shows, if that is a surface
   Vec3 shown = Vec3(0.0f);  // and where that is
+  float length = 0.0f;      // of the way to it
   PathRay ray;              // the last
 };
 

@@ -20,6 +20,7 @@ enum class Tracking : int8_t {
   ComesBackElsewhere = -9,  // the flow there leads back to another place: hidden, or nothing to hold on to
   Silhouette = -10,         // the pixel, or where it goes, shows an edge of an object
   NoFlowLibrary = -11,      // libgradus_flow.so is missing
+  NoNeighbour = -12,        // the frame before, or the one after, is not rendered
 };
 inline constexpr int kTrackingCauses = 8;  // of chains that are followed
 
@@ -28,5 +29,6 @@ inline constexpr auto kOutsideFilm = float(Tracking::Outside);
 inline constexpr auto kComesBackElsewhere = float(Tracking::ComesBackElsewhere);
 inline constexpr auto kSilhouette = float(Tracking::Silhouette);
 inline constexpr auto kNoFlowLibrary = float(Tracking::NoFlowLibrary);
+inline constexpr auto kNoNeighbour = float(Tracking::NoNeighbour);
 
 }  // namespace gradus

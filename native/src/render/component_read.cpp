@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "motion/tracked.h"
 #include "path/components.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
@@ -28,22 +29,31 @@ Vec3 value_of(uint32_t pass, const RoughVertices& mean, const Vec3& color) {
   return irradiance;
 }
 
+// Flow takes two frames.
+float tracked_in_one_frame(float tracked, bool by_flow) { return by_flow && tracked == kTracked ? kNoNeighbour : tracked; }
+
 void read_motion(const Frame& frame, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
+  const bool by_flow = is_by_flow(planes.name, info.pass);
   if (planes.motion.empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
       const size_t i = frame.index(x, y);
-      if (info.pass == GRADUS_COMPONENT_TRACKED) *pixels = planes.tracked[i];
-      if (info.pass == GRADUS_COMPONENT_MOTION) std::copy_n(&planes.motion[i][0], 4, pixels);
+      if (info.channels == 1) *pixels = tracked_in_one_frame(planes.tracked[i], by_flow);
+      if (info.channels == 4) std::copy_n(&planes.motion[i][0], 4, pixels);
     }
   }
 }
 
 }  // namespace
 
+bool is_by_flow(const std::string& component, uint32_t pass) {
+  return is_irradiance_motion(pass) || (is_motion(pass) && component == kResidual);
+}
+
 void read_absent_component(uint32_t pass, const Region& region, float* pixels) {
-  const float value = pass == GRADUS_COMPONENT_TRACKED ? kNothingToTrack : 0.0f;
-  std::fill_n(pixels, size_t(region.area()) * component_pass_info(pass).channels, value);
+  const uint32_t channels = component_pass_info(pass).channels;
+  const float value = is_motion(pass) && channels == 1 ? kNothingToTrack : 0.0f;
+  std::fill_n(pixels, size_t(region.area()) * channels, value);
 }
 
 void check_component(const GradusSettings& settings, const std::string& name) {

@@ -12,6 +12,9 @@ namespace gradus {
 void check_component(const GradusSettings& settings, const std::string& name);
 // Of one that no path of the frame belongs to.
 void read_absent_component(uint32_t pass, const Region& region, float* pixels);
+// Whether a pass of a component is made of two frames by optical flow (render/sequence/component_flows.h). Of one frame alone it is the
+// motion of what the component shows, not tracked.
+bool is_by_flow(const std::string& component, uint32_t pass);
 // Pixels of `region`. color: the component's picture there, RGB, where the pass is made of it. Throws invalid_operation if the frame was
 // sampled without what the pass is made of.
 void read_component_pass(const Frame& frame, int component, uint32_t pass, const Region& region, const std::vector<float>& color,

@@ -122,6 +122,7 @@ void RenderLoop::prepare() {
     name_planes(plan_.components, frame.get());
     if (plan_.rough_vertices) keep_rough_vertices(frame.get());
     if (plan_.component_motion && !input_.replay) keep_motion(frame.get());
+    if (plan_.component_motion && !input_.replay && input_.samples_only) keep_shown(frame.get());
     frame->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
     if (wants(plan_.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
@@ -269,6 +270,7 @@ void RenderLoop::find_motion() {
   for (size_t c = 0; c < motion.size(); ++c) {
     frame_->components[c].motion = std::move(motion[c].vectors);
     frame_->components[c].tracked = std::move(motion[c].tracked);
+    if (input_.samples_only) frame_->components[c].shown = std::move(motion[c].shown);
   }
 }
 

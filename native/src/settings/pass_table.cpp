@@ -47,12 +47,14 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_GRADIENT_T_LINK,       "Gradient T Link",       3, PassKind::Sequence, kNone},
 };
 constexpr ComponentPassInfo kComponentPasses[] = {
-    {GRADUS_COMPONENT_COLOR,       "Color",       3},
-    {GRADUS_COMPONENT_REFLECTANCE, "Reflectance", 3},
-    {GRADUS_COMPONENT_IRRADIANCE,  "Irradiance",  3},
-    {GRADUS_COMPONENT_NORMAL,      "Normal",      3},
-    {GRADUS_COMPONENT_MOTION,      "Motion",      4},
-    {GRADUS_COMPONENT_TRACKED,     "Tracked",     1},
+    {GRADUS_COMPONENT_COLOR,              "Color",              3},
+    {GRADUS_COMPONENT_REFLECTANCE,        "Reflectance",        3},
+    {GRADUS_COMPONENT_IRRADIANCE,         "Irradiance",         3},
+    {GRADUS_COMPONENT_NORMAL,             "Normal",             3},
+    {GRADUS_COMPONENT_MOTION,             "Motion",             4},
+    {GRADUS_COMPONENT_TRACKED,            "Tracked",            1},
+    {GRADUS_COMPONENT_IRRADIANCE_MOTION,  "Irradiance Motion",  4},
+    {GRADUS_COMPONENT_IRRADIANCE_TRACKED, "Irradiance Tracked", 1},
 };
 // clang-format on
 

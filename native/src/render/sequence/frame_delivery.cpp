@@ -1,38 +1,29 @@
 #include "render/sequence/frame_delivery.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/bill.h"
 #include "base/error.h"
-#include "frame/features.h"
-#include "reconstruct/reconstruct_frame.h"
-#include "render/combine.h"
 #include "render/component_read.h"
-#include "render/denoise_and_bill.h"
 #include "render/pass_read.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
-#include "temporal/frame_window.h"
 
 namespace gradus {
 namespace {
 
 constexpr const char* kNotDelivered = "the frame was not delivered: ";
 
-// Of a frame that was sampled by another process, or in another session.
-Plan plan_of(const Frame& frame) {
-  Plan plan;
-  plan.integrator = frame.settings.integrator;
-  plan.reconstruction = frame.settings.reconstruction;
-  plan.gradients = frame.gradients;
-  plan.solves = true;
-  plan.adaptive = frame.settings.noise_threshold > 0.0f;
-  plan.unbiased = !plan.adaptive && !(frame.settings.clamp_direct > 0.0f) && !(frame.settings.clamp_indirect > 0.0f);
-  plan.channels = frame.channels;
-  plan.passes = frame.settings.passes;
-  plan.sampled = frame.region;
-  return plan;
+bool has_flow(const MadeFrame& made) { return wants_flow(made.frame->settings) && !made.frame->components[0].shown.empty(); }
+
+bool can_flow(const MadeFrame& from, const MadeFrame& to) {
+  return has_flow(from) && has_flow(to) && from.delivered() == to.delivered() && same_components(*from.frame, *to.frame) &&
+         wanted_flows(*from.frame) == wanted_flows(*to.frame);
 }
+
+// Where a flow was not to be had although it should lead there.
+Tracking or_no_neighbour(Tracking leads) { return leads == Tracking::Tracked ? Tracking::NoNeighbour : leads; }
 
 }  // namespace
 
@@ -44,209 +35,164 @@ void FrameDelivery::render() {
     const std::lock_guard lock(mutex_);
     phase_ = GRADUS_PHASE_RECONSTRUCTING;
   }
-  std::shared_ptr<Frame> frame;
-  const uint32_t threads = threads_of(changed_.value_or(GradusSettings{}), sequence_->device_.get());
-  tbb::task_arena arena(arena_size(threads));
-  PhaseTimes wall, cpu;
-  {
-    const Bill bill(&wall.store, &cpu.store);
-    arena.execute([&] { frame = load(); });
-  }
-  record_.stats.seconds.add(wall);
-  record_.stats.cpu_seconds.add(cpu);
-  {
-    const std::lock_guard lock(mutex_);
-    frame_ = std::move(frame);
-  }
-  arena.execute([&] { reconstruct(); });
-  RenderStats& stats = record_.stats;
-  const bool denoises =
-      frame_->settings.denoiser != GRADUS_DENOISER_NONE &&
-      (!record_.plan.denoises_if_it_pays || denoises_after(record_.plan, mean_samples(*frame_), &stats.chosen, &stats.skipped));
-  if (denoises) denoise();
-  if (!denoises) frame_->settings.denoiser = GRADUS_DENOISER_NONE;
+  const std::shared_ptr<const MadeFrame> previous = make();
+  double seconds_ahead = 0.0, cpu_ahead = 0.0;
+  if (sequence_->settings_.with_flow && has_flow(*made_)) find_flow(previous.get(), &seconds_ahead, &cpu_ahead);
   stop_if_asked();
-  if (has_light_passes(*frame_)) arena.execute([&] { split_light(); });
   sequence_->forget_before(sequence_->needs(number_).first);
   const std::lock_guard lock(mutex_);
-  record_.stats.total_seconds += seconds();
-  record_.stats.process_cpu += process_cpu_seconds();
+  made_->record.stats.total_seconds += seconds() - seconds_ahead;
+  made_->record.stats.process_cpu += process_cpu_seconds() - cpu_ahead;
 }
 
-std::shared_ptr<Frame> FrameDelivery::load() {
-  const SequenceFolder& folder = sequence_->folder_;
-  const CancelTest cancel = [this] { return is_stopped(); };
-  const std::shared_ptr<Frame> frame = folder.load(number_, FramePart::kBase, StoredContent::kAll, cancel);
-  const std::optional<GradusSettings> asked = changed_ ? changed_ : folder.settings(number_);
-  read_differences_over_time(*frame, asked ? *asked : frame->settings, cancel);
-  const std::shared_ptr<const Frame> offset = folder.load(number_, FramePart::kOffset, StoredContent::kAll, cancel);
-  sequence_->merge(number_, frame.get(), *offset);
-  const auto record = sequence_->records_.find(number_);
-  const bool is_planned = record != sequence_->records_.end();
-  if (is_planned) record_ = record->second;
-  if (!is_planned) {
-    record_.plan = plan_of(*frame);
-    record_.stats.stopped = "stored";
+std::shared_ptr<const MadeFrame> FrameDelivery::make() {
+  FrameMaker maker(sequence_.get(), number_, changed_, cancel_);
+  std::shared_ptr<MadeFrame> own = std::exchange(sequence_->ahead_, nullptr);
+  const bool is_made = own && maker.would_make(*own);
+  std::shared_ptr<const MadeFrame> previous;
+  if (!is_made) {
+    sequence_->back_.clear();
+    if (leads_to(sequence_->place_of(number_)) == Tracking::Tracked)
+      previous = make_beside(number_ - 1);  // first: pictures are taken in order
+    own = maker.load();
   }
-  if (asked) deliver_as(*asked, is_planned, frame.get());
-  record_.plan.delivered = delivered_region(*frame);
-  record_.stats.offset_samples = mean_samples(*offset);
-  return frame;
-}
-
-// AUTO is what the plan has come to. Of a frame that was sampled elsewhere it is what that was sampled for, and a denoiser where it pays.
-void FrameDelivery::deliver_as(const GradusSettings& asked, bool is_planned, Frame* frame) const {
-  const Plan& plan = record_.plan;
-  const bool denoises = is_planned ? plan.denoises : denoiser_pays(mean_samples(*frame));
-  const uint32_t automatic = !denoises ? GRADUS_DENOISER_NONE : is_planned ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_AUTO;
-  GradusSettings& settings = frame->settings;
-  settings.reconstruction = asked.reconstruction == GRADUS_RECONSTRUCTION_AUTO ? plan.reconstruction : asked.reconstruction;
-  settings.reconstruction_alpha = asked.reconstruction_alpha;
-  settings.denoiser = asked.denoiser == GRADUS_DENOISER_AUTO ? automatic : asked.denoiser;
-  settings.film_exposure = asked.film_exposure;
-}
-
-void FrameDelivery::reconstruct() {
-  const Bill bill(&record_.stats.seconds.reconstruct, &record_.stats.cpu_seconds.reconstruct);
-  const CancelTest cancel = [this] { return is_stopped(); };
-  const GradusSettings& settings = frame_->settings;
-  const bool with_error = wants(settings.passes, GRADUS_PASS_ERROR);
-  const Region& region = record_.plan.delivered;
-  Reconstructed picture;
-  std::vector<std::vector<float>> components;
-  try {
-    for (const ComponentPlanes& planes : frame_->components) {
-      const SequenceMethod method{settings.reconstruction, settings.reconstruction_alpha, with_error};
-      SequencePictures* pictures = sequence_->pictures(planes.name, method, number_);
-      Reconstructed part = pictures->take(sequence_->place_of(number_), cancel, &record_.stats.solve);
-      stop_if_asked();
-      clamp_component(*frame_, settings.reconstruction, frame_->components.size(), &part.image);
-      if (wants_pictures(settings)) components.push_back(crop_component(*frame_, settings.reconstruction, part.image, region));
-      add_image(std::move(part.image), &picture.image);
-      add_image(std::move(part.error), &picture.error);
-    }
-  } catch (...) {
-    sequence_->pictures_.clear();  // a window that was not solved has left no share in its frames
-    throw;
+  {
+    const std::lock_guard lock(mutex_);
+    made_ = own;
   }
-  std::vector<float> rgba = crop_picture(*frame_, settings.reconstruction, picture.image, region);
-  std::vector<float> error;
-  if (with_error) error = crop_error(*frame_, picture.error, region);
-  const std::lock_guard lock(mutex_);
-  combined_ = std::move(rgba);
-  error_ = std::move(error);
-  components_ = std::move(components);
+  if (!is_made) maker.make_picture(own.get());
+  return previous;
 }
 
-void FrameDelivery::denoise() {
-  const CancelTest cancel = [this] { return is_stopped(); };
-  std::string why_not;
-  const auto library = choose_denoiser(frame_->settings.denoiser, sequence_->device_.get(), &why_not);
-  if (!library) return;
-  if (!has_features(*frame_)) record_.stats.warnings.emplace_back("the frame holds no features to guide the denoiser");
-  const uint32_t threads = threads_of(frame_->settings, sequence_->device_.get());
-  std::vector<float> rgba = denoise_and_bill(*library, *frame_, record_.plan.delivered, threads, cancel, combined_, &record_.stats);
-  if (rgba.empty()) return;
-  const std::lock_guard lock(mutex_);
-  follow_picture(combined_, rgba, &components_);
-  combined_ = std::move(rgba);
-  for (float& value : error_) value *= denoised_error(frame_->settings.reconstruction);
-}
-
-void FrameDelivery::split_light() {
-  const Bill bill(&record_.stats.seconds.reconstruct, &record_.stats.cpu_seconds.reconstruct);
-  LightPasses light(*frame_, record_.plan.delivered, combined_, [this] { return is_stopped(); });
-  const std::lock_guard lock(mutex_);
-  light_ = std::move(light);
-}
-
-void FrameDelivery::read_differences_over_time(const Frame& frame, const GradusSettings& asked, const CancelTest& cancel) {
-  const Region region = delivered_region(frame);
-  const float exposure = asked.film_exposure;
-  difference_.assign(3 * size_t(region.area()), 0.0f);
-  link_ = difference_;
-  const SequenceFolder& folder = sequence_->folder_;
-  const int place = sequence_->place_of(number_) + 1;
-  const int32_t next = sequence_->frame_at(place);
-  const bool is_other = asked.reconstruction != GRADUS_RECONSTRUCTION_AUTO;
-  const uint32_t reconstruction = is_other ? asked.reconstruction : frame.settings.reconstruction;
-  const bool wanted = wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T) || wants(frame.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
-  if (!wanted || !folder.holds(next) || !sequence_->goes_on_at(place, reconstruction)) return;
-  constexpr TemporalContent kPixels{.gradients = false, .halves = false};
-  const std::shared_ptr<const Frame> replay = folder.load(next, FramePart::kOffset, StoredContent::kSamples, cancel);
-  const FrameWindow window(
-      {std::make_shared<TemporalFrame>(make_base(frame, kPixels)),
-       std::make_shared<TemporalFrame>(make_replay(*replay, folder.header(next, FramePart::kBase).frame_number, kPixels))});
-  const int width = frame.region.width(), channels = frame.channels;
-  std::vector<float> differences(size_t(width) * size_t(channels));
-  std::vector<int32_t> links(static_cast<size_t>(width));
-  size_t out = 0;
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    stop_if_asked();
-    const int row = y - frame.region.y0;
-    window.read_row(RowKind::kDt, 0, row, differences.data());
-    window.read_links(0, row, links.data());
-    for (int32_t x = region.x0; x < region.x1; ++x, out += 3) {
-      const auto i = size_t(x - frame.region.x0);
-      if (links[i] == kNoLink || !is_finite(differences[i * size_t(channels)])) continue;
-      for (size_t c = 0; c < 3; ++c) difference_[out + c] = exposure * differences[i * size_t(channels) + c];
-      link_[out] = float(links[i] % width - int32_t(i));
-      link_[out + 1] = float(links[i] / width - row);
-      link_[out + 2] = 1.0f;
-    }
+std::shared_ptr<MadeFrame> FrameDelivery::make_beside(int32_t number) const {
+  std::optional<GradusSettings> asked = sequence_->folder_.settings(number);
+  if (changed_) {
+    if (!asked) asked = sequence_->form_at(sequence_->place_of(number)).settings;
+    asked->reconstruction = changed_->reconstruction;
+    asked->reconstruction_alpha = changed_->reconstruction_alpha;
+    asked->denoiser = changed_->denoiser;
   }
+  FrameMaker maker(sequence_.get(), number, asked, cancel_);
+  std::shared_ptr<MadeFrame> made = maker.load();
+  maker.make_picture(made.get());
+  return made;
+}
+
+Tracking FrameDelivery::leads_to(int place) {
+  if (!sequence_->settings_.with_flow) return Tracking::NoNeighbour;
+  const GradusSettings settings = sequence_->form_at(sequence_->place_of(number_)).settings;
+  if (!wants_flow(settings)) return Tracking::NoNeighbour;
+  const bool is_other = changed_ && changed_->reconstruction != GRADUS_RECONSTRUCTION_AUTO;
+  const Tracking found = sequence_->flows_to(place, is_other ? changed_->reconstruction : settings.reconstruction);
+  const bool has_library = sequence_->flow_library(&warnings_) != nullptr;
+  return found == Tracking::Tracked && !has_library ? Tracking::NoFlowLibrary : found;
+}
+
+void FrameDelivery::find_flow(const MadeFrame* previous, double* seconds_ahead, double* cpu_ahead) {
+  const int place = sequence_->place_of(number_);
+  const Tracking leads_here = leads_to(place), leads_on = leads_to(place + 1);
+  std::shared_ptr<MadeFrame> next;
+  if (leads_on == Tracking::Tracked) {
+    const Bill bill(seconds_ahead, cpu_ahead);
+    next = make_beside(number_ + 1);
+  }
+  if (next) {
+    next->record.stats.total_seconds += *seconds_ahead;
+    next->record.stats.process_cpu += *cpu_ahead;
+  }
+  RenderStats& stats = made_->record.stats;
+  const Bill bill(&stats.seconds.links, &stats.cpu_seconds.links);
+  const uint32_t threads = threads_of(changed_.value_or(GradusSettings{}), sequence_->device_.get());
+  tbb::task_arena(arena_size(threads)).execute([&] { join(previous, leads_here, std::move(next), leads_on); });
+  stats.warnings.insert(stats.warnings.end(), warnings_.begin(), warnings_.end());
+}
+
+void FrameDelivery::join(const MadeFrame* previous, Tracking leads_here, std::shared_ptr<MadeFrame> next, Tracking leads_on) {
+  const FlowLibrary* library = sequence_->flow_library(&warnings_);
+  FrameFlows back = std::exchange(sequence_->back_, {});
+  if (back.empty() && previous && can_flow(*previous, *made_)) back = flows_between(*library, *previous, *made_)[1];
+  if (back.empty()) back = flows_without(*made_, Side::Previous, or_no_neighbour(leads_here));
+  stop_if_asked();
+  FrameFlows forth;
+  if (next && can_flow(*made_, *next)) {
+    std::array<FrameFlows, 2> both = flows_between(*library, *made_, *next);
+    forth = std::move(both[0]);
+    sequence_->back_ = std::move(both[1]);
+  }
+  if (forth.empty()) forth = flows_without(*made_, Side::Next, or_no_neighbour(leads_on));
+  sequence_->ahead_ = std::move(next);
+  flows_ = join_flows(*made_, back, forth);
+}
+
+const MadeFrame& FrameDelivery::made(const char* what) const {
+  require_frame(made_ ? made_->frame : nullptr, what, kNotDelivered);
+  return *made_;
 }
 
 const Region& FrameDelivery::delivered() const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its passes come", kNotDelivered);
-  return record_.plan.delivered;
+  return made("its passes come").delivered();
 }
 
 void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its passes come", kNotDelivered);
-  const std::vector<float>* made = pass == GRADUS_PASS_COMBINED          ? &combined_
-                                   : pass == GRADUS_PASS_ERROR           ? &error_
-                                   : pass == GRADUS_PASS_GRADIENT_T      ? &difference_
-                                   : pass == GRADUS_PASS_GRADIENT_T_LINK ? &link_
-                                                                         : nullptr;
-  if (made != nullptr && !made->empty()) {
-    std::copy(made->begin(), made->end(), pixels);
+  const MadeFrame& frame = made("its passes come");
+  const std::vector<float>* plane = pass == GRADUS_PASS_COMBINED          ? &frame.combined
+                                    : pass == GRADUS_PASS_ERROR           ? &frame.error
+                                    : pass == GRADUS_PASS_GRADIENT_T      ? &frame.difference
+                                    : pass == GRADUS_PASS_GRADIENT_T_LINK ? &frame.link
+                                                                          : nullptr;
+  if (plane != nullptr && !plane->empty()) {
+    std::copy(plane->begin(), plane->end(), pixels);
     return;
   }
-  if (light_.read(pass, pixels)) return;
-  const Region& region = record_.plan.delivered;
+  if (frame.light.read(pass, pixels)) return;
+  const Region& region = frame.delivered();
   if (pass == GRADUS_PASS_ERROR) {  // it was cancelled: nothing is known of the picture
     std::fill_n(pixels, size_t(region.area()), 0.0f);
     return;
   }
-  read_frame_pass(*frame_, pass, region, pixels);
+  read_frame_pass(*frame.frame, pass, region, pixels);
 }
 
 void FrameDelivery::read_component(const std::string& name, uint32_t pass, float* pixels) const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its passes come", kNotDelivered);
-  check_component(frame_->settings, name);
-  const Region& region = record_.plan.delivered;
-  const int place = find_component(*frame_, name);
-  const bool has_picture = place >= 0 && size_t(place) < components_.size();
+  const MadeFrame& frame = made("its passes come");
+  check_component(frame.frame->settings, name);
+  const Region& region = frame.delivered();
+  const int place = find_component(*frame.frame, name);
+  const bool has_picture = place >= 0 && size_t(place) < frame.components.size();
   if (place < 0 || (is_of_picture(pass) && !has_picture)) return read_absent_component(pass, region, pixels);
-  read_component_pass(*frame_, place, pass, region, has_picture ? components_[size_t(place)] : std::vector<float>(), pixels);
+  if (is_by_flow(name, pass) && read_flow(size_t(place), pass, pixels)) return;
+  read_component_pass(*frame.frame, place, pass, region, has_picture ? frame.components[size_t(place)] : std::vector<float>(), pixels);
+}
+
+bool FrameDelivery::read_flow(size_t component, uint32_t pass, float* pixels) const {
+  const FlowKind kind{component, is_irradiance_motion(pass) ? FlowDomain::Logarithmic : FlowDomain::Linear};
+  const auto flow = std::find_if(flows_.begin(), flows_.end(), [&](const FlowPass& f) { return f.kind == kind; });
+  if (flow == flows_.end()) return false;
+  if (component_pass_info(pass).channels == 1) {
+    std::copy(flow->tracked.begin(), flow->tracked.end(), pixels);
+  } else {
+    for (const Vec4& vector : flow->vectors) pixels = std::copy_n(&vector[0], 4, pixels);
+  }
+  return true;
 }
 
 std::string FrameDelivery::stats() const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its stats come", kNotDelivered);
-  return stats_json(record_.stats, record_.plan, *frame_);
+  const MadeFrame& frame = made("its stats come");
+  return stats_json(frame.record.stats, frame.record.plan, *frame.frame);
 }
 
 std::shared_ptr<const Frame> FrameDelivery::frame() const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its frame comes", kNotDelivered);
-  return frame_;
+  made("its frame comes");
+  return made_->frame;
 }
 
-uint64_t FrameDelivery::memory_bytes() const { return (frame_ ? frame_->memory_bytes() : 0) + combined_.size() * sizeof(float); }
+uint64_t FrameDelivery::memory_bytes() const {
+  return made_ ? made_->frame->memory_bytes() + 4 * uint64_t(made_->delivered().area()) * sizeof(float) : 0;
+}
 
 }  // namespace gradus

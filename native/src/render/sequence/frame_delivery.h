@@ -1,11 +1,11 @@
-// Delivers a frame of a sequence: its picture from the windows that hold it, and its passes from all of its samples.
+// Delivers a frame of a sequence: as it is made, and with what flow tells of it and the frames beside it.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "render/light_passes.h"
+#include "render/sequence/frame_maker.h"
 #include "render/sequence/sequence.h"
 
 namespace gradus {
@@ -24,24 +24,26 @@ class FrameDelivery final : public RenderTask {
   void render() override;
   uint64_t memory_bytes() const override;
 
-  std::shared_ptr<Frame> load();
-  void deliver_as(const GradusSettings& asked, bool is_planned, Frame* frame) const;
-  void reconstruct();
-  void denoise();
-  // Light passes follow what the picture has become.
-  void split_light();
-  // Passes Gradient T and Gradient T Link, of the frame's own half.
-  void read_differences_over_time(const Frame& base, const GradusSettings& asked, const CancelTest& cancel);
+  // The frame before it, where flow needs it.
+  std::shared_ptr<const MadeFrame> make();
+  std::shared_ptr<MadeFrame> make_beside(int32_t number) const;
+  // Whether flow leads from the frame before `place` to that; if not, why.
+  Tracking leads_to(int place);
+  // Of components. What is made ahead is billed to the frame that it is for.
+  void find_flow(const MadeFrame* previous, double* seconds_ahead, double* cpu_ahead);
+  void join(const MadeFrame* previous, Tracking leads_here, std::shared_ptr<MadeFrame> next, Tracking leads_on);
+  // False: there is none.
+  bool read_flow(size_t component, uint32_t pass, float* pixels) const;
+  // With the lock.
+  const MadeFrame& made(const char* what) const;
 
   const std::shared_ptr<Sequence> sequence_;
   const int32_t number_;
   const std::optional<GradusSettings> changed_;
-  FrameRecord record_;
-  std::shared_ptr<Frame> frame_;
-  std::vector<float> combined_, error_;         // of the region: RGBA, and pass Error where it is asked for
-  std::vector<std::vector<float>> components_;  // RGB of each
-  LightPasses light_;
-  std::vector<float> difference_, link_;  // to the next frame; three values per pixel of the region
+  const CancelTest cancel_ = [this] { return is_stopped(); };
+  std::shared_ptr<MadeFrame> made_;
+  std::vector<FlowPass> flows_;
+  std::vector<std::string> warnings_;  // of looking for flow
 };
 
 }  // namespace gradus

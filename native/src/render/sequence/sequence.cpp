@@ -76,7 +76,8 @@ FrameRange Sequence::own_places() const {
 
 PlannedBytes Sequence::plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings) {
   const SequenceMethod method{plan.reconstruction, settings.reconstruction_alpha, wants(settings.passes, GRADUS_PASS_ERROR)};
-  const PlannedBytes bytes = planned_bytes(plan, method, settings_.windows, own_places().count(), !folder_.is_temporary());
+  const PlannedBytes bytes =
+      planned_bytes(plan, method, settings_.windows, own_places().count(), !folder_.is_temporary(), settings_.with_flow);
   Claim all = claim_of(bytes, folder_.path());
   if (device_) {
     device_->claims().set(this, std::move(all));
@@ -116,7 +117,10 @@ bool Sequence::goes_on_at(int place, uint32_t reconstruction) {
 }
 
 FrameRange Sequence::needs(int32_t frame) const {
-  const FrameRange places = WindowGrid(own_places(), settings_.windows).around(place_of(frame));
+  const FrameRange own = own_places();
+  const WindowGrid grid(own, settings_.windows);
+  FrameRange places = grid.around(place_of(frame));
+  if (settings_.with_flow) places.last = std::max(places.last, grid.around(std::min(place_of(frame) + 1, own.last)).last);
   return {std::max(frame_at(places.first), settings_.first), std::min(frame_at(places.last), last_)};
 }
 
@@ -207,6 +211,26 @@ SequencePictures* Sequence::pictures(const std::string& component, const Sequenc
   while (last < end && goes_on_at(last + 1, method.reconstruction)) ++last;
   if (last < end) pictures->end_at(last);
   return pictures.get();
+}
+
+Tracking Sequence::flows_to(int place, uint32_t reconstruction) {
+  if (!settings_.with_flow || settings_.step != 1) return Tracking::NoNeighbour;  // the surfaces' motion is that from frame to frame
+  const int32_t frame = frame_at(place);
+  const bool comes = last_ == settings_.last || frame <= last_;
+  if (!comes || !folder_.holds(frame) || !folder_.holds(frame - 1) || !goes_on_at(place, reconstruction)) return Tracking::NoNeighbour;
+  const WindowGrid grid(places_with_neighbours(), settings_.windows);
+  if (!folder_.holds(frame_at(grid.around(place - 1).first))) return Tracking::NoNeighbour;  // forgotten: it was delivered before
+  const FrameForm &before = form_at(place - 1), &here = form_at(place);
+  return here.stream == before.stream || here.replayed_stream == before.stream ? Tracking::Tracked : Tracking::Cut;
+}
+
+const FlowLibrary* Sequence::flow_library(std::vector<std::string>* warnings) {
+  if (!flow_library_) {
+    Warnings found;
+    flow_library_ = flow_library_or_warning(settings_.flow_folder.empty() ? flow_library_folder() : settings_.flow_folder, &found);
+    for (std::string text; found.take(&text);) warnings->push_back(text);
+  }
+  return flow_library_->get();
 }
 
 void Sequence::forget_before(int32_t frame) {

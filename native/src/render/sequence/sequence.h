@@ -12,6 +12,7 @@
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "render/loop_input.h"
 #include "render/render_task.h"
+#include "render/sequence/component_flows.h"
 #include "render/sequence/frame_record.h"
 #include "render/sequence/sequence_folder.h"
 #include "render/stats.h"
@@ -23,7 +24,9 @@ struct SequenceSettings {
   int32_t first = 0, last = 0;  // frames that are rendered: first, first + step … not beyond last
   uint32_t step = 1;
   WindowShape windows;
-  std::string folder;  // where raw frames are kept and found again; empty: nowhere
+  std::string folder;         // where raw frames are kept and found again; empty: nowhere
+  bool with_flow = false;     // passes by optical flow are asked for: frames need the next one, too
+  std::string flow_folder{};  // where libgradus_flow.so is; empty: beside this library
 };
 
 // Whether frames with these settings have differences over time, and why not.
@@ -56,6 +59,7 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
  private:
   friend class FrameSampling;
   friend class FrameDelivery;
+  friend class FrameMaker;
 
   // Frames are counted in steps, so that those of one grid are next to each other whatever part of a job they are rendered in.
   int place_of(int32_t frame) const;
@@ -76,6 +80,10 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   SequenceSource source(const SequenceMethod& method, const std::string& component) const;
   // Of a component, that have the picture of `frame`: begun anew where it was taken before, or by another method.
   SequencePictures* pictures(const std::string& component, const SequenceMethod& method, int32_t frame);
+  // Whether flow leads from the frame before to the one at `place`; if not, why. reconstruction: of their pictures.
+  Tracking flows_to(int place, uint32_t reconstruction);
+  // nullptr: there is none, which is told once.
+  const FlowLibrary* flow_library(std::vector<std::string>* warnings);
   // Those that no picture to come needs.
   void forget_before(int32_t frame);
 
@@ -90,6 +98,9 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   std::map<int32_t, FrameForm> forms_;  // of frames that were sampled or looked at
   std::set<int32_t> passed_by_;
   std::map<std::string, std::unique_ptr<SequencePictures>> pictures_;  // by component
+  std::shared_ptr<MadeFrame> ahead_;                                   // made for the frame before it, by flow, and not delivered yet
+  FrameFlows back_;                                                    // of `ahead_` to the frame before it
+  std::optional<std::shared_ptr<const FlowLibrary>> flow_library_;     // once it was looked for
 };
 
 }  // namespace gradus

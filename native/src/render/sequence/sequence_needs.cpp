@@ -47,6 +47,16 @@ uint64_t delivery_bytes(const Sizes& s, const SequenceMethod& method, uint64_t f
   return frames * estimate_bytes(s) + std::max(loading, s.frame + temporal_frame_bytes(s) + kRegression);
 }
 
+// Between two frames at once (motion/irradiance_motion.h): light, known motion and objects of both, levels, and for either way the vectors,
+// images and equations of their refinement, and what OpenCV takes.
+constexpr uint64_t kFlow = 440;
+
+// The frame that is made ahead, and flows with their ways back.
+uint64_t flow_bytes(const Sizes& s, uint64_t components) {
+  const uint64_t pictures = 3 * components * kFloat, kinds = components + 1;
+  return s.frame + 11 * kFloat + 2 * pictures + kinds * 3 * (sizeof(Vec2) + sizeof(float)) + kinds * (sizeof(Vec4) + sizeof(float));
+}
+
 std::string gibibytes(uint64_t bytes) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.1f GiB", double(bytes) / double(uint64_t{1} << 30));
@@ -84,10 +94,12 @@ bool is_memory(const std::string& folder) {
 
 }  // namespace
 
-PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps) {
+PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps,
+                           bool with_flow) {
   const bool regularized = method.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   const uint64_t area = uint64_t(plan.sampled.area()), channels = uint64_t(plan.channels);
-  const Sizes sizes{frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices, plan.component_motion),
+  const Sizes sizes{frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices, plan.component_motion,
+                                          plan.component_motion),
                     channels, uint64_t(regularized || reads_halves(method) ? 1 : 0), uint64_t(plan.gradients && !regularized ? 3 : 1)};
   const uint64_t all = uint64_t(count), in_window = keeps ? uint64_t(windows.frames) : std::min(all, uint64_t(windows.frames));
   const uint64_t ahead = std::min(all, uint64_t(2 * windows.frames - windows.overlap));
@@ -97,6 +109,11 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   PlannedBytes needs;
   needs.memory = area * std::max(sampling, delivered + pictures + delivery_bytes(sizes, method, in_window));
   needs.kept = area * (pictures + (regularized ? temporal_frame_bytes(sizes) + in_window * estimate_bytes(sizes) : 0));
+  if (with_flow && plan.component_motion) {
+    const uint64_t flow = flow_bytes(sizes, uint64_t(plan.components.count()));
+    needs.memory += area * (flow + kFlow);
+    needs.kept += area * flow;
+  }
   needs.frames = area * (keeps ? all : ahead) * 2 * (sizes.frame + sizeof(int32_t));
   if (!regularized) needs.temporary = area * in_window * (2 * sizes.kinds * (1 + sizes.halves) * channels * kFloat + sizeof(int32_t));
   return needs;

@@ -12,8 +12,10 @@
 
 namespace gradus {
 
-// plan: of a frame; count: how many there are; keeps: their files stay, and windows take those beside them that other parts have left.
-PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps);
+// plan: of a frame; count: how many there are; keeps: their files stay, and windows take those beside them that other parts have left;
+// with_flow: as of SequenceSettings.
+PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const WindowShape& windows, int count, bool keeps,
+                           bool with_flow = false);
 
 // Bytes of files by the folders that they lie in.
 using FolderBytes = decltype(Claim::files);

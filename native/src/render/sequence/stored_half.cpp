@@ -34,6 +34,7 @@ std::string difference(const FrameHeader& stored, const GradusSettings& settings
   if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
   const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
   if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
+  if (wants_flow(settings) && !stored.shown) return "was sampled without the motion of components";
   if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
   if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
   if (stored.scene_key != scene_key) return "shows another scene";

@@ -1,0 +1,118 @@
+#include "render/sequence/component_flows.h"
+
+#include "path/components.h"
+#include "render/component_read.h"
+#include "settings/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// What surfaces, or what is seen through them, do towards one side.
+struct KnownMotion {
+  std::vector<Vec2> vectors;
+  std::vector<float> tracked;
+};
+
+template <class Body>
+void each_pixel(const MadeFrame& made, const Body& body) {
+  const Region& region = made.delivered();
+  size_t out = 0;
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    for (int32_t x = region.x0; x < region.x1; ++x, ++out) body(out, made.frame->index(x, y));
+  }
+}
+
+KnownMotion known_motion(const MadeFrame& made, size_t component, Side side) {
+  const ComponentPlanes& planes = made.frame->components[component];
+  const auto pixels = size_t(made.delivered().area());
+  KnownMotion known{std::vector<Vec2>(pixels), std::vector<float>(pixels)};
+  each_pixel(made, [&](size_t out, size_t i) {
+    const Vec4& motion = planes.motion[i];
+    known.vectors[out] = side == Side::Previous ? Vec2(motion) : -Vec2(motion.z, motion.w);
+    known.tracked[out] = planes.tracked[i];
+  });
+  return known;
+}
+
+// Without the film's exposure, which may change from frame to frame.
+std::vector<Rgb> light_of(const MadeFrame& made, const FlowKind& kind) {
+  const Region& region = made.delivered();
+  const uint32_t pass = kind.domain == FlowDomain::Logarithmic ? GRADUS_COMPONENT_IRRADIANCE : GRADUS_COMPONENT_COLOR;
+  std::vector<float> values(3 * size_t(region.area()));
+  read_component_pass(*made.frame, int(kind.component), pass, region, made.components[kind.component], values.data());
+  const float exposure = made.frame->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
+  std::vector<Rgb> light(values.size() / 3);
+  for (size_t i = 0; i < light.size(); ++i) light[i] = factor * Rgb(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  return light;
+}
+
+class FlowInput {
+ public:
+  FlowInput(const MadeFrame& made, const FlowKind& kind, Side side)
+      : light_(light_of(made, kind)), known_(known_motion(made, kind.component, side)), object_(light_.size()), depth_(light_.size()) {
+    const std::vector<ShownPoint>& shown = made.frame->components[kind.component].shown;
+    each_pixel(made, [&](size_t out, size_t i) {
+      object_[out] = int32_t(shown[i].object);
+      depth_[out] = shown[i].depth;
+    });
+  }
+  ComponentFrame view() const { return {light_, known_.vectors, known_.tracked, object_, depth_}; }
+
+ private:
+  std::vector<Rgb> light_;
+  KnownMotion known_;
+  std::vector<int32_t> object_;
+  std::vector<float> depth_;
+};
+
+}  // namespace
+
+std::vector<FlowKind> wanted_flows(const Frame& frame) {
+  std::vector<FlowKind> kinds;
+  const uint32_t passes = frame.settings.component_passes;
+  const bool of_irradiance = wants_any(passes, is_irradiance_motion);
+  const bool of_residual = wants(passes, GRADUS_COMPONENT_MOTION) || wants(passes, GRADUS_COMPONENT_TRACKED);
+  for (size_t c = 0; c < frame.components.size(); ++c) {
+    if (of_residual && frame.components[c].name == kResidual) kinds.push_back({c, FlowDomain::Linear});
+    if (of_irradiance) kinds.push_back({c, FlowDomain::Logarithmic});
+  }
+  return kinds;
+}
+
+std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const MadeFrame& first, const MadeFrame& second) {
+  std::array<FrameFlows, 2> flows;
+  const Region& region = first.delivered();
+  for (const FlowKind& kind : wanted_flows(*first.frame)) {
+    const FlowInput a(first, kind, Side::Next), b(second, kind, Side::Previous);
+    std::array<PixelMotion, 2> motion = irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kind.domain);
+    for (size_t i = 0; i < 2; ++i) flows[i].push_back(std::move(motion[i]));
+  }
+  return flows;
+}
+
+FrameFlows flows_without(const MadeFrame& frame, Side side, Tracking cause) {
+  FrameFlows flows;
+  for (const FlowKind& kind : wanted_flows(*frame.frame)) {
+    KnownMotion known = known_motion(frame, kind.component, side);
+    for (float& tracked : known.tracked) tracked = tracked == kTracked ? float(cause) : tracked;
+    flows.push_back({std::move(known.vectors), std::move(known.tracked)});
+  }
+  return flows;
+}
+
+std::vector<FlowPass> join_flows(const MadeFrame& frame, const FrameFlows& previous, const FrameFlows& next) {
+  std::vector<FlowPass> passes;
+  const std::vector<FlowKind> kinds = wanted_flows(*frame.frame);
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    const PixelMotion &before = previous[k], &after = next[k];
+    FlowPass pass{kinds[k], std::vector<Vec4>(before.vectors.size()), before.tracked};
+    for (size_t i = 0; i < pass.vectors.size(); ++i) {
+      pass.vectors[i] = Vec4(before.vectors[i], -after.vectors[i]);
+      if (pass.tracked[i] == kTracked) pass.tracked[i] = after.tracked[i];
+    }
+    passes.push_back(std::move(pass));
+  }
+  return passes;
+}
+
+}  // namespace gradus
