@@ -102,7 +102,7 @@ class Refinement {
     const FilmPlane<float> warped{width_, height_, warped_};
     const auto mean = [&](int i, int j) { return 0.5f * (pair_.from.at(i, j) + warped.at(i, j)); };
     const Vec2 gradient = 0.5f * Vec2(mean(x + 1, y) - mean(x - 1, y), mean(x, y + 1) - mean(x, y - 1));
-    const float change = warped_[p] - pair_.from.values[p], variance = 2.0f * pair_.noise * pair_.noise;
+    const float change = warped_[p] - pair_.from.values[p], variance = 2.0f * pair_.noise[p] * pair_.noise[p];
     const float weight = 1.0f / (variance * std::max(1.0f, std::abs(change) / (kOutlier * std::sqrt(variance))));
     return {weight * gradient.x * gradient.x, weight * gradient.x * gradient.y, weight * gradient.y * gradient.y,
             -weight * change * gradient};

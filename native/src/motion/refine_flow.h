@@ -12,7 +12,7 @@ namespace gradus {
 
 struct FlowPair {
   FilmPlane<float> from, to;
-  float noise = 1.0f;               // standard deviation of a level of either, above 0
+  std::span<const float> noise;     // by pixels: standard deviation of a level of either, above 0
   std::span<const Vec2> bootstrap;  // by pixels of `from`, in pixels: known motion; what is beside it is smooth
   std::span<const uint8_t> seen;    // whether `to` can show what the pixel shows; where not, vectors are filled in
   std::span<const int32_t> object;  // between two of them nothing is smooth

@@ -24,8 +24,8 @@ class RestFlow {
     const GreyImage there = compensated();
     const std::vector<Vec2> found = optical_flow(library, from_.image(), there);
     const std::vector<float> still = squares_off(there, std::vector<Vec2>(found.size())), moved = squares_off(there, found);
-    const float noise = deviation(moved);
-    std::vector<Vec2> rest = believed(found, still, moved, std::max(noise, kLeastBelieved));
+    const std::vector<float> noise = deviations(moved);
+    std::vector<Vec2> rest = believed(found, still, moved, noise);
     refine_flow({from_.levels(), to_.levels(), noise, from_.surface(), seen_, from_.object()}, &rest);
     for (size_t p = 0; p < rest.size(); ++p) rest[p] = from_.bounded(from_.surface()[p] + rest[p]);
     return rest;
@@ -71,15 +71,25 @@ class RestFlow {
     return std::max(kLeastNoise, kDeviation * std::sqrt(*middle));
   }
 
+  // At each pixel: where the light is noisier than in most of the film, what is still off tells around it.
+  std::vector<float> deviations(const std::vector<float>& squares) const {
+    const float of_most = deviation(squares);
+    std::vector<float> result = patch_means(squares);
+    for (float& value : result) value = std::max(of_most, std::sqrt(0.5f * value));
+    return result;
+  }
+
   // The vectors that explain more than chance; no rest for the others.
-  std::vector<Vec2> believed(const std::vector<Vec2>& found, std::vector<float> still, const std::vector<float>& moved, float noise) const {
+  std::vector<Vec2> believed(const std::vector<Vec2>& found, std::vector<float> still, const std::vector<float>& moved,
+                             const std::vector<float>& noise) const {
     for (size_t p = 0; p < still.size(); ++p) still[p] -= moved[p];
     const std::vector<float> gain = patch_means(still);
     std::vector<Vec2> rest(found.size(), Vec2(0.0f));
     for (size_t p = 0; p < found.size(); ++p) {
       const Vec2 place = from_.place(p) + found[p];
       const size_t q = from_.nearest(place);
-      if (gain[p] < kGain * noise * noise || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) continue;
+      const float least = std::max(noise[p], kLeastBelieved);
+      if (gain[p] < kGain * least * least || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) continue;
       // What it shows there has gone on with the surface of that place.
       rest[p] = found[p] + linear_at(from_.plane(from_.surface()), place) - from_.surface()[p];
     }

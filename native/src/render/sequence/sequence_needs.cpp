@@ -5,6 +5,7 @@
 #include <sys/vfs.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdio>
 #include <filesystem>
 
@@ -52,8 +53,9 @@ uint64_t delivery_bytes(const Sizes& s, const SequenceMethod& method, uint64_t f
 constexpr uint64_t kFlow = 440;
 
 // The frame that is made ahead, and flows with their ways back.
-uint64_t flow_bytes(const Sizes& s, uint64_t components) {
-  const uint64_t pictures = 3 * components * kFloat, kinds = components + 1;
+uint64_t flow_bytes(const Sizes& s, const Plan& plan) {
+  const auto components = uint64_t(plan.components.count()), light = uint64_t(std::popcount(plan.passes & light_passes()));
+  const uint64_t pictures = 3 * (components + light) * kFloat, kinds = components + 1;
   return s.frame + 11 * kFloat + 2 * pictures + kinds * 3 * (sizeof(Vec2) + sizeof(float)) + kinds * (sizeof(Vec4) + sizeof(float));
 }
 
@@ -110,7 +112,7 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   needs.memory = area * std::max(sampling, delivered + pictures + delivery_bytes(sizes, method, in_window));
   needs.kept = area * (pictures + (regularized ? temporal_frame_bytes(sizes) + in_window * estimate_bytes(sizes) : 0));
   if (with_flow && plan.component_motion) {
-    const uint64_t flow = flow_bytes(sizes, uint64_t(plan.components.count()));
+    const uint64_t flow = flow_bytes(sizes, plan);
     needs.memory += area * (flow + kFlow);
     needs.kept += area * flow;
   }

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "frame/pass_planes.h"
 #include "render/sequence/sequence_fixture.h"
 
 namespace gradus::test {
@@ -71,6 +72,19 @@ TEST(PlannedMemory, APartOfAStoreHasWholeWindows) {
     EXPECT_EQ(part.temporary, whole.temporary);
     EXPECT_LT(part.frames, whole.frames) << "it writes its own";
   }
+}
+
+TEST(PlannedMemory, FlowHoldsTheFrameThatIsMadeAhead) {
+  Plan plan;
+  plan.sampled = {0, 0, 100, 100};
+  plan.gradients = true;
+  const SequenceMethod method{GRADUS_RECONSTRUCTION_L2, 0.0f, false};
+  const auto planned = [&](bool with_flow) { return planned_bytes(plan, method, {}, 20, false, with_flow); };
+  EXPECT_EQ(planned(true).memory, planned(false).memory) << "nobody asks for motion";
+  plan.component_motion = true;
+  const uint64_t frame = frame_bytes_per_pixel(plan.components.count(), true, plan.passes, false, true, true) * 10000;
+  EXPECT_GT(planned(true).memory, planned(false).memory + frame);
+  EXPECT_GE(planned(true).kept, planned(false).kept + frame);
 }
 
 // Layers and views of an animation go on side by side, and each was planned as if alone.
