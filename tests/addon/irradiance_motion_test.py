@@ -30,7 +30,7 @@ def shadow(scene: bpy.types.Scene) -> bpy.types.Scene:
     recording.add(lamp, "Sun")
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
     scene.frame_start, scene.frame_end = 1, LAST
-    scene.gradus.samples, scene.gradus.use_decomposition = 16, True
+    scene.gradus.samples, scene.gradus.use_decomposition = 64, True
     layer = scene.view_layers[0].gradus
     layer.use_pass_component_motion = layer.use_pass_component_irradiance_motion = True
     return scene
@@ -53,15 +53,19 @@ def test_a_shadow_has_vectors_where_the_floor_rests(shadow: bpy.types.Scene, tmp
             assert (known == NO_NEIGHBOUR).any() and not (known == 1.0).any()
             continue
         light = rendered["Path Diffuse"][..., 0]
-        edge = np.abs(np.gradient(light, axis=1)) > 0.03 * light.max()
+        slope = np.stack(np.gradient(light)[::-1], axis=-1)
+        steepness = np.linalg.norm(slope, axis=-1)
+        edge = steepness > 0.03 * light.max()
         edge[:, :8] = edge[:, -8:] = False
-        found = vectors[edge & (known == 1.0)]
-        assert len(found) > 0.5 * edge.sum() > 20
-        assert (np.abs(found[:, [0, 2]] + SHIFT).max(axis=1) < 0.2).mean() > 0.7
+        seen = edge & (known == 1.0)
+        assert seen.sum() > 0.5 * edge.sum() > 20
+        # Along an edge nobody sees it move.
+        across = slope[seen] / steepness[seen][:, None]
+        away = [np.abs(((vectors[seen][:, side] + (SHIFT, 0.0)) * across).sum(axis=1)) for side in (slice(0, 2), slice(2, 4))]
+        assert np.median(np.maximum(*away)) < 0.2
 
 
 def test_a_still_has_the_floor_s_motion_untracked(shadow: bpy.types.Scene, tmp_path: Path) -> None:
     rendered = images.render(shadow, tmp_path, frame=2)
     assert (rendered["Path Diffuse Irradiance Tracked"] == NO_NEIGHBOUR).all()
-    assert (rendered["Path Residual Tracked"] == NO_NEIGHBOUR).all()
     assert np.abs(rendered["Path Diffuse Irradiance Motion"]).max() < 1e-3
