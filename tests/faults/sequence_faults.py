@@ -14,7 +14,7 @@ PIXELS = "native/src/integrator/pixel_loop.cpp"
 LINKS = "native/src/temporal/pixel_links.cpp"
 TEMPORAL_FRAME = "native/src/temporal/temporal_frame.cpp"
 REPEATED = "native/src/temporal/temporal_frame.h"
-DELIVERY = "native/src/render/sequence/frame_delivery.cpp"
+MAKER = "native/src/render/sequence/frame_maker.cpp"
 FRAME_WINDOW = "native/src/temporal/frame_window.cpp"
 SPOOLED = "native/src/temporal/spooled_frame.cpp"
 MOTION = "native/src/motion/snapshot_motion.cpp"
@@ -230,9 +230,9 @@ SEQUENCES = (
         27,
         HALVES,
         "differences over time are those of the next frame's own half",
-        DELIVERY,
-        "folder.load(next, FramePart::kOffset, StoredContent::kSamples, cancel)",
-        "folder.load(next, FramePart::kBase, StoredContent::kSamples, cancel)",
+        MAKER,
+        "folder.load(next, FramePart::kOffset, StoredContent::kSamples, is_cancelled_)",
+        "folder.load(next, FramePart::kBase, StoredContent::kSamples, is_cancelled_)",
         (native("Sequence.GradientTLeadsToTheNextFrame"),),
     ),
     Fault(
