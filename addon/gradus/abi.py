@@ -463,6 +463,7 @@ class Settings(Struct):
         ("use_decomposition", c_uint32),
         ("component_passes", c_uint32),
         ("components", c_char * 512),
+        ("component_replays", c_uint32),
     ]
 
 

@@ -185,6 +185,16 @@ SETTINGS: tuple[Setting, ...] = (
         0,
         511,
     ),
+    Setting(
+        "component_replays",
+        BOOL,
+        True,
+        "Follow Reflections",
+        "In animations, what mirrors and glass show is compared with where it was, not with where they were: less flicker where the two "
+        "move differently",
+        0,
+        1,
+    ),
     Setting("strict", BOOL, False, "Strict", "Missing or broken image files end the render with an error in place of a warning", 0, 1),
     Setting(
         "preview_samples",

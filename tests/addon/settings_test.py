@@ -40,6 +40,7 @@ DOCUMENTED = {
     "vector_with_motion_blur": False,
     "use_decomposition": False,
     "components": "",
+    "component_replays": True,
 }
 """Names that tests and users rely on, and their defaults."""
 

@@ -43,6 +43,7 @@ class GRADUS_RENDER_PT_decomposition(RenderPanel, bpy.types.Panel):
         draw_components(layout, found)
         layout.prop(context.window_manager.gradus, "path")
         draw_path(layout, scene, context.window_manager.gradus.path, characters(context))
+        layout.prop(scene.gradus, "component_replays")
 
 
 def draw_error(layout: Any, text: str, width: int) -> None:

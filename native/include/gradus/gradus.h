@@ -439,6 +439,7 @@ typedef struct GradusSettings {
   uint32_t use_decomposition;      /* the picture is sampled and reconstructed by components (docs/contract.md 3) */
   uint32_t component_passes;       /* bit i = GradusComponentPass i of each component is wanted */
   char components[512];            /* "Name=EXPR;Name=EXPR" in UTF-8, ended by 0; "" = the default set */
+  uint32_t component_replays;      /* temporal differences of a component go where it goes, not where the surface goes */
 } GradusSettings;
 
 typedef enum GradusPass {

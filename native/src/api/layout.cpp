@@ -40,7 +40,8 @@ GRADUS_FIELDS(Settings, struct_size, width, height, region, samples, min_samples
   frame, integrator, reconstruction, reconstruction_alpha, max_bounces, diffuse_bounces, glossy_bounces, transmission_bounces,
   volume_bounces, transparent_max_bounces, clamp_direct, clamp_indirect, pixel_filter, filter_width, film_exposure, film_transparent,
   roughness_threshold, strict, threads, alpha_threshold, use_sky, independent_sampler, passes, first_sample,
-  denoiser, use_decomposition, component_passes, components)
+  denoiser, use_decomposition, component_passes, components,
+  component_replays)
 GRADUS_FIELDS(OptionInfo, struct_size, type, name, doc, default_value, minimum, maximum, choices)
 GRADUS_FIELDS(Progress, struct_size, phase, fraction, seconds, samples_done, version, memory_bytes, peak_memory_bytes)
 GRADUS_FIELDS(SequenceSettings, struct_size, step, first, last, window_size, window_overlap, folder, with_flow, reserved)

@@ -66,6 +66,8 @@ constexpr Option kOptions[] = {
     OPTION(use_decomposition, kBool, 0, 0, 1, "", kSampling, "The picture is sampled and reconstructed by components, each with passes of its own"),
     OPTION(components, kText, 0, 0, sizeof(GradusSettings::components) - 1, "", kSampling,
            "Components by path expressions, Name=EXPR;Name=EXPR; empty: Emission, Diffuse, Reflection, Transmission and Residual"),
+    OPTION(component_replays, kBool, 1, 0, 1, "", kSampling,
+           "In animations, what mirrors and glass show is compared with where it was, not with where they were"),
     OPTION(first_sample, kInt, 0, 0, 16777216, "", kOther, "Number of the first sample, for frames that are merged later"),
 };
 // clang-format on

@@ -48,6 +48,7 @@ use_sky 2 1 0 1
 independent_sampler 2 0 0 1 
 use_decomposition 2 0 0 1 
 components 4 0 0 511 
+component_replays 2 1 0 1 
 first_sample 0 0 0 1.67772e+07 
 )";
 

@@ -33,6 +33,7 @@ std::vector<int32_t> sources_of_residual(const std::vector<int32_t>& surface, co
 
 Sources sources_of_components(const CentreView& from, const CentreView& to, const GradusSettings& settings, const ComponentSet& components,
                               const std::vector<int32_t>& links, const std::vector<int32_t>& surface, const CancelTest& cancel) {
+  if (components.count() == 1 || settings.component_replays == 0) return {};
   Sources sources(static_cast<size_t>(components.count()));
   const ChainTracer tracer{*to.snapshot, to.camera, settings};
   const auto residual = size_t(components.count() - 1);

@@ -20,6 +20,7 @@ GradusSettings settings_for(int32_t frame, uint32_t reconstruction, const char* 
   if (components == nullptr) return settings;
   settings.use_decomposition = 1;
   settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
+  settings.component_replays = 1;
   set_text(&settings, *find_option("components"), components);
   return settings;
 }
@@ -106,6 +107,18 @@ TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
   const auto whole =
       load_component(SequenceFolder(folder.path()).path(1, FramePart::kOffset), "Transmission", StoredContent::kAll, [] { return false; });
   EXPECT_EQ(whole->replayed.pixel, sources.of_component[size_t(find_component(*offset, "Transmission"))]);
+}
+
+TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
+  Pan pan(1.0f, Scenario::Glass);
+  const Folder folder;
+  const auto sequence = make_sequence(0, 1, folder.path());
+  for (int32_t frame = 0; frame <= 1; ++frame) {
+    GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
+    settings.component_replays = 0;
+    sample(sequence.get(), pan.at(frame), settings);
+  }
+  EXPECT_TRUE(SequenceFolder(folder.path()).load(1, FramePart::kOffset)->replayed.of_component.empty());
 }
 
 // Whatever the links say, a replay is a sample of its pixel.
