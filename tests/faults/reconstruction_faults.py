@@ -257,8 +257,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "in Error: the scale is not squared",
         REGULARIZED,
-        "  Field error = regression.error();\n  multiply(scale * scale, &error);",
-        "  Field error = regression.error();\n  multiply(scale, &error);",
+        "  multiply(scale * scale, &error);",
+        "  multiply(scale, &error);",
         (native("B2_Regularized.ScalesWithTheImage"),),
     ),
     Fault(

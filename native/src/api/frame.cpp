@@ -133,9 +133,9 @@ std::vector<float> reconstruct_color(FrameObject* object, const Frame& frame, in
   tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
     SolveReport report;
+    ComponentGuides guides(frame);
     const Reconstructed picture = reconstruct_component(
-        frame, component, reconstruction, frame.settings.reconstruction_alpha, false, shared_features(frame, reconstruction),
-        [] { return false; }, &report);
+        frame, component, reconstruction, frame.settings.reconstruction_alpha, false, &guides, [] { return false; }, &report);
     color = crop_component(frame, reconstruction, picture.image, delivered_region(frame));
   });
   return color;
@@ -222,7 +222,7 @@ GradusError gradus_frame_read_component(GradusFrame frame, const char* component
     api::check_array(pixels, count, "pixels");
     check_component(content->settings, name);
     const int place = find_component(*content, name);
-    if (place < 0) return static_cast<void>(std::fill_n(pixels, count, 0.0f));
+    if (place < 0) return read_absent_component(pass, region, pixels);
     const std::vector<float> color = is_of_picture(pass) ? api::reconstruct_color(object.get(), *content, place) : std::vector<float>();
     read_component_pass(*content, place, pass, region, color, pixels);
   });

@@ -19,7 +19,6 @@ struct SampleSources {
   std::vector<std::vector<int32_t>> of_component{};
 
   bool has_own(int component) const { return size_t(component) < of_component.size() && !of_component[size_t(component)].empty(); }
-  const std::vector<int32_t>& pixels_of(int component) const { return has_own(component) ? of_component[size_t(component)] : pixel; }
 };
 
 inline bool replays_same(const SampleSources& a, const SampleSources& b) { return a.pixel == b.pixel && a.of_component == b.of_component; }

@@ -4,6 +4,7 @@
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -20,7 +21,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormat = 8;
-constexpr size_t kMostComponents = 64;
+constexpr size_t kMostStoredComponents = 64;
 constexpr int kMaxSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
 
@@ -175,8 +176,8 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.gradients = description.at("gradients");
   frame.planes = description.at("planes");
   frame.rough = description.at("rough");
-  frame.motion = description.value("motion", false);
-  frame.shown = description.value("shown", false);
+  frame.motion = description.at("motion");
+  frame.shown = description.at("shown");
   frame.settings = settings_from_json(description.at("settings"));
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
@@ -187,10 +188,6 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.frame_number = description.at("frame");
   return frame;
 }
-
-}  // namespace
-
-namespace {
 
 // 0 where there is none: whoever asks for one that is not there gets planes all the same (keep_component()).
 size_t place_of(const json& names, const std::string& name) {
@@ -221,7 +218,7 @@ Frame make_frame(const Imf::Header& header, StoredContent content, const std::st
   const json description = description_of(header);
   const FrameHeader known = read_header(header, description);
   const json& names = description.at("components");
-  if (!names.is_array() || names.empty() || names.size() > kMostComponents) throw damaged("its planes are wrong");
+  if (!names.is_array() || names.empty() || names.size() > kMostStoredComponents) throw damaged("its planes are wrong");
   const int components = int(names.size());
   const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients, rough = is_whole && known.rough,
              motion = is_whole && known.motion, shown = is_whole && known.shown;

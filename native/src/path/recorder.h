@@ -28,9 +28,10 @@ class PassRecorder {
   void no_ray() {
     if (!again_) add(GRADUS_PASS_MIST, 1.0f);
   }
-  // A lamp or the world on the path's last segment, with the whole of the light that arrives from there.
-  void sighting(const Rgb& light) {
-    if (!features_done_) add_albedo(light);
+  // A lamp or the world on the path's last segment, with the whole of the light that comes from there.
+  void sighting(const Rgb& throughput, int component, const Rgb& light) {
+    if (!features_done_) add_albedo(throughput * light);
+    shines(component, light);
   }
   // Light that a ray found, before any weight. Seen in a mirror or behind glass it is a feature of its component, as the albedo is.
   void shines(int component, const Rgb& light);

@@ -5,8 +5,6 @@
 #include "base/error.h"
 #include "frame/features.h"
 #include "reconstruct/error_estimate.h"
-#include "reconstruct/feature_filter.h"
-#include "reconstruct/regularized.h"
 
 namespace gradus {
 namespace {
@@ -47,12 +45,8 @@ void add_image(std::vector<float> term, std::vector<float>* sum) {
   for (size_t i = 0; i < term.size(); ++i) (*sum)[i] += term[i];
 }
 
-Features shared_features(const Frame& frame, uint32_t reconstruction) {
-  return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? filter_features(read_features(frame)) : Features();
-}
-
 Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, bool wants_error,
-                                    const Features& features, const CancelTest& cancel, SolveReport* report) {
+                                    ComponentGuides* guides, const CancelTest& cancel, SolveReport* report) {
   const size_t pixels = size_t(frame.region.area());
   if (is_black(frame.components[size_t(component)])) {
     const bool tells_error = wants_error && reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
@@ -62,8 +56,7 @@ Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t 
     case GRADUS_RECONSTRUCTION_NONE:
       return {read_images(frame, component).primal, {}};
     case GRADUS_RECONSTRUCTION_REGULARIZED: {
-      const bool own = has_own_features(frame, component);
-      Reconstructed result = own ? regularize(frame, component, cancel, report) : regularize(frame, component, features, cancel, report);
+      Reconstructed result = regularize(frame, component, guides->of(component), cancel, report);
       if (!wants_error) result.error = {};
       return result;
     }
@@ -77,9 +70,9 @@ Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, flo
   check_readable(frame, reconstruction);
   Reconstructed sum;
   ErrorTerms terms;
-  const Features features = shared_features(frame, reconstruction);
+  ComponentGuides guides(frame);
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, wants_error, features, cancel, report);
+    Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, wants_error, &guides, cancel, report);
     if (wants_error && part.error.empty()) {
       ErrorTerms of_part = error_terms(frame, component, reconstruction, alpha, part.image, cancel);
       add_image(std::move(of_part.noise), &terms.noise);

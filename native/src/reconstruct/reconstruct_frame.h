@@ -1,8 +1,8 @@
 // What a frame becomes: its picture, and what is known of the picture's error.
 #pragma once
 
-#include "frame/features.h"
 #include "reconstruct/reconstructed.h"
+#include "reconstruct/regularized.h"
 #include "reconstruct/solver.h"
 
 namespace gradus {
@@ -17,11 +17,9 @@ Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, flo
 void clamp_component(const Frame& frame, uint32_t reconstruction, size_t components, std::vector<float>* image);
 
 // One component; with its error only where the reconstruction estimates it itself (REGULARIZED), else see error_estimate.h.
-// features: shared_features() of the frame.
+// guides: of the frame; looked at by REGULARIZED alone.
 Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, bool wants_error,
-                                    const Features& features, const CancelTest& cancel, SolveReport* report);
-// What reconstruct_component() reads for all components; empty where the reconstruction needs none.
-Features shared_features(const Frame& frame, uint32_t reconstruction);
+                                    ComponentGuides* guides, const CancelTest& cancel, SolveReport* report);
 
 // *sum += term, image by image; an empty sum is 0.
 void add_image(std::vector<float> term, std::vector<float>* sum);

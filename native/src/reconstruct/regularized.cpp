@@ -151,6 +151,8 @@ Field fuse(const GradientImages& images, float scale, float unknown, Field regre
 constexpr int kFarthest = 64;
 constexpr int kLargestSquareSide = 16;
 
+Region whole(const HalvedImage& image) { return {0, 0, image.mean.width(), image.mean.height()}; }
+
 // Of the image; whole squares of it.
 Region lit_part(const HalvedImage& image) {
   const int w = image.mean.width(), h = image.mean.height();
@@ -200,26 +202,30 @@ Features crop(const Features& features, const Region& part) {
           crop(features.depth, features.width, part)};
 }
 
-// Interleaved channels of three, and the error.
-Reconstructed regularize_part(HalvedImage image, float scale, const Features& features, const CancelTest& cancel) {
-  normalise(scale, &image);
-  const FeatureRegression regression(features, image, cancel);
-  Field solution = regression.image(), error = regression.error();
+// In units of the picture, channels interleaved.
+Reconstructed deliver(Field solution, Field error, float scale) {
   multiply(scale, &solution);
   multiply(scale * scale, &error);
-  const size_t pixels = size_t(features.width) * size_t(features.height);
-  Reconstructed result{std::vector<float>(3 * pixels), std::vector<float>(pixels)};
-  for (int c = 0; c < 3; ++c) store_channel(solution, c, 3, result.image.data() + c);
+  const size_t pixels = size_t(solution.width()) * size_t(solution.height()), channels = size_t(solution.channels());
+  Reconstructed result{std::vector<float>(pixels * channels), std::vector<float>(pixels)};
+  for (size_t c = 0; c < channels; ++c) store_channel(solution, int(c), channels, result.image.data() + c);
   store_channel(error, 0, 1, result.error.data());
   return result;
 }
 
+// Of a frame without differences or alpha.
+Reconstructed regularize_part(HalvedImage image, float scale, const Features& features, const CancelTest& cancel) {
+  normalise(scale, &image);
+  const FeatureRegression regression(features, image, cancel);
+  return deliver(regression.image(), regression.error(), scale);
+}
+
 // Into an image that is black elsewhere.
-Reconstructed paste(const Reconstructed& from, const Region& part, int w, int h) {
-  Reconstructed result{std::vector<float>(3 * size_t(w) * size_t(h)), std::vector<float>(size_t(w) * size_t(h))};
-  const auto width = size_t(part.width());
+Reconstructed paste(const Reconstructed& from, const Region& part, const Region& whole) {
+  const auto pixels = size_t(whole.area()), width = size_t(part.width());
+  Reconstructed result{std::vector<float>(3 * pixels), std::vector<float>(pixels)};
   for (size_t y = 0; y < size_t(part.height()); ++y) {
-    const size_t to = (y + size_t(part.y0)) * size_t(w) + size_t(part.x0);
+    const size_t to = (y + size_t(part.y0)) * size_t(whole.width()) + size_t(part.x0);
     std::copy_n(from.image.begin() + ptrdiff_t(3 * width * y), 3 * width, result.image.begin() + ptrdiff_t(3 * to));
     std::copy_n(from.error.begin() + ptrdiff_t(width * y), width, result.error.begin() + ptrdiff_t(to));
   }
@@ -228,21 +234,22 @@ Reconstructed paste(const Reconstructed& from, const Region& part, int w, int h)
 
 }  // namespace
 
-Features features_of(const Frame& frame, int component) {
-  return filter_features(has_own_features(frame, component) ? read_own_features(frame, component) : read_features(frame));
+const Features& ComponentGuides::of(int component) {
+  if (has_own_features(frame_, component)) return own_.emplace(filter_features(read_own_features(frame_, component)));
+  if (!shared_) shared_ = filter_features(read_features(frame_));
+  return *shared_;
 }
 
 Reconstructed regularize(const Frame& frame, int component, const CancelTest& cancel, SolveReport* report) {
-  return regularize(frame, component, features_of(frame, component), cancel, report);
+  return regularize(frame, component, ComponentGuides(frame).of(component), cancel, report);
 }
 
 Reconstructed regularize(const Frame& frame, int component, const Features& features, const CancelTest& cancel, SolveReport* report) {
-  const int w = frame.region.width(), h = frame.region.height();
   HalvedImage image = read_halves(frame, component);
   const float scale = robust_scale(image.mean);
-  const Region part = lit_part(image);
-  if (frame.components.size() > 1 && part.area() < frame.region.area() && !frame.gradients && frame.channels == 3) {
-    return paste(regularize_part(crop(image, part), scale, crop(features, part), cancel), part, w, h);
+  if (frame.components.size() > 1 && !frame.gradients && frame.channels == 3) {
+    const Region part = lit_part(image);
+    return paste(regularize_part(crop(image, part), scale, crop(features, part), cancel), part, whole(image));
   }
   normalise(scale, &image);
   const FeatureRegression regression(features, image, cancel);
@@ -252,14 +259,7 @@ Reconstructed regularize(const Frame& frame, int component, const Features& feat
     read_deviations(frame, component, &images);
     solution = fuse(images, scale, typical_noise(image), std::move(solution), regression.error(), cancel, report);
   }
-  multiply(scale, &solution);
-  const size_t pixels = size_t(w) * size_t(h), channels = size_t(frame.channels);
-  Reconstructed result{std::vector<float>(pixels * channels), std::vector<float>(pixels)};
-  for (int c = 0; c < frame.channels; ++c) store_channel(solution, c, channels, result.image.data() + c);
-  Field error = regression.error();
-  multiply(scale * scale, &error);
-  store_channel(error, 0, 1, result.error.data());
-  return result;
+  return deliver(std::move(solution), regression.error(), scale);
 }
 
 }  // namespace gradus

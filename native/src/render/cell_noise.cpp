@@ -34,7 +34,7 @@ void add_terms(const Frame& frame, int component, uint32_t reconstruction, float
 }
 
 // L1, too: its weights are of the same kind as WEIGHTED's, and those of the noise are known without iterating.
-void add_weighted(const Frame& frame, int component, uint32_t reconstruction, float alpha, const Features&, const CancelTest& cancel,
+void add_weighted(const Frame& frame, int component, uint32_t reconstruction, float alpha, ComponentGuides*, const CancelTest& cancel,
                   FrameNoise* sum) {
   GradientImages images = read_images(frame, component);
   read_deviations(frame, component, &images);
@@ -45,10 +45,10 @@ void add_weighted(const Frame& frame, int component, uint32_t reconstruction, fl
   add_image(std::move(left.noise), &sum->by_own_weights);
 }
 
-void add_other(const Frame& frame, int component, uint32_t reconstruction, float alpha, const Features& features, const CancelTest& cancel,
+void add_other(const Frame& frame, int component, uint32_t reconstruction, float alpha, ComponentGuides* guides, const CancelTest& cancel,
                FrameNoise* sum) {
   SolveReport report;
-  Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, true, features, cancel, &report);
+  Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, true, guides, cancel, &report);
   if (part.error.empty()) add_terms(frame, component, reconstruction, alpha, part.image, cancel, sum);
   add_image(std::move(part.image), &sum->image);
   add_image(std::move(part.error), &sum->error);
@@ -56,10 +56,10 @@ void add_other(const Frame& frame, int component, uint32_t reconstruction, float
 
 FrameNoise noise_of(const Frame& frame, uint32_t reconstruction, float alpha, const CancelTest& cancel) {
   FrameNoise sum;
-  const Features features = shared_features(frame, reconstruction);
+  ComponentGuides guides(frame);
   const auto add_component = follows_noise(reconstruction) ? add_weighted : add_other;
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    add_component(frame, component, reconstruction, alpha, features, cancel, &sum);
+    add_component(frame, component, reconstruction, alpha, &guides, cancel, &sum);
   }
   return sum;
 }

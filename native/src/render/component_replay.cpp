@@ -36,9 +36,8 @@ ComponentReplays replays_of_components(const SampleSources& sources) {
   for (size_t c = 0; c < sources.of_component.size(); ++c) {
     if (!sources.has_own(int(c))) continue;
     const std::vector<int32_t>& own = sources.of_component[c];
-    ComponentReplay replay{uint32_t(c), sources, std::vector<uint8_t>(pixels, 0)};
-    replay.sources.pixel = own;
-    replay.sources.of_component.clear();
+    const SampleSources along{sources.stream_frame, own, sources.scene_key, sources.seed, sources.shares_jitter};
+    ComponentReplay replay{uint32_t(c), along, std::vector<uint8_t>(pixels, 0)};
     if (replays.shared.empty()) replays.shared.assign(pixels, kEveryComponent);
     for (size_t i = 0; i < pixels; ++i) {
       if (!parts(own, sources.pixel, i)) continue;

@@ -1,7 +1,8 @@
 #include "temporal/component_links.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "temporal/pixel_links.h"
 
 namespace gradus {
 
@@ -26,15 +27,15 @@ std::vector<int32_t> link_component(const std::vector<int32_t>& surface, const C
   for (size_t i = 0; i < surface.size(); ++i) {
     if (!is_seen_through(from, i) || motion.tracking[i] != Tracking::Tracked) continue;
     const Vec2 film = motion.film[i];
-    const auto x = int32_t(std::floor(film.x)), y = int32_t(std::floor(film.y));
-    if (!region.contains(x, y)) continue;
-    const size_t next = size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0);
-    const float distance = glm::length(film - pixel_centre(x, y));
+    const int32_t there = pixel_at(region, film);
+    if (there == kNoLink) continue;
+    const auto next = size_t(there);
+    const float distance = glm::length(film - centre_of(region, next));
     if (!(distance < distances[next])) continue;
     if (owner[next] != kNoLink) links[size_t(owner[next])] = kNoLink;
     distances[next] = distance;
     owner[next] = int32_t(i);
-    links[i] = int32_t(next);
+    links[i] = there;
   }
   for (size_t i = 0; i < surface.size(); ++i) {
     if (is_seen_through(from, i) || surface[i] == kNoLink || owner[size_t(surface[i])] != kNoLink) continue;

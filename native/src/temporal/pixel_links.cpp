@@ -23,11 +23,6 @@ struct Target {
   bool found = false;
 };
 
-Vec2 centre_of(const Region& region, size_t pixel) {
-  const auto width = size_t(region.width());
-  return pixel_centre(region.x0 + int32_t(pixel % width), region.y0 + int32_t(pixel / width));
-}
-
 class Tracker {
  public:
   Tracker(const CentreView& from, const CentreView& to) : from_(from), to_(to), motion_(*from.snapshot, *to.snapshot) {}
@@ -55,14 +50,6 @@ class Tracker {
   SnapshotMotion motion_;
 };
 
-// Index of the pixel that holds a film position; kNoLink outside of the region.
-int32_t pixel_at(const Region& region, const Vec2& film) {
-  const float x = std::floor(film.x), y = std::floor(film.y);
-  const bool inside = x >= float(region.x0) && x < float(region.x1) && y >= float(region.y0) && y < float(region.y1);
-  if (!inside) return kNoLink;
-  return (int32_t(y) - region.y0) * region.width() + (int32_t(x) - region.x0);
-}
-
 bool returns(const Tracker& back, const CentreView& from, size_t pixel, int32_t next) {
   const Target t = back.target(size_t(next));
   const Vec2 away = glm::abs(from.camera.way(centre_of(from.region, pixel), t.film));
@@ -77,6 +64,18 @@ void for_each_pixel(size_t count, const Body& body) {
 }
 
 }  // namespace
+
+Vec2 centre_of(const Region& region, size_t pixel) {
+  const auto width = size_t(region.width());
+  return pixel_centre(region.x0 + int32_t(pixel % width), region.y0 + int32_t(pixel / width));
+}
+
+int32_t pixel_at(const Region& region, const Vec2& film) {
+  const float x = std::floor(film.x), y = std::floor(film.y);
+  const bool inside = x >= float(region.x0) && x < float(region.x1) && y >= float(region.y0) && y < float(region.y1);
+  if (!inside) return kNoLink;
+  return (int32_t(y) - region.y0) * region.width() + (int32_t(x) - region.x0);
+}
 
 CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelTest& is_cancelled) {
   const auto pixels = size_t(region.area());

@@ -24,6 +24,11 @@ struct CentreView {
 CentreView view_centres(
     const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelTest& is_cancelled = [] { return false; });
 
+// Middle of a pixel of the region.
+Vec2 centre_of(const Region& region, size_t pixel);
+// The pixel of the region that holds a film position; kNoLink outside.
+int32_t pixel_at(const Region& region, const Vec2& film);
+
 // By pixels of `from`: the pixel of `to`, or kNoLink. One-to-one. A link leads back to within a pixel of where it came from; of several
 // pixels that lead to one the nearest to the camera has it. Both views have the same region.
 std::vector<int32_t> link_pixels(const CentreView& from, const CentreView& to);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/regularized.h"
 #include "reconstruct/solver_planes.h"
@@ -109,7 +108,7 @@ const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, boo
 
 RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, const CancelTest& cancel, SolveReport* report) {
   Estimate estimate;
-  estimate.features = features_of(samples, 0);
+  estimate.features = ComponentGuides(samples).of(0);
   estimate.picture = to_field(samples, regularize(samples, 0, estimate.features, cancel, report));
   const float scale = scale_of(estimate.picture), least = kLeastError * scale * scale;
   estimate.weight = make_field(samples.region.width(), samples.region.height(),
