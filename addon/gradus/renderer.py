@@ -253,22 +253,20 @@ class Job:
         return max(int(self.wants_vectors()), math.ceil(shutter.close) if shutter is not None else 0)
 
     def filled(self) -> list[passes.PassInfo]:
-        """Passes that the library is asked for; the others stay 0. Without vectors all would seem to rest, and to be tracked."""
-        if self.may_have_vectors():
-            return self.infos
-        return [info for info in self.infos if not (info.is_motion and isinstance(info.plane, passes.Part))]
+        """Passes that the library is asked for; the others stay 0."""
+        return [info for info in self.infos if not self.keeps_still(info)]
 
-    def may_have_vectors(self) -> bool:
-        """Under motion blur they are 0 unless they are asked for, as in Cycles: whoever blurs by them would blur twice."""
-        return shutter_of(self.scene, self.layer) is None or self.host_value("vector_with_motion_blur")
+    def keeps_still(self, info: passes.PassInfo) -> bool:
+        """Under motion blur Vector is 0 unless that is asked for, as in Cycles: whoever blurs by it would blur twice. Motion of components,
+        which Cycles does not have, is always what it says."""
+        if not info.is_motion or isinstance(info.plane, passes.Part) or self.host_value("vector_with_motion_blur"):
+            return False
+        return shutter_of(self.scene, self.layer) is not None
 
     def wants_vectors(self) -> bool:
-        if not any(info.is_motion for info in self.infos):
-            return False
-        if self.may_have_vectors():
-            return True
-        self.warn(["Passes of motion are 0: the picture has motion blur (Motion Blur > Vector Pass gives them all the same)"])
-        return False
+        if any(self.keeps_still(info) for info in self.infos):
+            self.warn(["Pass Vector is 0: the picture has motion blur (Motion Blur > Vector Pass gives it all the same)"])
+        return any(info.is_motion for info in self.filled())
 
     def warn(self, texts: list[str]) -> None:
         if self.is_silent:

@@ -85,15 +85,20 @@ def test_what_is_not_tracked_is_0_with_a_cause(sample: bpy.types.Scene, render: 
     assert not known.any(), "of Residual, the last"
 
 
-def test_motion_is_0_under_motion_blur_unless_it_is_asked_for(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
-    """Tracked, too: without the moments around the frame all seemed to rest, and to be known to."""
+def test_components_tell_their_motion_under_motion_blur(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    """Between the moments that the frames stand for, as without blur. Vector alone is 0, so that nobody blurs twice, and says so."""
+    still, known = motion(render(sample, frame=12), "Reflection")
     sample.render.use_motion_blur = True
     store.summaries.clear()
     rendered = render(sample, frame=12)
-    assert not any(image.any() for name, image in rendered.items() if name.endswith((" Motion", " Tracked")))
+    blurred, known_too = motion(rendered, "Reflection")
+    assert (known == known_too).mean() > 0.99
+    assert np.abs(blurred - still)[known & known_too].max() < 0.01
+    assert np.abs(blurred).max() > 0.3
+    assert not rendered["ViewLayer.Vector"].any()
     (summary,) = store.summaries.values()
-    assert [text for text in summary["warnings"] if text.startswith("Passes of motion are 0")]
-    assert np.abs(motion(render(sample, vector_with_motion_blur=True), "Reflection")[0]).max() > 0.3
+    assert [text for text in summary["warnings"] if text.startswith("Pass Vector is 0")]
+    assert render(sample, vector_with_motion_blur=True)["ViewLayer.Vector"].any()
 
 
 # ------------------------------------------------------------------------------------------------ the compositor's sample
