@@ -73,9 +73,44 @@ FeatureImage read_feature(const Frame& frame, uint32_t pass, HalfRange halves) {
   return image;
 }
 
+namespace {
+
+// Paths that are rare do not come to every pixel. Where some come within so many pixels they may come here with other random numbers.
+constexpr int32_t kNear = 3;
+
+bool is_met(const RoughVertices& vertices) { return vertices.samples > 0.0f; }
+
+// 1 for pixels with such within kNear in the direction of `step`, which is that of a pixel to the next of `length`.
+void spread(size_t first, size_t step, int32_t length, std::vector<uint8_t>* pixels) {
+  int32_t last = -kNear - 1, begin = 0;  // the last that had it; the first that is not known to have it
+  for (int32_t i = 0; i < length; ++i) {
+    uint8_t& pixel = (*pixels)[first + size_t(i) * step];
+    if (pixel != 0) {
+      for (int32_t j = std::max(begin, i - kNear); j < i; ++j) (*pixels)[first + size_t(j) * step] = 1;
+      last = begin = i;
+    } else if (i - last <= kNear) {
+      pixel = 1;
+    }
+  }
+}
+
+std::vector<uint8_t> where_present(const Frame& frame, const ComponentPlanes& planes) {
+  std::vector<uint8_t> present(planes.rough[0].size());
+  for_pixels(frame, [&](size_t i) {
+    for (int half = 0; half < kHalves; ++half) {
+      if (is_met(planes.rough[half][i]) || planes.primal[half][i] != Radiance(0.0f)) present[i] = 1;
+    }
+  });
+  const auto width = frame.region.width(), height = frame.region.height();
+  tbb::parallel_for(0, height, [&](int y) { spread(size_t(y) * size_t(width), 1, width, &present); });
+  tbb::parallel_for(0, width, [&](int x) { spread(size_t(x), size_t(width), height, &present); });
+  return present;
+}
+
+}  // namespace
+
 bool has_own_features(const Frame& frame, int component) {
   const auto& rough = frame.components[size_t(component)].rough;
-  const auto is_met = [](const RoughVertices& vertices) { return vertices.samples > 0.0f; };
   return std::any_of(rough[0].begin(), rough[0].end(), is_met) || std::any_of(rough[1].begin(), rough[1].end(), is_met);
 }
 
@@ -99,6 +134,7 @@ Features read_own_features(const Frame& frame, int component) {
   read(&features.normal, 3, [](const RoughVertices& v, uint32_t c) { return v.normal[int(c)]; });
   read(&features.albedo, 3, [](const RoughVertices& v, uint32_t c) { return v.reflectance[int(c)]; });
   read(&features.depth, 1, [](const RoughVertices& v, uint32_t) { return v.depth; });
+  features.present = where_present(frame, frame.components[size_t(component)]);
   return features;
 }
 

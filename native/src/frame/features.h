@@ -19,6 +19,9 @@ struct Features {
   FeatureImage normal;  // in the world, as shaded
   FeatureImage albedo;  // in [0, 1]; of what shines, its light
   FeatureImage depth;   // length of the path to where the others are taken, 0 where it meets nothing such
+  // By pixels, of a component's own: 0 where none of its paths comes near, so that it is black for sure; empty: there may be light
+  // everywhere.
+  std::vector<uint8_t> present{};
 };
 
 bool has_features(const Frame& frame);

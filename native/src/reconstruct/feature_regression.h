@@ -5,6 +5,7 @@
 
 #include "frame/features.h"
 #include "reconstruct/local_regression.h"
+#include "reconstruct/presence.h"
 
 namespace gradus {
 
@@ -37,6 +38,7 @@ class FeatureRegression {
   Field share_;  // of each pixel that the fine windows have
   Field kept_;   // share of each pixel's residual that is given back: outliers are limited
   Field own_;    // share of its own sampled value that a pixel has in the end, against black beside highlights; none for changes
+  Presence presence_;
   Field image_, error_;
 };
 

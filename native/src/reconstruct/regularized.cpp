@@ -198,8 +198,13 @@ FeatureImage crop(const FeatureImage& image, int width, const Region& part) {
 }
 
 Features crop(const Features& features, const Region& part) {
-  return {part.width(), part.height(), crop(features.normal, features.width, part), crop(features.albedo, features.width, part),
-          crop(features.depth, features.width, part)};
+  Features result{part.width(), part.height(), crop(features.normal, features.width, part), crop(features.albedo, features.width, part),
+                  crop(features.depth, features.width, part)};
+  for (int y = part.y0; y < part.y1 && !features.present.empty(); ++y) {
+    const auto row = features.present.begin() + ptrdiff_t(y) * features.width + part.x0;
+    result.present.insert(result.present.end(), row, row + part.width());
+  }
+  return result;
 }
 
 // In units of the picture, channels interleaved.

@@ -493,5 +493,65 @@ TEST(B1_Regularized, OfAComponentThePartThatIsLitIsAsOfTheWhole) {
   }
 }
 
+// A mirror's reflection, in a part of the picture: light 1 of rare bright samples, features of its own.
+Frame make_reflection(const Region& mirror, unsigned seed) {
+  constexpr float kRare = 0.5f;
+  FeatureFrame description{kWidth, kHeight, make_image(kWidth, kHeight, 3, [](int, int, int) { return 0.0f; }), [](size_t) { return 0.0f; },
+                           [](int, int, int, int) { return 0.5f; }};
+  Frame frame = make_feature_frame(description);
+  frame.components.emplace_back(frame.components[0]);
+  keep_rough_vertices(&frame);
+  std::mt19937 random(seed);
+  std::bernoulli_distribution is_bright(kRare);
+  for (int half = 0; half < kHalves; ++half) {
+    for (int y = mirror.y0; y < mirror.y1; ++y) {
+      for (int x = mirror.x0; x < mirror.x1; ++x) {
+        const size_t i = frame.index(x, y);
+        frame.components[1].primal[half][i] = Radiance(is_bright(random) ? 1.0f / kRare : 0.0f);
+        frame.components[1].rough[half][i] = {Rgb(0.8f), Vec3(0.0f, 0.0f, 1.0f), 3.0f + 0.02f * float(x), 1.0f};
+      }
+    }
+  }
+  return frame;
+}
+
+// Black without noise around a component was what windows at its edge explained best, and so they took its light.
+TEST(B2_Regularized, BlackAroundAComponentDoesNotTakeItsLight) {
+  const Region mirror{30, 15, 40, 25};
+  double present = 0.0, everywhere = 0.0;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const Frame frame = make_reflection(mirror, seed);
+    SolveReport report;
+    Features features = ComponentGuides(frame).of(1);
+    const Reconstructed right = regularize(frame, 1, features, never, &report);
+    features.present.clear();
+    const Reconstructed dark = regularize(frame, 1, features, never, &report);
+    for (int y = mirror.y0; y < mirror.y1; ++y) {
+      for (int x = mirror.x0; x < mirror.x1; ++x) {
+        const size_t i = frame.index(x, y);
+        present += std::pow(right.image[3 * i] - 1.0f, 2);
+        everywhere += std::pow(dark.image[3 * i] - 1.0f, 2);
+      }
+    }
+    EXPECT_EQ(right.image[3 * frame.index(20, 20)], 0.0f);
+    EXPECT_EQ(right.error[frame.index(20, 20)], 0.0f);
+  }
+  EXPECT_LT(present, 0.8 * everywhere);
+}
+
+// Paths that are rare: a pixel without them, between others that have some, is no edge.
+TEST(B2_Regularized, AComponentIsPresentWhereRarePathsComeNear) {
+  Frame frame = make_reflection({30, 15, 31, 16}, 1);
+  frame.components[1].primal[0].assign(frame.components[1].primal[0].size(), Radiance(0.0f));
+  frame.components[1].primal[1] = frame.components[1].primal[0];
+  const Features features = read_own_features(frame, 1);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const bool is_near = std::abs(x - 30) <= 3 && std::abs(y - 15) <= 3;
+      ASSERT_EQ(features.present[frame.index(x, y)], is_near ? 1 : 0) << x << " " << y;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gradus
