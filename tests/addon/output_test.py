@@ -116,7 +116,7 @@ def test_texts_for_people_are_one_line_and_never_empty() -> None:
         (21, ("",), (4, 5, 0), 1),
         (21, ("",), (5, 0, 0), 0),
         (20, ("left", "right"), (4, 5, 0), 1),
-        (63, ("",), (3, 4, 1), 6),
+        (63, ("",), (3, 4, 1), len(passes.PARTS)),
     ],
 )
 def test_names_that_blender_cuts_in_files_are_told(layer: int, views: tuple[str, ...], version: tuple[int, ...], lost: int) -> None:
