@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from gradus import passes, renderer
-from support import application, images
+from support import application, compositing, images
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_blends" / "mirror_and_glass.blend"
 DEFAULT = ("Emission", "Diffuse", "Reflection", "Transmission", "Residual")
@@ -272,17 +272,8 @@ def file_output(scene: bpy.types.Scene, names: list[str], folder: Path, dimensio
 
 
 def compositor(scene: bpy.types.Scene) -> bpy.types.NodeTree:
-    if hasattr(scene, "compositing_node_group"):
-        tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
-        tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-        output = tree.nodes.new("NodeGroupOutput")
-    else:
-        scene.use_nodes = True
-        tree = scene.node_tree
-        tree.nodes.clear()
-        output = tree.nodes.new("CompositorNodeComposite")
-    render = tree.nodes.new("CompositorNodeRLayers")
-    tree.links.new(render.outputs["Image"], output.inputs[0])
+    tree, render, output = compositing.new_tree(scene)
+    tree.links.new(render.outputs["Image"], output)
     scene.view_layers[0].update_render_passes()
     return tree
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gradus import passes
 from gradus.abi import Pass
-from support import images
+from support import compositing, images
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_blends" / "glass_and_chrome.blend"
 SCATTERED = ("DIFFUSE", "GLOSSY", "TRANSMISSION")
@@ -47,18 +47,8 @@ def summed(tree: bpy.types.NodeTree, render: bpy.types.Node) -> bpy.types.NodeSo
 
 def compose(scene: bpy.types.Scene) -> None:
     """Render → Σ Color · (Direct + Indirect) + Emission + Environment → output."""
-    if hasattr(scene, "compositing_node_group"):
-        tree = bpy.data.node_groups.new("Light", "CompositorNodeTree")
-        tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-        scene.compositing_node_group = tree
-        output = tree.nodes.new("NodeGroupOutput")
-    else:
-        scene.use_nodes = True
-        tree = scene.node_tree
-        tree.nodes.clear()
-        output = tree.nodes.new("CompositorNodeComposite")
-    render = tree.nodes.new("CompositorNodeRLayers")
-    tree.links.new(summed(tree, render), output.inputs[0])
+    tree, render, output = compositing.new_tree(scene)
+    tree.links.new(summed(tree, render), output)
 
 
 @pytest.mark.parametrize("reconstruction", ["REGULARIZED", "WEIGHTED"])
