@@ -138,7 +138,11 @@ TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
         opening += process_cpu_nanoseconds() - begin;
         return opened;
       },
-      [&](int frame, const CancelTest&) { return std::make_unique<PairOf>(source, frame); });
+      [&](int frame, const CancelTest&) {
+        ComponentSources sources;
+        sources.push_back(std::make_unique<PairOf>(source, frame));
+        return sources;
+      });
   windows.reconstruct({0, size.frames - 1}, kNever, &report, [](int, const Reconstructed&) {});
   const double pixels = double(size.width) * size.height * size.frames, bytes = double(peak_bytes() - before) / pixels;
   std::printf("  %.1f bytes, %.2f µs per pixel and frame\n", bytes, 1e-3 * double(process_cpu_nanoseconds() - start - opening) / pixels);

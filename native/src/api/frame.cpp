@@ -59,10 +59,12 @@ MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t recon
   if (denoiser == GRADUS_DENOISER_AUTO && !denoiser_pays(mean_samples(frame))) denoiser = GRADUS_DENOISER_NONE;
   const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
   std::vector<float> image, estimate;
+  std::vector<std::vector<float>> components;
   tbb::task_arena(arena_size(threads)).execute([&] {
     const FlushDenormals flush;
     SolveReport report;
-    image = combine(frame, reconstruction, alpha, delivered_region(frame), never, &report, error != nullptr ? &estimate : nullptr);
+    image = combine(frame, reconstruction, alpha, delivered_region(frame), never, &report, error != nullptr ? &estimate : nullptr,
+                    frame.components.size() > 1 ? &components : nullptr);
   });
   if (library) {
     if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
@@ -72,19 +74,20 @@ MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t recon
     if (denoised.empty()) {
       object->device->warnings().add(failure);
     } else {
+      follow_picture(image, denoised, &components);
       image = std::move(denoised);
       for (float& value : estimate) value *= denoised_error(reconstruction);
     }
   }
   std::copy(estimate.begin(), estimate.end(), error);
-  return {std::move(image), reconstruction == GRADUS_RECONSTRUCTION_NONE && !library, {}};
+  return {std::move(image), std::move(components), reconstruction == GRADUS_RECONSTRUCTION_NONE && !library, {}};
 }
 
-// Light passes that are read from now on are those of this picture.
+// Light passes and components that are read from now on are those of this picture.
 std::shared_ptr<MadePicture> keep_made(FrameObject* object, const std::shared_ptr<const Frame>& frame, MadePicture made) {
   auto kept = std::make_shared<MadePicture>(std::move(made));
   const std::lock_guard lock(object->mutex);
-  if (object->frame == frame && has_light_passes(*frame)) object->made = kept;
+  if (object->frame == frame && (has_light_passes(*frame) || frame->components.size() > 1)) object->made = kept;
   return kept;
 }
 
@@ -102,17 +105,18 @@ std::vector<float> read_error(FrameObject* object, const Frame& frame) {
   return error;
 }
 
-// Of the picture that was made last; of that of the frame's own settings where none was.
-void read_light(FrameObject* object, const std::shared_ptr<const Frame>& frame, uint32_t pass, float* pixels) {
-  const auto made_of_frame = [&] {
+// The picture that was made last; that of the frame's own settings where none was.
+std::shared_ptr<MadePicture> made_of(FrameObject* object, const std::shared_ptr<const Frame>& frame) {
+  {
     const std::lock_guard lock(object->mutex);
-    return object->frame == frame ? object->made : nullptr;
-  };
-  const GradusSettings& s = frame->settings;
-  std::shared_ptr<MadePicture> made = made_of_frame();
-  if (!made) {
-    made = keep_made(object, frame, make_picture(object, *frame, s.reconstruction, s.reconstruction_alpha, s.denoiser, nullptr));
+    if (object->frame == frame && object->made) return object->made;
   }
+  const GradusSettings& s = frame->settings;
+  return keep_made(object, frame, make_picture(object, *frame, s.reconstruction, s.reconstruction_alpha, s.denoiser, nullptr));
+}
+
+void read_light(FrameObject* object, const std::shared_ptr<const Frame>& frame, uint32_t pass, float* pixels) {
+  const std::shared_ptr<MadePicture> made = made_of(object, frame);
   const Region region = delivered_region(*frame);
   if (made->is_noisy) return read_frame_pass(*frame, pass, region, pixels);
   const std::lock_guard lock(object->mutex);
@@ -125,20 +129,15 @@ void read_light(FrameObject* object, const std::shared_ptr<const Frame>& frame, 
   made->light->read(pass, pixels);
 }
 
-// RGB of a component's picture.
-std::vector<float> reconstruct_color(FrameObject* object, const Frame& frame, int component) {
-  const uint32_t reconstruction = resolve(frame.settings.reconstruction, frame);
-  const uint32_t threads = threads_for(*object, frame);
-  std::vector<float> color;
-  tbb::task_arena(arena_size(threads)).execute([&] {
-    const FlushDenormals flush;
-    SolveReport report;
-    ComponentGuides guides(frame);
-    const Reconstructed picture = reconstruct_component(
-        frame, component, reconstruction, frame.settings.reconstruction_alpha, false, &guides, [] { return false; }, &report);
-    color = crop_component(frame, reconstruction, picture.image, delivered_region(frame));
-  });
-  return color;
+std::vector<float> rgb_of(const std::vector<float>& rgba) {
+  std::vector<float> rgb;
+  for (size_t i = 0; i < rgba.size(); i += 4) rgb.insert(rgb.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
+  return rgb;
+}
+
+std::vector<float> component_color(FrameObject* object, const std::shared_ptr<const Frame>& frame, int component) {
+  const std::shared_ptr<MadePicture> made = made_of(object, frame);
+  return frame->components.size() > 1 ? made->components[size_t(component)] : rgb_of(made->rgba);
 }
 
 }  // namespace
@@ -223,7 +222,7 @@ GradusError gradus_frame_read_component(GradusFrame frame, const char* component
     check_component(content->settings, name);
     const int place = find_component(*content, name);
     if (place < 0) return read_absent_component(pass, region, pixels);
-    const std::vector<float> color = is_of_picture(pass) ? api::reconstruct_color(object.get(), *content, place) : std::vector<float>();
+    const std::vector<float> color = is_of_picture(pass) ? api::component_color(object.get(), content, place) : std::vector<float>();
     read_component_pass(*content, place, pass, region, color, pixels);
   });
 }

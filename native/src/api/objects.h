@@ -59,6 +59,7 @@ struct SequenceObject {
 // What was last made of a frame, and its light passes once they are read: none of the noisy image, whose own they are.
 struct MadePicture {
   std::vector<float> rgba;
+  std::vector<std::vector<float>> components;  // RGB of each
   bool is_noisy = false;
   std::optional<LightPasses> light;
 };
@@ -69,7 +70,7 @@ struct FrameObject {
   std::mutex mutex;
   std::shared_ptr<Device> device;
   std::shared_ptr<const Frame> frame;
-  std::shared_ptr<MadePicture> made;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no light passes
+  std::shared_ptr<MadePicture> made;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no parts
   std::shared_ptr<const Frame> get() {
     const std::lock_guard lock(mutex);
     return frame;

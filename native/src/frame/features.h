@@ -19,19 +19,12 @@ struct Features {
   FeatureImage normal;  // in the world, as shaded
   FeatureImage albedo;  // in [0, 1]; of what shines, its light
   FeatureImage depth;   // length of the path to where the others are taken, 0 where it meets nothing such
-  // By pixels, of a component's own: 0 where none of its paths comes near, so that it is black for sure; empty: there may be light
-  // everywhere.
-  std::vector<uint8_t> present{};
 };
 
 bool has_features(const Frame& frame);
 bool has_features(const FrameHeader& header);
 // All three. halves: both, or one alone. Throws invalid_operation for a frame without them.
 Features read_features(const Frame& frame, HalfRange halves = {});
-// Of a component's own paths, where they first meet a rough surface: through mirrors, behind glass. As means over all samples, so that at
-// silhouettes they tell how much of the pixel the component has. All three, of both halves. Throws likewise.
-bool has_own_features(const Frame& frame, int component);
-Features read_own_features(const Frame& frame, int component);
 // One of the passes that are kept in halves; else as above.
 FeatureImage read_feature(const Frame& frame, uint32_t pass, HalfRange halves = {});
 

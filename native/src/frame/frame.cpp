@@ -77,25 +77,46 @@ int find_component(const Frame& frame, std::string_view name) {
   return found != list.end() ? int(found - list.begin()) : -1;
 }
 
-void keep_component(std::string_view name, Frame* frame) {
-  const int place = find_component(*frame, name);
-  ComponentPlanes kept = std::move(frame->components[size_t(std::max(place, 0))]);
-  if (place < 0) {
-    kept.name = name;
-    std::fill(kept.motion.begin(), kept.motion.end(), Vec4(0.0f));
-    std::fill(kept.tracked.begin(), kept.tracked.end(), kNothingToTrack);
-    std::fill(kept.shown.begin(), kept.shown.end(), ShownPoint{});
-    for (int half = 0; half < kHalves; ++half) {
-      std::fill(kept.primal[half].begin(), kept.primal[half].end(), Radiance(0.0f));
-      for (auto& plane : kept.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));
-      std::fill(kept.rough[half].begin(), kept.rough[half].end(), RoughVertices{});
-    }
+namespace {
+
+ComponentPlanes black_component(std::string_view name, const ComponentPlanes& like) {
+  ComponentPlanes black = like;
+  black.name = name;
+  std::fill(black.motion.begin(), black.motion.end(), Vec4(0.0f));
+  std::fill(black.tracked.begin(), black.tracked.end(), kNothingToTrack);
+  std::fill(black.shown.begin(), black.shown.end(), ShownPoint{});
+  for (int half = 0; half < kHalves; ++half) {
+    std::fill(black.primal[half].begin(), black.primal[half].end(), Radiance(0.0f));
+    for (auto& plane : black.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));
+    std::fill(black.rough[half].begin(), black.rough[half].end(), RoughVertices{});
   }
+  return black;
+}
+
+}  // namespace
+
+void keep_component(std::string_view name, Frame* frame) {
+  keep_components({std::string(name)}, frame);
   SampleSources& replayed = frame->replayed;
-  if (place >= 0 && replayed.has_own(place)) replayed.pixel = std::move(replayed.of_component[size_t(place)]);
+  if (replayed.has_own(0)) replayed.pixel = std::move(replayed.of_component[0]);
   replayed.of_component.clear();
-  frame->components.clear();
-  frame->components.push_back(std::move(kept));
+}
+
+void keep_components(const std::vector<std::string>& names, Frame* frame) {
+  std::vector<ComponentPlanes> kept;
+  std::vector<std::vector<int32_t>> sources;
+  for (const std::string& name : names) {
+    const int place = find_component(*frame, name);
+    const bool has_own = place >= 0 && frame->replayed.has_own(place);
+    kept.push_back(place >= 0 ? ComponentPlanes{} : black_component(name, frame->components[0]));
+    sources.push_back(has_own ? std::move(frame->replayed.of_component[size_t(place)]) : std::vector<int32_t>());
+  }
+  for (size_t k = 0; k < names.size(); ++k) {
+    const int place = find_component(*frame, names[k]);
+    if (place >= 0) kept[k] = std::move(frame->components[size_t(place)]);
+  }
+  frame->components = std::move(kept);
+  frame->replayed.of_component = std::move(sources);
 }
 
 double mean_samples(const Frame& frame) {

@@ -142,6 +142,8 @@ bool same_components(const Frame& a, const Frame& b);
 int find_component(const Frame& frame, std::string_view name);
 // As if no other had been sampled; black where the frame has none of that name.
 void keep_component(std::string_view name, Frame* frame);
+// The same of several, which come in this order.
+void keep_components(const std::vector<std::string>& names, Frame* frame);
 // Samples of the pixel with this index.
 inline uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
 // Samples of a pixel, on average over the region.

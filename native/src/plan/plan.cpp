@@ -211,7 +211,6 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const H
   plan.unbiased = !plan.adaptive && !clamps;
   list_scene(settings, snapshot, &plan);
   choose_components(settings, snapshot.features, &plan);
-  plan.rough_vertices |= plan.components.count() > 1 && plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   choose_passes(settings, &plan);
   list_passes(&plan);
   return plan;

@@ -37,20 +37,16 @@ constexpr int kShareRadius = 4, kShareLightRadius = 2;
 // Side of squares that share a bound on outliers.
 constexpr int kSquare = 16;
 
-// Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
-constexpr float kMost = 1e12f;
-
 // Of all pixels: noise and light, their own and around them.
 struct Surroundings {
   Field own_noise, own_light, noise, light;
 };
 
-Surroundings look_around(const HalvedImage& image, const Presence& presence) {
+Surroundings look_around(const HalvedImage& image) {
   const int w = image.mean.width(), h = image.mean.height();
   Field noise = make_field(w, h, [&](int x, int y) { return std::sqrt(mean_of_squares(image.half_difference, x, y)); });
   Field light = make_field(w, h, [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); });
-  for (Field* field : {&noise, &light}) presence.mask(field);
-  return {noise, light, presence.mean_around(noise, kNoiseRadius), presence.mean_around(light, kNoiseRadius)};
+  return {noise, light, box_mean(noise, kNoiseRadius), box_mean(light, kNoiseRadius)};
 }
 
 Field weigh_in_windows(const Surroundings& of) {
@@ -63,14 +59,14 @@ Field weigh_in_windows(const Surroundings& of) {
 
 // What is to be expected of each pixel by its light, and no more than is around it. Noise is averaged over the root of the light, not light
 // and noise by themselves: a lamp, which has light and no noise, says nothing of the wall beside it.
-Field expected_noise(const Surroundings& of, const Presence& presence) {
+Field expected_noise(const Surroundings& of) {
   const auto root = [&](int x, int y) { return std::sqrt(std::max(of.own_light.row(y)[x], kDarkByChance * of.noise.row(y)[x])); };
-  const Field relative = presence.mean_around(make_field(of.noise.width(), of.noise.height(),
-                                                         [&](int x, int y) {
-                                                           const float noise = of.own_noise.row(y)[x];
-                                                           return noise > 0.0f ? noise / root(x, y) : 0.0f;
-                                                         }),
-                                              kNoiseRadius);
+  const Field relative = box_mean(make_field(of.noise.width(), of.noise.height(),
+                                             [&](int x, int y) {
+                                               const float noise = of.own_noise.row(y)[x];
+                                               return noise > 0.0f ? noise / root(x, y) : 0.0f;
+                                             }),
+                                  kNoiseRadius);
   return make_field(of.noise.width(), of.noise.height(),
                     [&](int x, int y) { return std::min(of.noise.row(y)[x], relative.row(y)[x] * root(x, y)); });
 }
@@ -82,8 +78,8 @@ float weigh_own(float expected, float excess, float firefly) {
 }
 
 // Changes of light may be 0 between greater ones by chance: those are not called dark.
-Field weigh_own(const Surroundings& of, const Presence& presence, bool is_light) {
-  const Field expected = is_light ? expected_noise(of, presence) : of.noise;
+Field weigh_own(const Surroundings& of, bool is_light) {
+  const Field expected = is_light ? expected_noise(of) : of.noise;
   return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
     const float noise = of.noise.row(y)[x], unit = 1.0f / (of.light.row(y)[x] + kLeastVariance);
     const float excess = noise > 0.0f ? std::max(1.0f, of.own_noise.row(y)[x] / noise) : 1.0f;
@@ -199,30 +195,17 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
 
 }  // namespace
 
-void normalise(float scale, HalvedImage* image) {
-  for (Field* field : {&image->mean, &image->half_difference}) {
-    for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMost, kMost); });
-  }
-}
-
-FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel) : presence_(features) {
+FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel) {
   std::shared_ptr<const Predictors> predictors;
   {
-    const Surroundings surroundings = look_around(image, presence_);
-    Field weights = weigh_in_windows(surroundings);
-    presence_.mask(&weights);
-    predictors = std::make_shared<const Predictors>(Predictors{basis_of(features), std::move(weights)});
-    fine_ = LocalRegression(predictors, weigh_own(surroundings, presence_, image.is_light), kFine);
+    const Surroundings surroundings = look_around(image);
+    predictors = std::make_shared<const Predictors>(Predictors{basis_of(features), weigh_in_windows(surroundings)});
+    fine_ = LocalRegression(predictors, weigh_own(surroundings, image.is_light), kFine);
   }
   coarse_ = LocalRegression(predictors, {}, kCoarse);
-  const auto estimate = [&](LocalRegression* windows) {
-    RegressionResult result = windows->estimate(image.mean, image.half_difference, cancel);
-    for (Field* field : {&result.mean, &result.noise, &result.bias}) presence_.mask(field);
-    return result;
-  };
-  RegressionResult first = estimate(&fine_);
+  RegressionResult first = fine_.estimate(image.mean, image.half_difference, cancel);
   {
-    const RegressionResult coarse = estimate(&coarse_);
+    const RegressionResult coarse = coarse_.estimate(image.mean, image.half_difference, cancel);
     share_ = share_of_fine(first, coarse);
     blend(share_, coarse.mean, &first.mean);
     blend(share_, coarse.noise, &first.noise);
@@ -234,9 +217,7 @@ FeatureRegression::FeatureRegression(const Features& features, const HalvedImage
     blend_own(own_, image.mean, &first.mean);
     blend_own(own_, image.half_difference, &first.noise);
   }
-  for (Field* field : {&first.mean, &first.noise}) presence_.mask(field);
   error_ = regression_error({image.mean, image.half_difference, first.mean, first.noise}, first.bias);
-  presence_.mask(&error_);
   image_ = std::move(first.mean);
 }
 
@@ -261,7 +242,6 @@ Field FeatureRegression::apply(const Field& values, const CancelTest& cancel) co
   scale_by(kept_, &residual);
   add(of_residual_.apply(residual, cancel), &result);
   if (own_.channels() > 0) blend_own(own_, values, &result);
-  presence_.mask(&result);
   return result;
 }
 

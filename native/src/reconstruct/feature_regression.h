@@ -4,20 +4,10 @@
 #pragma once
 
 #include "frame/features.h"
+#include "reconstruct/halved_image.h"
 #include "reconstruct/local_regression.h"
-#include "reconstruct/presence.h"
 
 namespace gradus {
-
-// What is known of a frame's component, in three channels and the scale of 1 for its median luminance.
-struct HalvedImage {
-  Field mean;
-  Field half_difference;  // (A − B)/2; a guess where a half has no samples
-  bool is_light = true;   // not negative; else changes of it
-};
-
-// Brings what was read into that scale, within bounds.
-void normalise(float scale, HalvedImage* image);
 
 class FeatureRegression {
  public:
@@ -26,7 +16,7 @@ class FeatureRegression {
   const Field& image() const { return image_; }
   // Estimated squared error of the image, mean over its channels, bias included.
   const Field& error() const { return error_; }
-  // One channel by the frozen weights.
+  // One channel, or three, by the frozen weights.
   Field apply(const Field& values, const CancelTest& cancel) const;
 
  private:
@@ -38,7 +28,6 @@ class FeatureRegression {
   Field share_;  // of each pixel that the fine windows have
   Field kept_;   // share of each pixel's residual that is given back: outliers are limited
   Field own_;    // share of its own sampled value that a pixel has in the end, against black beside highlights; none for changes
-  Presence presence_;
   Field image_, error_;
 };
 

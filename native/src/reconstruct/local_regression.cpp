@@ -93,11 +93,11 @@ RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_
 }
 
 Field LocalRegression::apply(const Field& values, const CancelTest& cancel) const {
-  Field result(values.width(), values.height(), 1), totals(values.width(), values.height(), 1);
+  Field result(values.width(), values.height(), values.channels()), totals(values.width(), values.height(), 1);
   const RegressionTask task{
       &predictors_->features, &predictors_->weights, or_null(own_), {&values}, {&result}, &totals, nullptr, &settings_};
-  run_features<1, false>(
-      task, [&](size_t i) { return &confidence_[i]; }, cancel);
+  const auto confidence = [&](size_t i) { return &confidence_[i]; };
+  values.channels() == 1 ? run_features<1, false>(task, confidence, cancel) : run_features<3, false>(task, confidence, cancel);
   return result;
 }
 

@@ -56,7 +56,7 @@ class LocalRegression {
 
   // Regresses three channels, given half the difference of the halves, and freezes η. Deterministic for any number of threads.
   RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelTest& cancel);
-  // One channel by the frozen operator.
+  // One channel, or three, by the frozen operator.
   Field apply(const Field& values, const CancelTest& cancel) const;
 
  private:

@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "frame/features.h"
 #include "reconstruct/error_estimate.h"
+#include "reconstruct/regularized.h"
+#include "reconstruct/rows.h"
 
 namespace gradus {
 namespace {
@@ -33,11 +35,21 @@ bool is_black(const ComponentPlanes& planes) {
 
 }  // namespace
 
-void clamp_component(const Frame& frame, uint32_t reconstruction, size_t components, std::vector<float>* image) {
-  if (components < 2 || reconstruction == GRADUS_RECONSTRUCTION_L2) return;
-  for (size_t i = 0; i < image->size(); ++i) {
-    if (i % size_t(frame.channels) < 3) (*image)[i] = std::max((*image)[i], 0.0f);
-  }
+void clamp_components(uint32_t reconstruction, int channels, std::vector<std::vector<float>>* images) {
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2 || images->empty()) return;
+  const size_t pixels = images->front().size() / size_t(channels);
+  for_rows(int(pixels), [&](int pixel) {
+    for (size_t i = size_t(pixel) * size_t(channels); i < size_t(pixel) * size_t(channels) + 3; ++i) {
+      float sum = 0.0f, light = 0.0f;
+      for (const std::vector<float>& image : *images) {
+        sum += image[i];
+        light += std::max(image[i], 0.0f);
+      }
+      const float share = light > 0.0f ? std::max(sum, 0.0f) / light : 0.0f;
+      if (share == 1.0f) continue;
+      for (std::vector<float>& image : *images) image[i] = share * std::max(image[i], 0.0f);
+    }
+  });
 }
 
 void add_image(std::vector<float> term, std::vector<float>* sum) {
@@ -45,43 +57,32 @@ void add_image(std::vector<float> term, std::vector<float>* sum) {
   for (size_t i = 0; i < term.size(); ++i) (*sum)[i] += term[i];
 }
 
-Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, bool wants_error,
-                                    ComponentGuides* guides, const CancelTest& cancel, SolveReport* report) {
-  const size_t pixels = size_t(frame.region.area());
-  if (is_black(frame.components[size_t(component)])) {
-    const bool tells_error = wants_error && reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
-    return {std::vector<float>(pixels * size_t(frame.channels)), std::vector<float>(tells_error ? pixels : 0)};
-  }
-  switch (reconstruction) {
-    case GRADUS_RECONSTRUCTION_NONE:
-      return {read_images(frame, component).primal, {}};
-    case GRADUS_RECONSTRUCTION_REGULARIZED: {
-      Reconstructed result = regularize(frame, component, guides->of(component), cancel, report);
-      if (!wants_error) result.error = {};
-      return result;
-    }
-    default:
-      return {reconstruct(frame, component, reconstruction, alpha, cancel, report), {}};
-  }
+std::vector<float> reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                                         SolveReport* report) {
+  if (is_black(frame.components[size_t(component)])) return std::vector<float>(size_t(frame.region.area()) * size_t(frame.channels));
+  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return read_images(frame, component).primal;
+  return reconstruct(frame, component, reconstruction, alpha, cancel, report);
 }
 
-Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, bool wants_error, const CancelTest& cancel,
-                                SolveReport* report, std::vector<std::vector<float>>* components) {
+Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, ReconstructionParts wanted,
+                                const CancelTest& cancel, SolveReport* report) {
   check_readable(frame, reconstruction);
+  if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    Reconstructed result = regularize(frame, wanted.components, cancel, report);
+    if (!wanted.error) result.error = {};
+    return result;
+  }
   Reconstructed sum;
   ErrorTerms terms;
-  ComponentGuides guides(frame);
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, wants_error, &guides, cancel, report);
-    if (wants_error && part.error.empty()) {
-      ErrorTerms of_part = error_terms(frame, component, reconstruction, alpha, part.image, cancel);
+    std::vector<float> part = reconstruct_component(frame, component, reconstruction, alpha, cancel, report);
+    if (wanted.error) {
+      ErrorTerms of_part = error_terms(frame, component, reconstruction, alpha, part, cancel);
       add_image(std::move(of_part.noise), &terms.noise);
       add_image(std::move(of_part.apart), &terms.apart);
     }
-    clamp_component(frame, reconstruction, frame.components.size(), &part.image);
-    if (components != nullptr) components->push_back(part.image);
-    add_image(std::move(part.image), &sum.image);
-    add_image(std::move(part.error), &sum.error);  // as if independent
+    if (wanted.components) sum.components.push_back(part);
+    add_image(std::move(part), &sum.image);
   }
   if (!terms.noise.empty()) sum.error = error_of_pixels(terms, frame.region.width(), frame.region.height(), frame.channels);
   return sum;

@@ -2,24 +2,27 @@
 #pragma once
 
 #include "reconstruct/reconstructed.h"
-#include "reconstruct/regularized.h"
 #include "reconstruct/solver.h"
 
 namespace gradus {
 
-// All components, each by its own solver, added up (contract 3.4). reconstruction: never AUTO. Throws invalid_operation for a frame without
-// what it reads.
-// components: if given, the picture of each.
-Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, bool wants_error, const CancelTest& cancel,
-                                SolveReport* report, std::vector<std::vector<float>>* components = nullptr);
+// What is wanted besides the picture.
+struct ReconstructionParts {
+  bool error = false, components = false;
+};
 
-// Of several components each keeps what is not negative, where pictures are clamped (contract 5.5), so that they add up as delivered.
-void clamp_component(const Frame& frame, uint32_t reconstruction, size_t components, std::vector<float>* image);
+// The sum of all components (contract 3.4): each by its own solver, or all by one operator (REGULARIZED). reconstruction: never AUTO.
+// Throws invalid_operation for a frame without what it reads.
+Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, ReconstructionParts wanted,
+                                const CancelTest& cancel, SolveReport* report);
 
-// One component; with its error only where the reconstruction estimates it itself (REGULARIZED), else see error_estimate.h.
-// guides: of the frame; looked at by REGULARIZED alone.
-Reconstructed reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, bool wants_error,
-                                    ComponentGuides* guides, const CancelTest& cancel, SolveReport* report);
+// One component, by all reconstructions but REGULARIZED; without an error: see error_estimate.h.
+std::vector<float> reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+                                         SolveReport* report);
+
+// Where pictures are clamped (contract 5.5) components become such that none is negative and that they add up to the picture as clamped.
+// images: of the frame's channels; alpha stays what it is.
+void clamp_components(uint32_t reconstruction, int channels, std::vector<std::vector<float>>* images);
 
 // *sum += term, image by image; an empty sum is 0.
 void add_image(std::vector<float> term, std::vector<float>* sum);

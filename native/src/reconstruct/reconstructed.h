@@ -8,6 +8,7 @@ namespace gradus {
 struct Reconstructed {
   std::vector<float> image;  // width·height·channels
   std::vector<float> error;  // width·height: estimated squared error of the image, mean over RGB; empty unless asked for
+  std::vector<std::vector<float>> components{};  // images that add up to it; none unless asked for
 };
 
 }  // namespace gradus

@@ -6,6 +6,7 @@
 #include "reconstruct/error_estimate.h"
 #include "reconstruct/noise_left.h"
 #include "reconstruct/reconstruct_frame.h"
+#include "reconstruct/regularized.h"
 #include "reconstruct/rows.h"
 
 namespace gradus {
@@ -34,8 +35,7 @@ void add_terms(const Frame& frame, int component, uint32_t reconstruction, float
 }
 
 // L1, too: its weights are of the same kind as WEIGHTED's, and those of the noise are known without iterating.
-void add_weighted(const Frame& frame, int component, uint32_t reconstruction, float alpha, ComponentGuides*, const CancelTest& cancel,
-                  FrameNoise* sum) {
+void add_weighted(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
   GradientImages images = read_images(frame, component);
   read_deviations(frame, component, &images);
   NoiseLeft left = noise_left(images, read_half_differences(frame, component), alpha, cancel);
@@ -45,21 +45,25 @@ void add_weighted(const Frame& frame, int component, uint32_t reconstruction, fl
   add_image(std::move(left.noise), &sum->by_own_weights);
 }
 
-void add_other(const Frame& frame, int component, uint32_t reconstruction, float alpha, ComponentGuides* guides, const CancelTest& cancel,
-               FrameNoise* sum) {
+void add_other(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
   SolveReport report;
-  Reconstructed part = reconstruct_component(frame, component, reconstruction, alpha, true, guides, cancel, &report);
-  if (part.error.empty()) add_terms(frame, component, reconstruction, alpha, part.image, cancel, sum);
-  add_image(std::move(part.image), &sum->image);
-  add_image(std::move(part.error), &sum->error);
+  std::vector<float> image = reconstruct_component(frame, component, reconstruction, alpha, cancel, &report);
+  add_terms(frame, component, reconstruction, alpha, image, cancel, sum);
+  add_image(std::move(image), &sum->image);
 }
 
 FrameNoise noise_of(const Frame& frame, uint32_t reconstruction, float alpha, const CancelTest& cancel) {
   FrameNoise sum;
-  ComponentGuides guides(frame);
+  if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    SolveReport report;
+    Reconstructed picture = regularize(frame, false, cancel, &report);
+    sum.image = std::move(picture.image);
+    sum.error = std::move(picture.error);
+    return sum;
+  }
   const auto add_component = follows_noise(reconstruction) ? add_weighted : add_other;
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    add_component(frame, component, reconstruction, alpha, &guides, cancel, &sum);
+    add_component(frame, component, reconstruction, alpha, cancel, &sum);
   }
   return sum;
 }

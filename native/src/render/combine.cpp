@@ -29,11 +29,9 @@ std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float al
   const bool solves = reconstruction != GRADUS_RECONSTRUCTION_NONE;
   Reconstructed solved;
   if (solves || error != nullptr || components != nullptr) {
-    solved = reconstruct_frame(frame, reconstruction, alpha, error != nullptr, cancel, report, components);
+    solved = reconstruct_frame(frame, reconstruction, alpha, {error != nullptr, components != nullptr}, cancel, report);
   }
-  if (components != nullptr) {
-    for (std::vector<float>& image : *components) image = crop_component(frame, reconstruction, image, region);
-  }
+  if (components != nullptr) *components = crop_components(frame, reconstruction, std::move(solved.components), region);
   if (error != nullptr) *error = crop_error(frame, solved.error, region);
   if (!solves) {
     std::vector<float> rgba(size_t(region.area()) * 4);
@@ -43,12 +41,15 @@ std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float al
   return crop_picture(frame, reconstruction, solved.image, region);
 }
 
-std::vector<float> crop_component(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
-  const std::vector<float> rgba = crop_picture(frame, reconstruction, image, region);
-  std::vector<float> rgb;
-  rgb.reserve(rgba.size() / 4 * 3);
-  for (size_t i = 0; i < rgba.size(); i += 4) rgb.insert(rgb.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
-  return rgb;
+std::vector<std::vector<float>> crop_components(const Frame& frame, uint32_t reconstruction, std::vector<std::vector<float>> images,
+                                                const Region& region) {
+  clamp_components(reconstruction, frame.channels, &images);
+  for (std::vector<float>& image : images) {
+    const std::vector<float> rgba = crop_picture(frame, reconstruction, image, region);
+    image.clear();
+    for (size_t i = 0; i < rgba.size(); i += 4) image.insert(image.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
+  }
+  return images;
 }
 
 void follow_picture(const std::vector<float>& before, const std::vector<float>& after, std::vector<std::vector<float>>* components) {

@@ -16,8 +16,9 @@ std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float al
 
 // RGBA of `region` from what a reconstruction has made of the frame's region, channels interleaved.
 std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region);
-// RGB, of a component.
-std::vector<float> crop_component(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region);
+// RGB of components, of which the images are: as their picture is clamped.
+std::vector<std::vector<float>> crop_components(const Frame& frame, uint32_t reconstruction, std::vector<std::vector<float>> images,
+                                                const Region& region);
 // A denoiser has changed the picture: what it has added and taken away is spread over the components by their light there.
 void follow_picture(const std::vector<float>& before, const std::vector<float>& after, std::vector<std::vector<float>>* components);
 // Error of `region`, as of what the film's exposure makes of the image. error: of the frame's region.

@@ -341,7 +341,7 @@ void RenderLoop::read_component(const std::string& name, uint32_t pass, float* p
     throw invalid_operation("pass " + std::string(component_pass_info(pass).name) + " of components was not asked for");
   std::vector<float> color = picture_.component(component);
   if (color.empty() && is_of_picture(pass)) {  // it was cancelled
-    color = crop_component(*frame, GRADUS_RECONSTRUCTION_NONE, read_images(*frame, component).primal, plan_.delivered);
+    color = crop_components(*frame, GRADUS_RECONSTRUCTION_NONE, {read_images(*frame, component).primal}, plan_.delivered).front();
   }
   read_component_pass(*frame, component, pass, plan_.delivered, color, pixels);
 }

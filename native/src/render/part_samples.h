@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "frame/frame.h"
-#include "reconstruct/feature_regression.h"
+#include "frame/features.h"
+#include "reconstruct/halved_image.h"
 
 namespace gradus {
 

@@ -1,8 +1,8 @@
 #include "temporal/streamed_frames.h"
 
 #include <utility>
-#include <vector>
 
+#include "base/error.h"
 #include "temporal/frame_window.h"
 
 namespace gradus {
@@ -15,13 +15,18 @@ std::shared_ptr<const Frame> StreamedFrames::frame(int place, const CancelTest& 
   return std::move(merged_.extract(place).mapped());
 }
 
-std::unique_ptr<HalvedWindowSource> StreamedFrames::differences(int place, const CancelTest& cancel) {
-  const auto frame = images(place, cancel), next = images(place + 1, cancel);
+std::vector<std::unique_ptr<HalvedWindowSource>> StreamedFrames::differences(int place, const CancelTest& cancel) {
+  const Images frame = images(place, cancel), next = images(place + 1, cancel);
   images_ = {{place + 1, next}};
-  return std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{frame, next});
+  if (frame.size() != next.size()) throw invalid_argument("two frames of a sequence have other components");
+  std::vector<std::unique_ptr<HalvedWindowSource>> windows;
+  for (size_t k = 0; k < frame.size(); ++k) {
+    windows.push_back(std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{frame[k], next[k]}));
+  }
+  return windows;
 }
 
-std::shared_ptr<const TemporalFrame> StreamedFrames::images(int place, const CancelTest& cancel) {
+const StreamedFrames::Images& StreamedFrames::images(int place, const CancelTest& cancel) {
   if (images_.count(place) == 0) load(place, cancel);
   return images_.at(place);
 }
@@ -31,7 +36,11 @@ void StreamedFrames::load(int place, const CancelTest& cancel) {
   const std::shared_ptr<Frame> base = base_(place, cancel);
   const std::shared_ptr<const Frame> replay = replay_(place, cancel);
   while (images_.size() > 1) images_.erase(images_.begin());
-  images_[place] = std::make_shared<TemporalFrame>(make_temporal_frame(*base, *replay, {.gradients = false}));
+  Images& images = images_[place];
+  images.clear();
+  for (int k = 0; k < int(base->components.size()); ++k) {
+    images.push_back(std::make_shared<TemporalFrame>(make_temporal_frame(*base, *replay, {.gradients = false}, k)));
+  }
   merged_[place] = merge_(place, base, *replay);
 }
 

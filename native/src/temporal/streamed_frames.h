@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "reconstruct/space_time/window_source.h"
 #include "temporal/load_part.h"
@@ -15,22 +16,24 @@ class StreamedFrames {
  public:
   // All samples of a frame, made of its two parts.
   using Merge = std::function<std::shared_ptr<const Frame>(int place, std::shared_ptr<Frame> base, const Frame& replay)>;
+  // Parts of frames with the same components.
   StreamedFrames(LoadPart base, LoadPart replay, Merge merge);
 
   // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena. Throws the Error
   // CANCELLED.
   std::shared_ptr<const Frame> frame(int place, const CancelTest& cancel);
-  // A window of the frame and the next one, with pixels and their differences over time alone.
-  std::unique_ptr<HalvedWindowSource> differences(int place, const CancelTest& cancel);
+  // Of each component a window of the frame and the next one, with pixels and their differences over time alone.
+  std::vector<std::unique_ptr<HalvedWindowSource>> differences(int place, const CancelTest& cancel);
 
  private:
-  std::shared_ptr<const TemporalFrame> images(int place, const CancelTest& cancel);
+  using Images = std::vector<std::shared_ptr<const TemporalFrame>>;  // by component
+  const Images& images(int place, const CancelTest& cancel);
   void load(int place, const CancelTest& cancel);
 
   const LoadPart base_, replay_;
   const Merge merge_;
-  std::map<int, std::shared_ptr<const TemporalFrame>> images_;  // of two at most
-  std::map<int, std::shared_ptr<const Frame>> merged_;          // of the last one that was read, until it is asked for
+  std::map<int, Images> images_;                        // of two at most
+  std::map<int, std::shared_ptr<const Frame>> merged_;  // of the last one that was read, until it is asked for
 };
 
 }  // namespace gradus

@@ -20,14 +20,24 @@ void add(GradientImages term, GradientImages* sum) {
   }
 }
 
-HalvedImages read_halved(const Frame& frame, TemporalContent content) {
+HalvedImages read_halved(const Frame& frame, TemporalContent content, int component = kAllComponents) {
   HalvedImages images;
-  for (int c = 0; c < int(frame.components.size()); ++c) {
+  const bool is_one = component != kAllComponents;
+  const int first = is_one ? component : 0, end = is_one ? component + 1 : int(frame.components.size());
+  for (int c = first; c < end; ++c) {
     add(content.gradients ? read_images(frame, c) : read_pixels(frame, c), &images.values);
     if (!content.halves) continue;
     add(content.gradients ? read_half_differences(frame, c) : read_half_differences_of_pixels(frame, c), &images.half_differences);
   }
   return images;
+}
+
+// Of one component: where that was.
+SampleSources sources_of(const SampleSources& replayed, int component) {
+  SampleSources sources = replayed;
+  if (component != kAllComponents && replayed.has_own(component)) sources.pixel = replayed.of_component[size_t(component)];
+  if (component != kAllComponents) sources.of_component.clear();
+  return sources;
 }
 
 }  // namespace
@@ -36,14 +46,6 @@ void check_alike(const GradientImages& images, const GradientImages& other, int3
   const bool fits = images.width == other.width && images.height == other.height && images.channels == other.channels &&
                     images.dx.empty() == other.dx.empty();
   if (!fits) throw invalid_argument("stored frame " + std::to_string(frame) + " has another size or other planes than those beside it");
-}
-
-TemporalFrame make_base(const Frame& base, TemporalContent content) {
-  TemporalFrame frame;
-  frame.base = read_halved(base, content);
-  frame.stream = base.frame_number;
-  frame.scene_key = base.scene_key;
-  return frame;
 }
 
 TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent content) {
@@ -55,9 +57,21 @@ TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent c
   return frame;
 }
 
-TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content) {
-  TemporalFrame frame = make_replay(replay, base.frame_number, content);
+TemporalFrame make_base(const Frame& base, TemporalContent content) {
+  TemporalFrame frame;
   frame.base = read_halved(base, content);
+  frame.stream = base.frame_number;
+  frame.scene_key = base.scene_key;
+  return frame;
+}
+
+TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content, int component) {
+  TemporalFrame frame;
+  frame.replay = read_halved(replay, content, component);
+  frame.base = read_halved(base, content, component);
+  frame.stream = base.frame_number;
+  frame.scene_key = replay.scene_key;
+  frame.replayed = sources_of(replay.replayed, component);
   check_alike(frame.replay.values, frame.base.values, base.frame_number);
   frame.replay_share.resize(base.count[0].size());
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {

@@ -28,8 +28,9 @@ struct TemporalFrame {
   SampleSources replayed;           // and whose the replay has
 };
 
-// Of all their components together. Throws invalid_argument where the two do not belong together.
-TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content = {});
+// Of all their components together, or of one, with what it has replayed. Throws invalid_argument where the two do not belong together.
+inline constexpr int kAllComponents = -1;
+TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content = {}, int component = kAllComponents);
 // Of one of the two: all that differences over time from the frame to the next, or to the frame from the one before, read of it.
 TemporalFrame make_base(const Frame& base, TemporalContent content);
 TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent content);

@@ -43,7 +43,7 @@ void add_noise(float sigma, unsigned seed, Frame* frame) {
 
 std::vector<float> error_of(const Frame& frame, uint32_t reconstruction) {
   SolveReport report;
-  return reconstruct_frame(frame, reconstruction, 0.0f, true, kNever, &report).error;
+  return reconstruct_frame(frame, reconstruction, 0.0f, {.error = true}, kNever, &report).error;
 }
 
 double mean(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size()); }
@@ -78,7 +78,7 @@ TEST(ErrorEstimate, IsThereOnlyIfAskedFor) {
   const Frame frame = make_frame(8, 8, 2, 2, true);
   SolveReport report;
   for (const uint32_t reconstruction : kAll) {
-    EXPECT_TRUE(reconstruct_frame(frame, reconstruction, 0.0f, false, kNever, &report).error.empty());
+    EXPECT_TRUE(reconstruct_frame(frame, reconstruction, 0.0f, {}, kNever, &report).error.empty());
   }
 }
 

@@ -17,7 +17,7 @@ constexpr int kWidth = 72, kHeight = 50;
 
 Reconstructed solve_with_error(const Frame& frame) {
   SolveReport report;
-  return regularize(frame, 0, never, &report);
+  return regularize(frame, false, never, &report);
 }
 
 std::vector<float> solve(const Frame& frame) { return solve_with_error(frame).image; }
@@ -224,7 +224,8 @@ TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
   for (int y = 0; y < kHeight; y += 4) {
     for (int x = y / 4 % 4; x < kWidth; x += 4) frame.components[0].primal[0][size_t(y * kWidth + x)] = Radiance(32.0f * albedo(x));
   }
-  const auto [image, error] = solve_with_error(frame);
+  const auto [image, error, components] = solve_with_error(frame);
+  EXPECT_TRUE(components.empty());
   double light = 0.0, beside_edges = 0.0, squares = 0.0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -350,7 +351,7 @@ TEST(BadInput_Regularized, MissingFeatures) {
   Frame frame = make_feature_frame(description);
   frame.passes.clear();
   SolveReport report;
-  EXPECT_THROW(regularize(frame, 0, never, &report), Error);
+  EXPECT_THROW(regularize(frame, false, never, &report), Error);
 }
 
 TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
@@ -473,84 +474,82 @@ TEST(BadInput_Regularized, ABlackImageIsBlack) {
   EXPECT_EQ(solve(make_feature_frame(description)), description.truth);
 }
 
-// A component that has light in one place only is regressed there and around it.
-TEST(B1_Regularized, OfAComponentThePartThatIsLitIsAsOfTheWhole) {
-  constexpr int w = 300, h = 260;
-  const auto is_lit = [](size_t i) { return i % w >= 150 && i % w < 190 && i / w >= 90 && i / w < 130; };
-  FeatureFrame description = room(w, h);
-  description.feature = [](int x, int y, int c, int half) { return c == 6 ? 3.0f : room_feature(x, y, c, half); };
-  description.sigma = [&](size_t i) { return is_lit(i) ? 0.4f : 0.0f; };
-  for (size_t i = 0; i < description.truth.size(); ++i) description.truth[i] *= is_lit(i / 3) ? 1.0f : 0.0f;
-  const Frame alone = make_feature_frame(description);
-  Frame beside = alone;
-  beside.components.push_back(beside.components[0]);
-  const Reconstructed whole = solve_with_error(alone), part = solve_with_error(beside);
-  for (size_t i = 0; i < whole.image.size(); ++i) ASSERT_NEAR(part.image[i], whole.image[i], 1e-4f) << i;
-  EXPECT_EQ(part.image[0], 0.0f);
-  EXPECT_EQ(part.error[0], 0.0f);
-  for (size_t i = 0; i < whole.error.size(); ++i) {
-    ASSERT_NEAR(part.error[i], is_lit(i) ? whole.error[i] : part.error[i], 1e-4f + 0.01f * whole.error[i]) << i;
-  }
-}
-
-// A mirror's reflection, in a part of the picture: light 1 of rare bright samples, features of its own.
-Frame make_reflection(const Region& mirror, unsigned seed) {
-  constexpr float kRare = 0.5f;
-  FeatureFrame description{kWidth, kHeight, make_image(kWidth, kHeight, 3, [](int, int, int) { return 0.0f; }), [](size_t) { return 0.0f; },
-                           [](int, int, int, int) { return 0.5f; }};
-  Frame frame = make_feature_frame(description);
-  frame.components.emplace_back(frame.components[0]);
-  keep_rough_vertices(&frame);
-  std::mt19937 random(seed);
-  std::bernoulli_distribution is_bright(kRare);
-  for (int half = 0; half < kHalves; ++half) {
-    for (int y = mirror.y0; y < mirror.y1; ++y) {
-      for (int x = mirror.x0; x < mirror.x1; ++x) {
-        const size_t i = frame.index(x, y);
-        frame.components[1].primal[half][i] = Radiance(is_bright(random) ? 1.0f / kRare : 0.0f);
-        frame.components[1].rough[half][i] = {Rgb(0.8f), Vec3(0.0f, 0.0f, 1.0f), 3.0f + 0.02f * float(x), 1.0f};
+// The frame's light in three components: shares of it that differ from pixel to pixel, none of the last one in half of the picture, and
+// of one of them more than there is in some pixels.
+Frame taken_apart(const Frame& frame) {
+  const auto share_of = [](size_t component, int x) {
+    if (component == 1) return x < kWidth / 2 ? 0.0f : 0.25f;
+    return component == 2 ? -0.5f * float(x % 2) : 1.0f - (x < kWidth / 2 ? 0.0f : 0.25f) + 0.5f * float(x % 2);
+  };
+  Frame apart = frame;
+  apart.components.assign(3, frame.components[0]);
+  for (size_t k = 0; k < apart.components.size(); ++k) {
+    for (int half = 0; half < kHalves; ++half) {
+      for (size_t i = 0; i < apart.components[k].primal[half].size(); ++i) {
+        const float share = share_of(k, int(i) % kWidth);
+        apart.components[k].primal[half][i] *= share;
+        for (auto& gradient : apart.components[k].gradient[half]) {
+          if (!gradient.empty()) gradient[i] *= share;
+        }
       }
     }
   }
-  return frame;
+  return apart;
 }
 
-// Black without noise around a component was what windows at its edge explained best, and so they took its light.
-TEST(B2_Regularized, BlackAroundAComponentDoesNotTakeItsLight) {
-  const Region mirror{30, 15, 40, 25};
-  double present = 0.0, everywhere = 0.0;
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    const Frame frame = make_reflection(mirror, seed);
+// Contract 3.4: however the light was found, and to the last digits of floats.
+TEST(B2_Regularized, ComponentsAreWhatThePictureWithoutThemIsMadeOf) {
+  for (const bool gradients : {false, true}) {
+    for (const int channels : {3, 4}) {
+      FeatureFrame description = room(kWidth, kHeight);
+      description.gradients = gradients;
+      const Frame frame = make_feature_frame(description, channels);
+      SolveReport report;
+      const Reconstructed whole = regularize(frame, false, never, &report), parts = regularize(taken_apart(frame), true, never, &report);
+      ASSERT_EQ(parts.components.size(), 3u);
+      for (size_t i = 0; i < whole.image.size(); ++i) {
+        const float sum = parts.components[0][i] + parts.components[1][i] + parts.components[2][i];
+        ASSERT_NEAR(sum, parts.image[i], 1e-5f) << i;
+        ASSERT_NEAR(parts.image[i], whole.image[i], 1e-3f) << i;
+      }
+      EXPECT_LT(rms_difference(parts.error, whole.error), 1e-4);
+    }
+  }
+}
+
+// One operator for all: of twice the light it makes twice as much, of light that is the same share of the picture everywhere that share.
+TEST(B2_Regularized, ComponentsGoThroughOneLinearOperator) {
+  for (const bool gradients : {false, true}) {
+    FeatureFrame description = room(kWidth, kHeight);
+    description.gradients = gradients;
+    Frame frame = make_feature_frame(description);
+    frame.components.assign(3, frame.components[0]);
+    for (const auto& [component, share] : {std::pair{0, 0.2f}, {1, 0.7f}, {2, 0.1f}}) {
+      for (int half = 0; half < kHalves; ++half) {
+        for (Radiance& pixel : frame.components[size_t(component)].primal[half]) pixel *= share;
+        for (auto& gradient : frame.components[size_t(component)].gradient[half]) {
+          for (Radiance& difference : gradient) difference *= share;
+        }
+      }
+    }
     SolveReport report;
-    Features features = ComponentGuides(frame).of(1);
-    const Reconstructed right = regularize(frame, 1, features, never, &report);
-    features.present.clear();
-    const Reconstructed dark = regularize(frame, 1, features, never, &report);
-    for (int y = mirror.y0; y < mirror.y1; ++y) {
-      for (int x = mirror.x0; x < mirror.x1; ++x) {
-        const size_t i = frame.index(x, y);
-        present += std::pow(right.image[3 * i] - 1.0f, 2);
-        everywhere += std::pow(dark.image[3 * i] - 1.0f, 2);
-      }
+    const Reconstructed result = regularize(frame, true, never, &report);
+    for (size_t i = 0; i < result.image.size(); ++i) {
+      ASSERT_NEAR(result.components[0][i], 0.2f * result.image[i], gradients ? 2e-3f : 1e-5f);
+      ASSERT_NEAR(result.components[2][i], 0.1f * result.image[i], gradients ? 2e-3f : 1e-5f);
     }
-    EXPECT_EQ(right.image[3 * frame.index(20, 20)], 0.0f);
-    EXPECT_EQ(right.error[frame.index(20, 20)], 0.0f);
   }
-  EXPECT_LT(present, 0.8 * everywhere);
 }
 
-// Paths that are rare: a pixel without them, between others that have some, is no edge.
-TEST(B2_Regularized, AComponentIsPresentWhereRarePathsComeNear) {
-  Frame frame = make_reflection({30, 15, 31, 16}, 1);
-  frame.components[1].primal[0].assign(frame.components[1].primal[0].size(), Radiance(0.0f));
-  frame.components[1].primal[1] = frame.components[1].primal[0];
-  const Features features = read_own_features(frame, 1);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const bool is_near = std::abs(x - 30) <= 3 && std::abs(y - 15) <= 3;
-      ASSERT_EQ(features.present[frame.index(x, y)], is_near ? 1 : 0) << x << " " << y;
-    }
-  }
+// What no path has found anything of is black, and not what the others' light around it leaves there.
+TEST(B2_Regularized, AComponentWithoutLightIsBlack) {
+  Frame frame = make_feature_frame(room(kWidth, kHeight));
+  frame.components.push_back(frame.components[0]);
+  for (auto& half : frame.components[1].primal) std::fill(half.begin(), half.end(), Radiance(0.0f));
+  SolveReport report;
+  const Reconstructed result = regularize(frame, true, never, &report);
+  for (const float value : result.components[1]) ASSERT_EQ(value, 0.0f);
+  EXPECT_EQ(result.components[0], result.image);
 }
 
 }  // namespace

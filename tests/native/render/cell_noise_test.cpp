@@ -48,7 +48,7 @@ TEST(CellNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
   for (const bool gradients : {false, true}) {
     const Frame frame = noisy_room(gradients);
     SolveReport report;
-    const Reconstructed result = reconstruct_frame(frame, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, true, kNever, &report);
+    const Reconstructed result = reconstruct_frame(frame, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, {.error = true}, kNever, &report);
     const std::vector<Region> cells = {{0, 0, 16, 16}, {16, 0, 40, 32}};
     const std::vector<CellNoise> noise = estimate_noise(frame, cells, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, kNever);
     ASSERT_EQ(noise.size(), cells.size());
@@ -66,7 +66,7 @@ TEST(CellNoise, OfAllIsTheSumOfThePass) {
   const Frame frame = noisy_room(true);
   for (const uint32_t how : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
     SolveReport report;
-    const Reconstructed result = reconstruct_frame(frame, how, 0.0f, true, kNever, &report);
+    const Reconstructed result = reconstruct_frame(frame, how, 0.0f, {.error = true}, kNever, &report);
     const CellNoise noise = estimate_noise(frame, {frame.region}, how, 0.0f, kNever).front();
     const double error = sum_over(frame, result.error, frame.region);
     EXPECT_NEAR(noise.relative_error / relative_error(frame, result, frame.region, error), 1.0, 0.02) << how;

@@ -12,6 +12,7 @@
 #include "frame/features.h"
 #include "frame/store.h"
 #include "motion/component_motion.h"
+#include "reconstruct/reconstruct_frame.h"
 #include "render/render.h"
 #include "render/resume.h"
 #include "settings/options.h"
@@ -308,23 +309,23 @@ TEST(Components, MotionIsStoredWithTheFrame) {
   }
 }
 
-// Behind a mirror and beside one: the mean over all samples tells how much of the pixel the component has.
-TEST(Components, HaveFeaturesOfTheirOwn) {
+// What only passes show is sampled for them alone.
+TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
   GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_REGULARIZED);
-  settings.component_passes = 0;
+  settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
   const auto frame = rendered(Scenario::Glass, settings)->frame();
-  const int diffuse = find_component(*frame, "Diffuse");
-  ASSERT_TRUE(has_own_features(*frame, diffuse));
-  const Features own = read_own_features(*frame, diffuse);
-  const ComponentPlanes& planes = frame->components[size_t(diffuse)];
-  size_t partly = 0;
-  for (size_t i = 0; i < size_t(frame->region.area()); ++i) {
-    const float met = planes.rough[0][i].samples + planes.rough[1][i].samples, samples = float(samples_at(*frame, i));
-    partly += met > 0.0f && met < samples ? 1 : 0;
-    const Vec3 normal = planes.rough[0][i].normal + planes.rough[1][i].normal;
-    for (size_t c = 0; c < 3; ++c) ASSERT_NEAR(own.normal.values[3 * i + c], normal[int(c)] / samples, 1e-6f);
-  }
-  EXPECT_GT(partly, 10u);
+  for (const ComponentPlanes& planes : frame->components) EXPECT_TRUE(planes.rough[0].empty());
+}
+
+// The picture is clamped, and so are its parts: by what there is too much of, nothing is added.
+TEST(Components, ThatAreClampedAddUpToThePictureAsClamped) {
+  std::vector<std::vector<float>> images = {{2.0f, -1.0f, 1.0f, 0.5f}, {-1.0f, -1.0f, 3.0f, 0.25f}};
+  clamp_components(GRADUS_RECONSTRUCTION_WEIGHTED, 4, &images);
+  EXPECT_EQ(images[0], (std::vector<float>{1.0f, 0.0f, 1.0f, 0.5f}));
+  EXPECT_EQ(images[1], (std::vector<float>{0.0f, 0.0f, 3.0f, 0.25f}));
+  std::vector<std::vector<float>> kept = {{2.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}};
+  clamp_components(GRADUS_RECONSTRUCTION_L2, 3, &kept);
+  EXPECT_EQ(kept[1][0], -1.0f);
 }
 
 }  // namespace

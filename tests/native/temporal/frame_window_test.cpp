@@ -207,7 +207,7 @@ TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
     EXPECT_EQ(frames.frame(t, never)->components[0].primal[0][0].x, base_[size_t(t)]->components[0].primal[0][0].x);
     const auto pair = frames.differences(t, never);
     for (int y = 0; y < 8; ++y) {
-      pair->read_half_differences(RowKind::kDt, 0, y, row.data());
+      pair[0]->read_half_differences(RowKind::kDt, 0, y, row.data());
       whole.read_half_differences(RowKind::kDt, t, y, expected.data());
       EXPECT_EQ(std::memcmp(row.data(), expected.data(), row.size() * sizeof(float)), 0) << t;
     }

@@ -6,6 +6,7 @@
 #include "reconstruct/box_mean.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
+#include "reconstruct/linear_parts.h"
 #include "reconstruct/space_time/solve_tracks.h"
 
 namespace gradus {
@@ -69,29 +70,66 @@ Field linked_pixels(const Links& links) {
   return make_field(links.width(), links.height(), [&](int x, int y) { return links.row(y)[x] == Links::kNone ? 0.0f : 1.0f; });
 }
 
-}  // namespace
+// Of a component, in the scale of 1 for the median luminance.
+struct ComponentChange {
+  HalvedImage image;
+  Field alpha;  // in four channels
+};
 
-Change regress_change(const HalvedWindowSource& source, int t, const Features& features, float scale, const CancelTest& cancel) {
+ComponentChange read_change(const HalvedWindowSource& source, int t, const Links& links, float scale) {
   const WindowSize size = source.size();
-  Change change{read_links(source, t), Field(size.width, size.height, size.channels), Field(size.width, size.height, 1)};
   const auto values = [&](int y, float* row) { source.read_row(RowKind::kDt, t, y, row); };
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
-  HalvedImage image{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves), false};
-  normalise(scale, &image);
-  const HoleFiller holes(linked_pixels(change.links));
-  holes.fill_with_mean(&image.mean);
-  holes.fill_with_rms(&image.half_difference);
-  const FeatureRegression regression(features, image, cancel);
-  Field alpha;
+  ComponentChange change{{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves), false}, {}};
+  normalise(scale, &change.image);
+  const HoleFiller holes(linked_pixels(links));
+  holes.fill_with_mean(&change.image.mean);
+  holes.fill_with_rms(&change.image.half_difference);
   if (size.channels > 3) {
-    alpha = read_channels(size, 3, 1, values);
-    holes.fill_with_mean(&alpha);
-    alpha = regression.apply(alpha, cancel);
+    change.alpha = read_channels(size, 3, 1, values);
+    holes.fill_with_mean(&change.alpha);
   }
-  for_values(&change.difference,
-             [&](float& value, int x, int y, int c) { value = c < 3 ? scale * regression.image().row(y, c)[x] : alpha.row(y)[x]; });
-  for_values(&change.weight, [&](float& value, int x, int y, int) {
-    value = track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kLeastError));
+  return change;
+}
+
+void add(const Field& term, Field* sum) {
+  for_values(sum, [&](float& value, int x, int y, int c) { value += term.row(y, c)[x]; });
+}
+
+// In units of the picture.
+Field join(const Field& colours, const Field& alpha, float scale) {
+  Field joined(colours.width(), colours.height(), alpha.width() > 0 ? 4 : 3);
+  for_values(&joined, [&](float& value, int x, int y, int c) { value = c < 3 ? scale * colours.row(y, c)[x] : alpha.row(y)[x]; });
+  return joined;
+}
+
+}  // namespace
+
+Change regress_change(const ComponentSources& components, int t, const Features& features, float scale, const CancelTest& cancel) {
+  Change change;
+  HalvedImage sum;
+  std::vector<Field> colours, alphas;
+  for (const auto& source : components) {
+    change.links.push_back(read_links(*source, t));
+    ComponentChange component = read_change(*source, t, change.links.back(), scale);
+    colours.push_back(component.image.mean);
+    alphas.push_back(std::move(component.alpha));
+    if (colours.size() == 1) {
+      sum = std::move(component.image);
+    } else {
+      add(component.image.mean, &sum.mean);
+      add(component.image.half_difference, &sum.half_difference);
+    }
+  }
+  const FeatureRegression regression(features, sum, cancel);
+  apply_to_parts(
+      regression.image(), [&](size_t, const Field& part) { return regression.apply(part, cancel); }, &colours);
+  for (size_t k = 0; k < components.size(); ++k) {
+    if (alphas[k].width() > 0 && !is_black(alphas[k])) alphas[k] = regression.apply(alphas[k], cancel);
+    change.difference.push_back(join(colours[k], alphas[k], scale));
+  }
+  change.weight = make_field(sum.mean.width(), sum.mean.height(), [&](int x, int y) {
+    return track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kLeastError));
   });
   return change;
 }

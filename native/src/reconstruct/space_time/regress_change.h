@@ -2,6 +2,8 @@
 // nothing changes it is exactly 0.
 #pragma once
 
+#include <memory>
+
 #include "frame/features.h"
 #include "reconstruct/solver.h"
 #include "reconstruct/space_time/links.h"
@@ -9,13 +11,17 @@
 
 namespace gradus {
 
+// From one frame to the next, of components that may go different ways.
 struct Change {
-  Links links;
-  Field difference;  // channels of the source; of pixels without a link any number
-  Field weight;      // 1/(its estimated squared error)
+  std::vector<Links> links;       // of each
+  std::vector<Field> difference;  // likewise, channels of the sources; of pixels without a link any number
+  Field weight;                   // 1/(estimated squared error of all differences of a pixel together)
 };
 
-// From frame t on. features: that frame's, filtered; scale: its median luminance.
-Change regress_change(const HalvedWindowSource& source, int t, const Features& features, float scale, const CancelTest& cancel);
+using ComponentSources = std::vector<std::unique_ptr<HalvedWindowSource>>;
+
+// From frame t on. All components go through one regression, that of their sum. features: the frame's, filtered; scale: its median
+// luminance.
+Change regress_change(const ComponentSources& components, int t, const Features& features, float scale, const CancelTest& cancel);
 
 }  // namespace gradus

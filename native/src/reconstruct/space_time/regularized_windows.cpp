@@ -1,9 +1,12 @@
 #include "reconstruct/space_time/regularized_windows.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
+#include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
+#include "reconstruct/linear_parts.h"
 #include "reconstruct/regularized.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/solve_tracks.h"
@@ -17,82 +20,125 @@ constexpr float kLeastError = 1e-6f;
 constexpr float kExplained = 64.0f;
 constexpr int kColors = 3;
 
-// The picture, and its error in one more channel.
-Field to_field(const Frame& frame, const Reconstructed& picture) {
-  const size_t w = size_t(frame.region.width()), channels = size_t(frame.channels);
-  Field field(frame.region.width(), frame.region.height(), frame.channels + 1);
-  for_values(&field, [&](float& value, int x, int y, int c) {
-    const size_t i = size_t(y) * w + size_t(x);
-    value = c < frame.channels ? picture.image[i * channels + size_t(c)] : picture.error[i];
-  });
+Field to_field(const Frame& frame, const std::vector<float>& image, int channels) {
+  const auto w = size_t(frame.region.width()), n = size_t(channels);
+  Field field(frame.region.width(), frame.region.height(), channels);
+  for_values(&field, [&](float& value, int x, int y, int c) { value = image[(size_t(y) * w + size_t(x)) * n + size_t(c)]; });
   return field;
 }
 
 // Median luminance.
-float scale_of(const Field& picture) {
-  Field colours(picture.width(), picture.height(), 3);
-  for_values(&colours, [&](float& value, int x, int y, int c) { value = picture.row(y, c)[x]; });
+float scale_of(const std::vector<Field>& pictures) {
+  Field colours(pictures[0].width(), pictures[0].height(), kColors);
+  for (const Field& picture : pictures) {
+    for_values(&colours, [&](float& value, int x, int y, int c) { value += picture.row(y, c)[x]; });
+  }
   return robust_scale(colours);
 }
 
-// Weights of a change. Where both pictures say otherwise, by more than their errors explain, it is known no better than it meets them.
-Field weigh_change(const Change& change, const Field& here, const Field& next) {
-  Field weight = change.weight;
-  const int error = here.channels() - 1;
-  for_rows(here.height(), [&](int y) {
-    change.links.for_runs(y, [&](int begin, int end, int dx, int dy) {
-      const float *e = here.row(y, error), *e_next = next.row(y + dy, error) + dx;
-      float* c = weight.row(y);
-      for (int i = begin; i < end; ++i) {
-        float apart = 0.0f;
-        for (int k = 0; k < kColors; ++k) {
-          const float d = next.row(y + dy, k)[i + dx] - here.row(y, k)[i] - change.difference.row(y, k)[i];
-          apart += d * d / kColors;
+// By how much the pictures change otherwise than the changes say, all components together, and the errors at the ends of their ways.
+struct Apart {
+  Field colours, error;
+};
+
+Apart measure(const Change& change, const std::vector<Field>& here, const std::vector<Field>& next, const Field& error,
+              const Field& next_error) {
+  const int w = error.width(), h = error.height();
+  Apart apart{Field(w, h, kColors), Field(w, h, 1)};
+  for (size_t k = 0; k < here.size(); ++k) {
+    for_rows(h, [&](int y) {
+      change.links[k].for_runs(y, [&](int begin, int end, int dx, int dy) {
+        for (int c = 0; c < kColors; ++c) {
+          const float *from = here[k].row(y, c), *to = next[k].row(y + dy, c) + dx, *difference = change.difference[k].row(y, c);
+          float* sum = apart.colours.row(y, c);
+          for (int i = begin; i < end; ++i) sum[i] += to[i] - from[i] - difference[i];
         }
-        const float excess = apart - kExplained * (e[i] + e_next[i] + 1.0f / c[i]);
-        if (excess > 0.0f) c[i] = track_weight(1.0f / c[i] + excess);
-      }
+        const float *e = error.row(y), *e_next = next_error.row(y + dy) + dx;
+        float* most = apart.error.row(y);
+        for (int i = begin; i < end; ++i) most[i] = std::max(most[i], e[i] + e_next[i]);
+      });
     });
+  }
+  return apart;
+}
+
+// Weights of a change. Where both pictures say otherwise, by more than their errors explain, it is known no better than it meets them.
+Field weigh_change(const Change& change, const Apart& apart) {
+  return make_field(apart.error.width(), apart.error.height(), [&](int x, int y) {
+    const float weight = change.weight.row(y)[x];
+    const float excess = mean_of_squares(apart.colours, x, y) - kExplained * (apart.error.row(y)[x] + 1.0f / weight);
+    return excess > 0.0f ? track_weight(1.0f / weight + excess) : weight;
   });
-  return weight;
 }
 
-// picture: with its error.
-void check_size(const Field& picture, const WindowSize& size) {
-  const bool same = picture.width() == size.width && picture.height() == size.height && picture.channels() == size.channels + 1;
-  if (!same) throw invalid_argument("a frame has another size than its window");
+void check_size(const std::vector<Field>& pictures, const ComponentSources& sources) {
+  const auto same = [](const Field& picture, const std::unique_ptr<HalvedWindowSource>& source) {
+    const WindowSize size = source->size();
+    return picture.width() == size.width && picture.height() == size.height && picture.channels() == size.channels;
+  };
+  if (!std::equal(pictures.begin(), pictures.end(), sources.begin(), sources.end(), same)) {
+    throw invalid_argument("a frame has another size than its window");
+  }
 }
 
-Reconstructed to_picture(const Field& field) {
-  const size_t pixels = size_t(field.width()) * size_t(field.height()), channels = size_t(field.channels() - 1);
-  Reconstructed picture{std::vector<float>(pixels * channels), std::vector<float>(pixels)};
-  for (size_t c = 0; c < channels; ++c) store_channel(field, int(c), channels, picture.image.data() + c);
-  store_channel(field, int(channels), 1, picture.error.data());
+std::vector<float> interleave(const Field& field, int channels) {
+  const size_t pixels = size_t(field.width()) * size_t(field.height()), n = size_t(channels);
+  std::vector<float> image(pixels * n);
+  for (size_t c = 0; c < n; ++c) store_channel(field, int(c), n, image.data() + c);
+  return image;
+}
+
+// Of components, each with the error in one more channel.
+Reconstructed to_picture(std::vector<Field> components, size_t brightest) {
+  const int channels = components[0].channels() - 1;
+  Reconstructed picture;
+  for (const Field& component : components) picture.components.push_back(interleave(component, channels));
+  Field error(components[0].width(), components[0].height(), 1);
+  for_values(&error, [&](float& value, int x, int y, int) { value = components[brightest].row(y, channels)[x]; });
+  picture.error = interleave(error, 1);
+  picture.image = picture.components[0];
+  for (size_t k = 1; k < picture.components.size(); ++k) {
+    for (size_t i = 0; i < picture.image.size(); ++i) picture.image[i] += picture.components[k][i];
+  }
+  if (picture.components.size() == 1) picture.components.clear();
   return picture;
+}
+
+Field with_error(const Field& picture, const Field& error) {
+  Field joined(picture.width(), picture.height(), picture.channels() + 1);
+  for_values(&joined, [&](float& value, int x, int y, int c) { value = c < picture.channels() ? picture.row(y, c)[x] : error.row(y)[x]; });
+  return joined;
 }
 
 }  // namespace
 
 void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelTest& cancel, SolveReport* report, const Take& take) {
   estimates_.erase(estimates_.begin(), estimates_.lower_bound(frames.first));
-  std::vector<Field> pictures, weights;
+  std::vector<const Estimate*> window;
   for (int frame = frames.first; frame <= frames.last && !cancel(); ++frame) {
-    const Estimate& estimate = estimated(frame, frame < frames.last, cancel, report);
-    pictures.push_back(estimate.picture);
-    weights.push_back(estimate.weight);
+    window.push_back(&estimated(frame, frame < frames.last, cancel, report));
   }
   if (cancel()) return;
   std::vector<Field> couplings;
-  for (int frame = frames.first; frame < frames.last; ++frame) {
-    couplings.push_back(weigh_change(*estimates_.at(frame).change, estimates_.at(frame).picture, estimates_.at(frame + 1).picture));
+  for (size_t t = 0; t + 1 < window.size(); ++t) {
+    const Estimate &here = *window[t], &next = *window[t + 1];
+    couplings.push_back(weigh_change(*here.change, measure(*here.change, here.pictures, next.pictures, here.error, next.error)));
   }
-  std::vector<TrackStep> steps;
-  for (int frame = frames.first; frame < frames.last; ++frame) {
-    const Change& change = *estimates_.at(frame).change;
-    steps.push_back({change.links, change.difference, couplings[steps.size()]});
+  std::vector<std::vector<Field>> solved(window.size());  // by frame and component
+  for (size_t k = 0; k < window[0]->pictures.size(); ++k) {
+    std::vector<TrackStep> steps;
+    for (size_t t = 0; t + 1 < window.size(); ++t) {
+      steps.push_back({window[t]->change->links[k], window[t]->change->difference[k], couplings[t]});
+    }
+    std::vector<Field> pictures, weights;
+    for (const Estimate* estimate : window) {
+      pictures.push_back(with_error(estimate->pictures[k], estimate->error));
+      weights.push_back(estimate->weight);
+    }
+    solve_tracks(steps, &pictures, &weights);
+    for (size_t t = 0; t < window.size(); ++t) solved[t].push_back(std::move(pictures[t]));
   }
-  solve_tracks(steps, &pictures, &weights);
-  for (int t = 0; t < frames.count(); ++t) take(t, to_picture(std::exchange(pictures[size_t(t)], {})));
+  for (size_t t = 0; t < window.size(); ++t) take(int(t), to_picture(std::exchange(solved[t], {}), window[t]->brightest));
 }
 
 const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const CancelTest& cancel, SolveReport* report) {
@@ -100,19 +146,23 @@ const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, boo
   if (known == estimates_.end()) known = estimates_.emplace(frame, still(*open_(frame, cancel), cancel, report)).first;
   Estimate& estimate = known->second;
   if (!changes || estimate.change) return estimate;
-  const std::unique_ptr<HalvedWindowSource> rows = differences_(frame, cancel);
-  check_size(estimate.picture, rows->size());
-  estimate.change = regress_change(*rows, 0, std::exchange(estimate.features, {}), scale_of(estimate.picture), cancel);
+  const ComponentSources sources = differences_(frame, cancel);
+  check_size(estimate.pictures, sources);
+  estimate.change = regress_change(sources, 0, std::exchange(estimate.features, {}), scale_of(estimate.pictures), cancel);
   return estimate;
 }
 
 RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, const CancelTest& cancel, SolveReport* report) {
   Estimate estimate;
-  estimate.features = ComponentGuides(samples).of(0);
-  estimate.picture = to_field(samples, regularize(samples, 0, estimate.features, cancel, report));
-  const float scale = scale_of(estimate.picture), least = kLeastError * scale * scale;
+  estimate.features = filter_features(read_features(samples));
+  const Reconstructed picture = regularize(samples, estimate.features, samples.components.size() > 1, cancel, report);
+  if (picture.components.empty()) estimate.pictures.push_back(to_field(samples, picture.image, samples.channels));
+  for (const std::vector<float>& image : picture.components) estimate.pictures.push_back(to_field(samples, image, samples.channels));
+  estimate.brightest = brightest(estimate.pictures);
+  estimate.error = to_field(samples, picture.error, 1);
+  const float scale = scale_of(estimate.pictures), least = kLeastError * scale * scale;
   estimate.weight = make_field(samples.region.width(), samples.region.height(),
-                               [&](int x, int y) { return track_weight(estimate.picture.row(y, samples.channels)[x] + least); });
+                               [&](int x, int y) { return track_weight(estimate.error.row(y)[x] + least); });
   return estimate;
 }
 

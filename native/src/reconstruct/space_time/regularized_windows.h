@@ -1,11 +1,15 @@
 // REGULARIZED over time. The picture of each frame by itself is the data, and what linked pixels change by from frame to frame, by
 // regression too, joins them along their tracks; each counts by its estimated error. What changes was sampled: it shows at once.
+//
+// Components go their own ways, each with its picture and its changes. All else they share: what they become where their ways agree is what
+// becomes of their sum.
 #pragma once
 
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "frame/features.h"
 #include "frame/frame.h"
@@ -19,8 +23,8 @@ class RegularizedWindows {
  public:
   // All samples of a frame, replays too, with features: asked for once, and not kept. Both throw the Error CANCELLED.
   using OpenFrame = std::function<std::shared_ptr<const Frame>(int frame, const CancelTest& cancel)>;
-  // A window of a frame and the next one, of which rows of pixels over time are read; after the frame itself.
-  using OpenDifferences = std::function<std::unique_ptr<HalvedWindowSource>(int frame, const CancelTest& cancel)>;
+  // Of each component a window of a frame and the next one, of which rows of pixels over time are read; after the frame itself.
+  using OpenDifferences = std::function<ComponentSources(int frame, const CancelTest& cancel)>;
   RegularizedWindows(OpenFrame open, OpenDifferences differences) : open_(std::move(open)), differences_(std::move(differences)) {}
 
   // Takes the pictures of a window's frames, in order, t counted from its first. Windows come in order: what two of them share is computed
@@ -30,8 +34,10 @@ class RegularizedWindows {
 
  private:
   struct Estimate {
-    Field picture;                 // and its error in one more channel
+    std::vector<Field> pictures;   // of the components
+    Field error;                   // of their sum
     Field weight;                  // 1/error
+    size_t brightest = 0;          // of the components
     Features features;             // until the change is known
     std::optional<Change> change;  // to the next frame, where that is in the same window
   };

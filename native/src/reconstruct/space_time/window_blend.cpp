@@ -7,21 +7,29 @@ void scale(std::vector<float>* values, float factor) {
   for (float& value : *values) value *= factor;
 }
 
+void scale(Reconstructed* picture, float factor) {
+  scale(&picture->image, factor);
+  scale(&picture->error, factor);
+  for (std::vector<float>& component : picture->components) scale(&component, factor);
+}
+
 void add(const std::vector<float>& from, std::vector<float>* to) {
   for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
+}
+
+void add(const Reconstructed& from, Reconstructed* to) {
+  add(from.image, &to->image);
+  add(from.error, &to->error);
+  for (size_t k = 0; k < to->components.size(); ++k) add(from.components[k], &to->components[k]);
 }
 
 }  // namespace
 
 void WindowBlend::add(int window, int frame, Reconstructed picture) {
   const float share = grid_.share(window, frame);
-  if (share < 1.0f) {
-    scale(&picture.image, share);
-    scale(&picture.error, share);
-  }
+  if (share < 1.0f) scale(&picture, share);
   if (const auto begun = begun_.find(frame); begun != begun_.end()) {
-    gradus::add(begun->second.image, &picture.image);
-    gradus::add(begun->second.error, &picture.error);
+    gradus::add(begun->second, &picture);
     begun_.erase(begun);
   }
   if (window < grid_.last_with(frame)) {

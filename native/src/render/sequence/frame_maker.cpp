@@ -1,5 +1,7 @@
 #include "render/sequence/frame_maker.h"
 
+#include <iterator>
+
 #include "base/bill.h"
 #include "base/error.h"
 #include "frame/features.h"
@@ -26,6 +28,16 @@ Plan plan_of(const Frame& frame) {
   plan.passes = frame.settings.passes;
   plan.sampled = frame.region;
   return plan;
+}
+
+// Names of components, those that share what they are reconstructed by.
+std::vector<std::vector<std::string>> reconstructed_together(const Frame& frame, uint32_t reconstruction) {
+  std::vector<std::vector<std::string>> groups;
+  for (const ComponentPlanes& planes : frame.components) {
+    if (groups.empty() || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED) groups.emplace_back();
+    groups.back().push_back(planes.name);
+  }
+  return groups;
 }
 
 void deliver_by(const Delivery& by, GradusSettings* settings) {
@@ -117,15 +129,14 @@ void FrameMaker::reconstruct(MadeFrame* made) {
   const bool with_error = wants(settings.passes, GRADUS_PASS_ERROR), with_flow = sequence_.settings_.with_flow && wants_flow(settings);
   const Region& region = made->delivered();
   Reconstructed picture;
-  std::vector<std::vector<float>> components;
   try {
-    for (const ComponentPlanes& planes : frame.components) {
+    for (const std::vector<std::string>& together : reconstructed_together(frame, settings.reconstruction)) {
       const SequenceMethod method{settings.reconstruction, settings.reconstruction_alpha, with_error};
-      SequencePictures* pictures = sequence_.pictures(planes.name, method, number_);
+      SequencePictures* pictures = sequence_.pictures(together, method, number_);
       Reconstructed part = pictures->take(sequence_.place_of(number_), is_cancelled_, &stats.solve);
       stop_if_asked();
-      clamp_component(frame, settings.reconstruction, frame.components.size(), &part.image);
-      if (with_flow || wants_pictures(settings)) components.push_back(crop_component(frame, settings.reconstruction, part.image, region));
+      if (part.components.empty()) part.components.push_back(part.image);
+      std::move(part.components.begin(), part.components.end(), std::back_inserter(picture.components));
       add_image(std::move(part.image), &picture.image);
       add_image(std::move(part.error), &picture.error);
     }
@@ -135,7 +146,9 @@ void FrameMaker::reconstruct(MadeFrame* made) {
   }
   made->combined = crop_picture(frame, settings.reconstruction, picture.image, region);
   if (with_error) made->error = crop_error(frame, picture.error, region);
-  made->components = std::move(components);
+  if (with_flow || wants_pictures(settings)) {
+    made->components = crop_components(frame, settings.reconstruction, std::move(picture.components), region);
+  }
 }
 
 void FrameMaker::denoise(MadeFrame* made) {

@@ -126,7 +126,7 @@ FrameRange Sequence::needs(int32_t frame) const {
 
 void Sequence::end_at(int32_t frame) {
   last_ = std::min(last_, frame);
-  for (auto& [component, pictures] : pictures_) pictures->end_at(place_of(last_));
+  for (auto& [components, pictures] : pictures_) pictures->end_at(place_of(last_));
 }
 
 std::unique_ptr<RenderTask> Sequence::sample(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
@@ -162,9 +162,14 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
   return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
 }
 
-LoadPart Sequence::load_part(FramePart part, const std::string& component) const {
-  return [this, part, component](int place, const CancelTest& cancel) {
-    return read_or_name_the_way_out([&] { return folder_.load_component(frame_at(place), part, component, cancel); });
+LoadPart Sequence::load_part(FramePart part, const std::vector<std::string>& components) const {
+  return [this, part, components](int place, const CancelTest& cancel) {
+    return read_or_name_the_way_out([&] {
+      if (components.size() == 1) return folder_.load_component(frame_at(place), part, components[0], cancel);
+      const std::shared_ptr<Frame> frame = folder_.load(frame_at(place), part, StoredContent::kAll, cancel);
+      keep_components(components, frame.get());
+      return frame;
+    });
   };
 }
 
@@ -181,8 +186,8 @@ void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
   base->shared = {};
 }
 
-SequenceSource Sequence::source(const SequenceMethod& method, const std::string& component) const {
-  const LoadPart base = load_part(FramePart::kBase, component), offset = load_part(FramePart::kOffset, component);
+SequenceSource Sequence::source(const SequenceMethod& method, const std::vector<std::string>& components) const {
+  const LoadPart base = load_part(FramePart::kBase, components), offset = load_part(FramePart::kOffset, components);
   const auto merged = [this](int place, std::shared_ptr<Frame> frame, const Frame& replay) {
     merge(frame_at(place), frame.get(), replay);
     return frame;
@@ -194,16 +199,16 @@ SequenceSource Sequence::source(const SequenceMethod& method, const std::string&
           [streamed](int place, const CancelTest& cancel) { return streamed->differences(place, cancel); }};
 }
 
-SequencePictures* Sequence::pictures(const std::string& component, const SequenceMethod& method, int32_t frame) {
+SequencePictures* Sequence::pictures(const std::vector<std::string>& components, const SequenceMethod& method, int32_t frame) {
   const int place = place_of(frame);
-  std::unique_ptr<SequencePictures>& pictures = pictures_[component];
+  std::unique_ptr<SequencePictures>& pictures = pictures_[components];
   if (!pictures || !(pictures->method() == method) || !pictures->has(place)) {
     FrameRange places = places_with_neighbours();
     const int begin = WindowGrid(places, settings_.windows).around(place).first;
     int first = place;
     while (first > begin && goes_on_at(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
-    pictures = std::make_unique<SequencePictures>(places, settings_.windows, source(method, component), method);
+    pictures = std::make_unique<SequencePictures>(places, settings_.windows, source(method, components), method);
     if (last_ < settings_.last) pictures->end_at(place_of(last_));
   }
   int last = place;

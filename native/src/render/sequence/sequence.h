@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "render/loop_input.h"
@@ -73,13 +74,14 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
   bool goes_on_at(int place, uint32_t reconstruction);
   const FrameForm& form_at(int place);
-  // Of a component alone.
-  LoadPart load_part(FramePart part, const std::string& component) const;
+  // Of these components, in this order.
+  LoadPart load_part(FramePart part, const std::vector<std::string>& components) const;
   // All samples of a frame, in the place of its own half.
   void merge(int32_t frame, Frame* base, const Frame& offset) const;
-  SequenceSource source(const SequenceMethod& method, const std::string& component) const;
-  // Of a component, that have the picture of `frame`: begun anew where it was taken before, or by another method.
-  SequencePictures* pictures(const std::string& component, const SequenceMethod& method, int32_t frame);
+  SequenceSource source(const SequenceMethod& method, const std::vector<std::string>& components) const;
+  // Of components that are reconstructed together, that have the picture of `frame`: begun anew where it was taken before, or by another
+  // method.
+  SequencePictures* pictures(const std::vector<std::string>& components, const SequenceMethod& method, int32_t frame);
   // Whether flow leads from the frame before to the one at `place`; if not, why. reconstruction: of their pictures.
   Tracking flows_to(int place, uint32_t reconstruction);
   // nullptr: there is none, which is told once.
@@ -97,10 +99,10 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   std::map<int32_t, FrameRecord> records_;
   std::map<int32_t, FrameForm> forms_;  // of frames that were sampled or looked at
   std::set<int32_t> passed_by_;
-  std::map<std::string, std::unique_ptr<SequencePictures>> pictures_;  // by component
-  std::shared_ptr<MadeFrame> ahead_;                                   // made for the frame before it, by flow, and not delivered yet
-  FrameFlows back_;                                                    // of `ahead_` to the frame before it
-  std::optional<std::shared_ptr<const FlowLibrary>> flow_library_;     // once it was looked for
+  std::map<std::vector<std::string>, std::unique_ptr<SequencePictures>> pictures_;
+  std::shared_ptr<MadeFrame> ahead_;                                // made for the frame before it, by flow, and not delivered yet
+  FrameFlows back_;                                                 // of `ahead_` to the frame before it
+  std::optional<std::shared_ptr<const FlowLibrary>> flow_library_;  // once it was looked for
 };
 
 }  // namespace gradus

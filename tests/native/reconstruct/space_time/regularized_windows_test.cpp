@@ -22,6 +22,13 @@ using namespace test;
 
 constexpr int kWidth = 72, kHeight = 50;
 
+// Of one component.
+ComponentSources alone(std::unique_ptr<HalvedWindowSource> source) {
+  ComponentSources sources;
+  sources.push_back(std::move(source));
+  return sources;
+}
+
 // A room that is sampled as temporal frames are: a frame's own random numbers, and those of the frame before. The camera rests; the light
 // is light(t) times as bright.
 struct Shot {
@@ -76,7 +83,7 @@ struct Shot {
     return [this](int t, const CancelTest&) { return merged(t); };
   }
   RegularizedWindows::OpenDifferences differences() const {
-    return [this](int t, const CancelTest&) { return pair(t); };
+    return [this](int t, const CancelTest&) { return alone(pair(t)); };
   }
   RegularizedWindows windows() const { return {open(), differences()}; }
   FrameRange all() const { return {0, frames - 1}; }
@@ -98,7 +105,7 @@ std::vector<Reconstructed> solve(const Shot& shot) {
 std::vector<Reconstructed> solve_each(const Shot& shot) {
   SolveReport report;
   std::vector<Reconstructed> pictures;
-  for (int t = 0; t < shot.frames; ++t) pictures.push_back(regularize(*shot.merged(t), 0, never, &report));
+  for (int t = 0; t < shot.frames; ++t) pictures.push_back(regularize(*shot.merged(t), false, never, &report));
   return pictures;
 }
 
@@ -235,7 +242,7 @@ TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
   Shot shot;
   shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
   SolveReport report;
-  RegularizedWindows windows(shot.open(), [&](int t, const CancelTest&) { return std::make_unique<Blind>(shot.pair(t)); });
+  RegularizedWindows windows(shot.open(), [&](int t, const CancelTest&) { return alone(std::make_unique<Blind>(shot.pair(t))); });
   windows.reconstruct(shot.all(), never, &report, [&](int t, const Reconstructed& picture) {
     EXPECT_NEAR(mean(picture.image) / mean(shot.description(t).truth), 1.0, 0.05) << t;
   });
@@ -307,7 +314,7 @@ TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
       },
       [&](int t, const CancelTest&) {
         ++changes[t];
-        return shot.pair(t);
+        return alone(shot.pair(t));
       });
   solve(&both, {0, 4});
   const std::vector<Reconstructed> second = solve(&both, {3, 7});
@@ -345,6 +352,86 @@ TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
   SolveReport report;
   RegularizedWindows windows(other.open(), shot.differences());
   EXPECT_THROW(windows.reconstruct(shot.all(), never, &report, [](int, const Reconstructed&) {}), Error);
+}
+
+// The light of a shot in two components, the second brighter to the right.
+struct TakenApart {
+  Shot shot;
+  bool second_is_linked = true;
+
+  static void take_apart(Frame* frame) {
+    frame->components.push_back(frame->components[0]);
+    for (size_t k = 0; k < 2; ++k) {
+      for (auto& half : frame->components[k].primal) {
+        for (size_t i = 0; i < half.size(); ++i) {
+          const float second = 0.1f + 0.3f * float(i % kWidth) / kWidth;
+          half[i] *= k == 1 ? second : 1.0f - second;
+        }
+      }
+    }
+  }
+  std::shared_ptr<const Frame> merged(int t) const {
+    auto frame = std::make_shared<Frame>(*shot.merged(t));
+    take_apart(frame.get());
+    return frame;
+  }
+  std::shared_ptr<const TemporalFrame> temporal(int t, int component) const {
+    Frame base = shot.sampled(t, t), replay = shot.sampled(t, t - 1);
+    take_apart(&base);
+    take_apart(&replay);
+    auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(base, replay, {}, component));
+    frame->stream = t;
+    frame->replayed = shot.temporal(t)->replayed;
+    if (component == 1 && !second_is_linked) std::ranges::fill(frame->replayed.pixel, kNoLink);
+    return frame;
+  }
+  RegularizedWindows windows() const {
+    return {[this](int t, const CancelTest&) { return merged(t); },
+            [this](int t, const CancelTest&) {
+              ComponentSources sources;
+              for (int k = 0; k < 2; ++k) {
+                sources.push_back(
+                    std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{temporal(t, k), temporal(t + 1, k)}));
+              }
+              return sources;
+            }};
+  }
+};
+
+// Decomposition alone changes nothing.
+TEST(B2_RegularizedWindow, ComponentsThatGoTheSameWayAreWhatTheirSumBecomes) {
+  TakenApart apart;
+  apart.shot.frames = 4;
+  apart.shot.light = [](int t) { return 1.0f + 0.1f * float(t); };
+  RegularizedWindows windows = apart.windows();
+  const std::vector<Reconstructed> parts = solve(&windows, apart.shot.all()), whole = solve(apart.shot);
+  for (size_t t = 0; t < whole.size(); ++t) {
+    ASSERT_EQ(parts[t].components.size(), 2u);
+    EXPECT_LT(rms_difference(parts[t].image, whole[t].image), 1e-4) << t;
+    EXPECT_LT(rms_difference(parts[t].error, whole[t].error), 1e-4) << t;
+    for (size_t i = 0; i < whole[t].image.size(); ++i) {
+      ASSERT_NEAR(parts[t].components[0][i] + parts[t].components[1][i], parts[t].image[i], 1e-5f);
+    }
+  }
+}
+
+// A component that goes nowhere is what it is in each frame by itself; the other goes on along its own tracks.
+TEST(B2_RegularizedWindow, EveryComponentGoesItsOwnWay) {
+  TakenApart apart;
+  apart.shot.frames = 5;
+  apart.second_is_linked = false;
+  RegularizedWindows windows = apart.windows();
+  const std::vector<Reconstructed> parts = solve(&windows, apart.shot.all());
+  double linked = 0.0, still = 0.0;
+  for (int t = 0; t < apart.shot.frames; ++t) {
+    SolveReport report;
+    const Reconstructed each = regularize(*apart.merged(t), true, never, &report);
+    EXPECT_EQ(parts[size_t(t)].components[1], each.components[1]) << t;
+    if (t == 0) continue;
+    linked += rms_difference(parts[size_t(t)].components[0], parts[size_t(t) - 1].components[0]);
+    still += rms_difference(each.components[0], regularize(*apart.merged(t - 1), true, never, &report).components[0]);
+  }
+  EXPECT_LT(linked, 0.5 * still);
 }
 
 }  // namespace

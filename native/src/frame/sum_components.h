@@ -1,0 +1,11 @@
+// What all components of a frame have found together.
+#pragma once
+
+#include "frame/frame.h"
+
+namespace gradus {
+
+// Samples and differences of a frame without decomposition: its one component is the sum of all. Without passes.
+Frame sum_components(const Frame& frame);
+
+}  // namespace gradus

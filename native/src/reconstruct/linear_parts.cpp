@@ -1,0 +1,45 @@
+#include "reconstruct/linear_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct/field_values.h"
+#include "reconstruct/rows.h"
+
+namespace gradus {
+namespace {
+
+double light_of(const Field& field) {
+  const Sums sums = sum_rows(field.height(), 1, [&](int y, int) {
+    double sum = 0.0;
+    for (int c = 0; c < std::min(field.channels(), 3); ++c) {
+      for (int x = 0; x < field.width(); ++x) sum += std::fabs(double(field.row(y, c)[x]));
+    }
+    return sum;
+  });
+  return sums[0];
+}
+
+}  // namespace
+
+void subtract(const Field& part, Field* from) {
+  for_values(from, [&](float& value, int x, int y, int c) { value -= part.row(y, c)[x]; });
+}
+
+size_t brightest(const std::vector<Field>& parts) {
+  std::vector<double> light;
+  for (const Field& part : parts) light.push_back(light_of(part));
+  return size_t(std::max_element(light.begin(), light.end()) - light.begin());
+}
+
+bool is_black(const Field& field) {
+  for (int y = 0; y < field.height(); ++y) {
+    for (int c = 0; c < field.channels(); ++c) {
+      const float* row = field.row(y, c);
+      if (std::any_of(row, row + field.width(), [](float value) { return value != 0.0f; })) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace gradus
