@@ -38,7 +38,7 @@ std::vector<int32_t> link_component(const std::vector<int32_t>& surface, const C
     links[i] = there;
   }
   for (size_t i = 0; i < surface.size(); ++i) {
-    if (is_seen_through(from, i) || surface[i] == kNoLink || owner[size_t(surface[i])] != kNoLink) continue;
+    if (links[i] != kNoLink || surface[i] == kNoLink || owner[size_t(surface[i])] != kNoLink) continue;
     owner[size_t(surface[i])] = int32_t(i);
     links[i] = surface[i];
   }
