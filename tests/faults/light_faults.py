@@ -79,8 +79,8 @@ LIGHT = (
         APART,
         "those of a stored frame are the first picture's",
         FRAME,
-        "has_light_passes(*frame)) object->made = kept;",
-        "has_light_passes(*frame) && !object->made) object->made = kept;",
+        "frame->components.size() > 1)) object->made = kept;",
+        "frame->components.size() > 1) && !object->made) object->made = kept;",
         (native("FrameLightPasses.FollowTheLastReconstruction"),),
     ),
 )

@@ -5,6 +5,11 @@ from __future__ import annotations
 from fault import Fault, native
 
 REGULARIZED = "native/src/reconstruct/regularized.cpp"
+HALVED_IMAGE = "native/src/reconstruct/halved_image.h"
+FUSED = "native/src/reconstruct/fused_differences.cpp"
+LINEAR_PARTS = "native/src/reconstruct/linear_parts.h"
+REGRESS_CHANGE = "native/src/reconstruct/space_time/regress_change.cpp"
+REGULARIZED_WINDOWS = "native/src/reconstruct/space_time/regularized_windows.cpp"
 FEATURE_REGRESSION = "native/src/reconstruct/feature_regression.cpp"
 REGRESSION_ERROR = "native/src/reconstruct/regression_error.cpp"
 LOCAL_REGRESSION = "native/src/reconstruct/local_regression.cpp"
@@ -31,6 +36,8 @@ SHIFT = "features shifted"
 VARIANCE = "variance off by 4"
 SECOND_STEP = "second step dropped"
 FROZEN = "alpha beside the operator"
+COMPONENTS = "components apart"
+OF_COMPONENTS = (native("B2_Regularized.ComponentsAreWhatThePictureWithoutThemIsMadeOf"),)
 
 RECONSTRUCTION = (
     Fault(
@@ -38,11 +45,19 @@ RECONSTRUCTION = (
         HALVES,
         "A is read in place of B: there is no noise",
         REGULARIZED,
-        "read_primal_row(frame, component, {1, 2}, y, b.data());",
-        "read_primal_row(frame, component, {0, 1}, y, b.data());",
+        "Rgb(component.primal[1][pixel])",
+        "Rgb(component.primal[0][pixel])",
         (native("B2_Regularized.TakesMostOfTheNoise"), *OF_ERROR),
     ),
-    Fault(13, HALVES, "their sum in place of their difference", REGULARIZED, "0.5f * (a[i] - b[i])", "0.5f * (a[i] + b[i])", OF_ERROR),
+    Fault(
+        13,
+        HALVES,
+        "their sum in place of their difference",
+        HALVED_IMAGE,
+        "0.5f * (sums[0][c] / a - sums[1][c] / b)",
+        "0.5f * (sums[0][c] / a + sums[1][c] / b)",
+        OF_ERROR,
+    ),
     Fault(
         13,
         HALVES,
@@ -151,8 +166,24 @@ RECONSTRUCTION = (
         "distance.row(other) - first_column(offset);",
         (native("FeatureFilter.AMirroredPictureIsFilteredAlike"),),
     ),
-    Fault(15, VARIANCE, "four times, of the image", REGULARIZED, "0.5f * (a[i] - b[i])", "a[i] - b[i]", OF_ERROR),
-    Fault(15, VARIANCE, "a quarter, of the image", REGULARIZED, "0.5f * (a[i] - b[i])", "0.25f * (a[i] - b[i])", OF_ERROR),
+    Fault(
+        15,
+        VARIANCE,
+        "four times, of the image",
+        HALVED_IMAGE,
+        "0.5f * (sums[0][c] / a - sums[1][c] / b)",
+        "sums[0][c] / a - sums[1][c] / b",
+        OF_ERROR,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "a quarter, of the image",
+        HALVED_IMAGE,
+        "0.5f * (sums[0][c] / a - sums[1][c] / b)",
+        "0.25f * (sums[0][c] / a - sums[1][c] / b)",
+        OF_ERROR,
+    ),
     Fault(
         15,
         VARIANCE,
@@ -202,7 +233,7 @@ RECONSTRUCTION = (
         15,
         VARIANCE,
         "four times, of the regression beside sampled differences",
-        REGULARIZED,
+        FUSED,
         "0.5f * kSharedDifference * both",
         "2.0f * kSharedDifference * both",
         OF_DIFFERENCES,
@@ -257,8 +288,8 @@ RECONSTRUCTION = (
         VARIANCE,
         "in Error: the scale is not squared",
         REGULARIZED,
-        "  multiply(scale * scale, &error);",
-        "  multiply(scale, &error);",
+        "value *= scale * scale;",
+        "value *= scale;",
         (native("B2_Regularized.ScalesWithTheImage"),),
     ),
     Fault(
@@ -306,19 +337,17 @@ RECONSTRUCTION = (
         FROZEN,
         "it stays as noisy as it was sampled",
         REGULARIZED,
-        "const Field alpha = regression.apply(read_alpha(frame, component), cancel);",
-        "const Field alpha = cancel() ? Field() : read_alpha(frame, component);",
+        "regression_->apply(channels_of(read_sampled(frame, 0, scale_), 3, 1), cancel)",
+        "channels_of(read_sampled(frame, 0, scale_), 3, 1)",
         OF_ALPHA,
     ),
     Fault(
         17,
         FROZEN,
         "beside differences it is the regression's alone",
-        REGULARIZED,
-        "  solve();\n  return solution;",
-        "  solve();\n"
-        "  for_values(&solution, [&](float& v, int x, int y, int c) { v = c < 3 ? v : planes.primal.row(y, c)[x]; });\n"
-        "  return solution;",
+        FUSED,
+        "  solve();\n}\n",
+        "  solve();\n  for_values(&solution_, [&](float& v, int x, int y, int c) { v = c < 3 ? v : regressed.row(y, c)[x]; });\n}\n",
         OF_ALPHA,
     ),
     Fault(
@@ -347,5 +376,41 @@ RECONSTRUCTION = (
         "load(boxes_[c] + x) + own *",
         "load(boxes_[c] + x) + (Estimates ? own : zero) *",
         (native("B2_Regression.IsTheFrozenOperatorThatItApplies"), *OF_ALPHA),
+    ),
+    Fault(
+        33,
+        COMPONENTS,
+        "what others leave is not taken off the brightest",
+        LINEAR_PARTS,
+        "    subtract((*parts)[k], &left);\n",
+        "",
+        OF_COMPONENTS,
+    ),
+    Fault(
+        33,
+        COMPONENTS,
+        "beside differences they are the regression's alone",
+        REGULARIZED,
+        "fusion_ ? fusion_->apply(read_images(frame, component), regressed, cancel_, report_) : regressed",
+        "component < 0 ? fusion_->apply(read_images(frame, component), regressed, cancel_, report_) : regressed",
+        (native("B2_Regularized.ComponentsGoThroughOneLinearOperator"),),
+    ),
+    Fault(
+        33,
+        COMPONENTS,
+        "all go the way of the first",
+        REGULARIZED_WINDOWS,
+        "window[t]->change->links[k], window",
+        "window[t]->change->links[0], window",
+        (native("B2_RegularizedWindow.EveryComponentGoesItsOwnWay"),),
+    ),
+    Fault(
+        33,
+        COMPONENTS,
+        "changes are not added up before they are weighed",
+        REGRESS_CHANGE,
+        "      add(component.image.half_difference, &sum.half_difference);\n",
+        "",
+        (native("B2_RegularizedWindow.ComponentsThatGoTheSameWayAreWhatTheirSumBecomes"),),
     ),
 )

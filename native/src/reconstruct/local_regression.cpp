@@ -14,21 +14,26 @@ namespace gradus {
 namespace {
 
 // Squares of a tile, with what windows reach beyond it whole vectors. Its sums are in the second cache; the taller, the less is done twice.
-constexpr int kTileWidth = 72 - 2 * kReach, kTileHeight = 96;
+// Parts of a picture are black in much of it, where small tiles are passed over.
+struct TileSize {
+  int width, height;
+};
+constexpr TileSize kOfEstimate{72 - 2 * kReach, 96}, kOfApply{40 - 2 * kReach, 32};
 
 const Field* or_null(const Field& field) { return field.width() > 0 ? &field : nullptr; }
 
 template <int P, int C, bool Coordinates, bool Estimates>
 void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, const CancelTest& cancel) {
+  constexpr TileSize kTile = Estimates ? kOfEstimate : kOfApply;
   const int side = octave.octave.side;
   const int w = ceil_divided(task.weights->width() + octave.shift, side), h = ceil_divided(task.weights->height() + octave.shift, side);
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, ceil_divided(h, kTileHeight), 1, 0, ceil_divided(w, kTileWidth), 1),
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, ceil_divided(h, kTile.height), 1, 0, ceil_divided(w, kTile.width), 1),
                     [&](const tbb::blocked_range2d<int>& range) {
                       const FlushDenormals flush;
                       for (int j = range.rows().begin(); j < range.rows().end(); ++j) {
                         for (int i = range.cols().begin(); i < range.cols().end() && !cancel(); ++i) {
-                          Tile<P, C, Coordinates, Estimates>(task, octave, i * kTileWidth, std::min(w, (i + 1) * kTileWidth),
-                                                             j * kTileHeight, std::min(h, (j + 1) * kTileHeight))
+                          Tile<P, C, Coordinates, Estimates>(task, octave, i * kTile.width, std::min(w, (i + 1) * kTile.width),
+                                                             j * kTile.height, std::min(h, (j + 1) * kTile.height))
                               .run();
                         }
                       }

@@ -22,10 +22,13 @@ constexpr uint64_t kFloat = sizeof(float);
 
 struct Sizes {
   uint64_t frame, channels, halves, kinds;  // bytes of a frame's samples; images of each half; kinds of rows in space
+  uint64_t components;                      // that are reconstructed together
 };
 
 // Images of both parts of a frame, and what links them to the frame before (temporal/temporal_frame.h).
-uint64_t temporal_frame_bytes(const Sizes& s) { return 2 * s.kinds * (1 + s.halves) * s.channels * kFloat + 2 * sizeof(int32_t); }
+uint64_t temporal_frame_bytes(const Sizes& s) {
+  return s.components * (2 * s.kinds * (1 + s.halves) * s.channels * kFloat + 2 * sizeof(int32_t));
+}
 
 // Of a window's pixels: four fields and the grids of their solver (reconstruct/space_time/window_solver.h), as measured; with the errors
 // what L2 makes of the noise, and of the values where the picture is not L2's.
@@ -35,9 +38,9 @@ uint64_t solver_bytes(const Sizes& s, const SequenceMethod& method) {
   return fields + (method.with_error ? errors : 0);
 }
 
-// Of a window's pixels, by REGULARIZED (reconstruct/space_time/regularized_windows.h): pictures with error and weight, changes with weight
-// and links, and both once more while tracks are solved.
-uint64_t estimate_bytes(const Sizes& s) { return (2 * (s.channels + 2) + s.channels + 3) * kFloat; }
+// Of a window's pixels, by REGULARIZED (reconstruct/space_time/regularized_windows.h): components' pictures, changes and links, and what
+// their tracks are solved to; of all together errors and weights.
+uint64_t estimate_bytes(const Sizes& s) { return (s.components * (3 * s.channels + 2) + 5) * kFloat; }
 
 // Of a frame's pixels: features of two and the regression of one of them, beside the samples of one frame.
 constexpr uint64_t kRegression = (2 * 14 + 63) * kFloat;
@@ -102,11 +105,13 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   const uint64_t area = uint64_t(plan.sampled.area()), channels = uint64_t(plan.channels);
   const Sizes sizes{frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices, plan.component_motion,
                                           plan.component_motion),
-                    channels, uint64_t(regularized || reads_halves(method) ? 1 : 0), uint64_t(plan.gradients && !regularized ? 3 : 1)};
+                    channels, uint64_t(regularized || reads_halves(method) ? 1 : 0), uint64_t(plan.gradients && !regularized ? 3 : 1),
+                    uint64_t(regularized ? plan.components.count() : 1)};
   const uint64_t all = uint64_t(count), in_window = keeps ? uint64_t(windows.frames) : std::min(all, uint64_t(windows.frames));
   const uint64_t ahead = std::min(all, uint64_t(2 * windows.frames - windows.overlap));
 
-  const uint64_t delivered = sizes.frame + 11 * kFloat, pictures = in_window * (channels + 1) * kFloat;
+  const uint64_t delivered = sizes.frame + 11 * kFloat, apart = sizes.components > 1 ? sizes.components : 0,
+                 pictures = in_window * ((1 + apart) * channels + 1) * kFloat;
   const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * sizeof(int32_t);
   PlannedBytes needs;
   needs.memory = area * std::max(sampling, delivered + pictures + delivery_bytes(sizes, method, in_window));
