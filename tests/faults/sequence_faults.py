@@ -286,7 +286,7 @@ SEQUENCES = (
         "the last one has the frame",
         BLEND,
         "gradus::add(begun->second, &picture);",
-        "scale(&picture.image, 1.0f / share);",
+        "gradus::add(picture, &begun->second);\n    scale(&picture, 1.0f / share);",
         (native("B2_Windows.OverlapsAreBlended"),),
     ),
     Fault(
