@@ -116,7 +116,7 @@ TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
       SolveReport report;
       const Frame frame = render(context, gradients, uint32_t(k), 16);
       results[k] = reconstruct_frame(
-          frame, reconstruction, 0.0f, true, [] { return false; }, &report);
+          frame, reconstruction, 0.0f, {.error = true}, [] { return false; }, &report);
     });
     const auto [all, better_half, worst_tenth] = compare(results, reference);
     const std::string name = choice_name(*find_option("reconstruction"), reconstruction);

@@ -35,7 +35,7 @@ Frame render(IntegratorContext context, bool gradient, uint32_t seed, int sample
 std::vector<float> reconstructed(const Frame& frame, GradusReconstruction reconstruction) {
   SolveReport report;
   return reconstruct_frame(
-             frame, reconstruction, 0.0f, false, [] { return false; }, &report)
+             frame, reconstruction, 0.0f, {}, [] { return false; }, &report)
       .image;
 }
 
