@@ -38,9 +38,10 @@ uint64_t solver_bytes(const Sizes& s, const SequenceMethod& method) {
   return fields + (method.with_error ? errors : 0);
 }
 
-// Of a window's pixels, by REGULARIZED (reconstruct/space_time/regularized_windows.h): components' pictures, changes and links, and what
-// their tracks are solved to; of all together errors and weights.
-uint64_t estimate_bytes(const Sizes& s) { return (s.components * (3 * s.channels + 2) + 5) * kFloat; }
+// Of a window's pixels, by REGULARIZED (reconstruct/space_time/regularized_windows.h): components' pictures, changes and links, and of all
+// together errors and weights; and what their tracks are solved to, when all frames are there.
+uint64_t held_bytes(const Sizes& s) { return (s.components * (2 * s.channels + 1) + 3) * kFloat; }
+uint64_t estimate_bytes(const Sizes& s) { return held_bytes(s) + (s.components * (s.channels + 1) + 2) * kFloat; }
 
 // Of a frame's pixels: features of two and the regression of one of them, beside the samples of one frame.
 constexpr uint64_t kRegression = (2 * 14 + 63) * kFloat;
@@ -48,7 +49,8 @@ constexpr uint64_t kRegression = (2 * 14 + 63) * kFloat;
 uint64_t delivery_bytes(const Sizes& s, const SequenceMethod& method, uint64_t frames) {
   const uint64_t loading = 2 * s.frame + 2 * temporal_frame_bytes(s);
   if (method.reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED) return std::max(loading, frames * solver_bytes(s, method));
-  return frames * estimate_bytes(s) + std::max(loading, s.frame + temporal_frame_bytes(s) + kRegression);
+  const uint64_t regressing = std::max(loading, s.frame + temporal_frame_bytes(s) + kRegression);
+  return std::max(frames * held_bytes(s) + regressing, frames * estimate_bytes(s));
 }
 
 // Between two frames at once (motion/irradiance_motion.h): light, known motion and objects of both, levels, and for either way the vectors,
