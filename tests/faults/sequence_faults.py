@@ -12,6 +12,7 @@ SEQUENCE = "native/src/render/sequence/sequence.cpp"
 FILE_WRITER = "native/src/frame/file_writer.cpp"
 PIXELS = "native/src/integrator/pixel_loop.cpp"
 LINKS = "native/src/temporal/pixel_links.cpp"
+REGRESS_CHANGE = "native/src/reconstruct/space_time/regress_change.cpp"
 TEMPORAL_FRAME = "native/src/temporal/temporal_frame.cpp"
 REPEATED = "native/src/temporal/temporal_frame.h"
 MAKER = "native/src/render/sequence/frame_maker.cpp"
@@ -150,9 +151,36 @@ SEQUENCES = (
         LINK,
         "from the next frame to this one",
         TEMPORAL_FRAME,
-        "follows && !is_repeated(frame, next) ? inverse_links(replayed.pixel) : links",
-        "follows && !is_repeated(frame, next) ? replayed.pixel : links",
+        "follows && !is_repeated(frame, next) ? inverse_links(replayed.links) : PixelLinks{std::move(pixel)}",
+        "follows && !is_repeated(frame, next) ? replayed.links : PixelLinks{std::move(pixel)}",
         (native("FiveFrames.LinksAreThoseThatTheNextFrameHasFollowed"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "the other way round they end in the middle of pixels",
+        LINKS,
+        "    if (!links.off_centre.empty()) inverse.off_centre[end] = links.off_centre[i];\n",
+        "",
+        (native("LinkedFrames.KeepWhereTheirWaysEndInBothDirections"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "what their rounding makes is forgotten",
+        REGRESS_CHANGE,
+        ") + rounding.row(y, c)[x];",
+        ") + 0.0f * rounding.row(y, c)[x];",
+        (native("B2_RoundedWays.AreInTheRegressedChange"),),
+    ),
+    Fault(
+        24,
+        LINK,
+        "pictures always go with them",
+        REGRESS_CHANGE,
+        "  keep_sampled_share(change.image.mean, rounding);\n",
+        "",
+        (native("B2_RoundedWays.AreNotInAChangeThatWasNotSampled"),),
     ),
     Fault(
         25,

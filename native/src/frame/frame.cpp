@@ -35,9 +35,15 @@ Frame::Frame(uint32_t full_width_, uint32_t full_height_, const Region& region_,
   }
 }
 
+namespace {
+
+uint64_t bytes_of(const PixelLinks& links) { return links.pixel.size() * sizeof(int32_t) + links.off_centre.size() * sizeof(Vec2); }
+
+}  // namespace
+
 uint64_t Frame::memory_bytes() const {
-  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + replayed.pixel.size() * sizeof(int32_t);
-  for (const std::vector<int32_t>& own : replayed.of_component) bytes += own.size() * sizeof(int32_t);
+  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + bytes_of(replayed.links);
+  for (const PixelLinks& own : replayed.of_component) bytes += bytes_of(own);
   for (const ComponentPlanes& component : components) {
     bytes +=
         component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float) + component.shown.size() * sizeof(ShownPoint);
@@ -98,18 +104,18 @@ ComponentPlanes black_component(std::string_view name, const ComponentPlanes& li
 void keep_component(std::string_view name, Frame* frame) {
   keep_components({std::string(name)}, frame);
   SampleSources& replayed = frame->replayed;
-  if (replayed.has_own(0)) replayed.pixel = std::move(replayed.of_component[0]);
+  if (replayed.has_own(0)) replayed.links = std::move(replayed.of_component[0]);
   replayed.of_component.clear();
 }
 
 void keep_components(const std::vector<std::string>& names, Frame* frame) {
   std::vector<ComponentPlanes> kept;
-  std::vector<std::vector<int32_t>> sources;
+  std::vector<PixelLinks> sources;
   for (const std::string& name : names) {
     const int place = find_component(*frame, name);
     const bool has_own = place >= 0 && frame->replayed.has_own(place);
     kept.push_back(place >= 0 ? ComponentPlanes{} : black_component(name, frame->components[0]));
-    sources.push_back(has_own ? std::move(frame->replayed.of_component[size_t(place)]) : std::vector<int32_t>());
+    sources.push_back(has_own ? std::move(frame->replayed.of_component[size_t(place)]) : PixelLinks{});
   }
   for (size_t k = 0; k < names.size(); ++k) {
     const int place = find_component(*frame, names[k]);

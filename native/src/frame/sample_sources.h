@@ -10,17 +10,17 @@
 namespace gradus {
 
 struct SampleSources {
-  int32_t stream_frame = 0;    // number of the frame that is replayed
-  std::vector<int32_t> pixel;  // by pixels of the region: the pixel of the same region; kNoLink: a stream of its own, tagged as a hole
-  uint64_t scene_key = 0;      // of the scene that the replayed frame shows; 0: not known
-  uint32_t seed = 0;           // of the frame that is replayed
-  bool shares_jitter = true;   // whether its cells did. Not stored: its scene tells
-  // Of components that go their own ways, as reflections do: likewise, by component; empty, or none: `pixel`.
-  std::vector<std::vector<int32_t>> of_component{};
+  int32_t stream_frame = 0;   // number of the frame that is replayed
+  PixelLinks links;           // by pixels of the region: the pixel of the same region; kNoLink: a stream of its own, tagged as a hole
+  uint64_t scene_key = 0;     // of the scene that the replayed frame shows; 0: not known
+  uint32_t seed = 0;          // of the frame that is replayed
+  bool shares_jitter = true;  // whether its cells did. Not stored: its scene tells
+  // Of components that go their own ways, as reflections do: likewise, by component; empty, or none: `links`.
+  std::vector<PixelLinks> of_component{};
 
   bool has_own(int component) const { return size_t(component) < of_component.size() && !of_component[size_t(component)].empty(); }
 };
 
-inline bool replays_same(const SampleSources& a, const SampleSources& b) { return a.pixel == b.pixel && a.of_component == b.of_component; }
+inline bool replays_same(const SampleSources& a, const SampleSources& b) { return a.links == b.links && a.of_component == b.of_component; }
 
 }  // namespace gradus

@@ -89,13 +89,16 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std:
 }
 
 void check_sources(const Frame& frame) {
-  const auto check = [&](const std::vector<int32_t>& pixels) {
-    for (const int32_t pixel : pixels) {
+  const auto check = [&](const PixelLinks& links) {
+    for (const int32_t pixel : links.pixel) {
       if (pixel < kNoLink || pixel >= frame.region.area()) throw invalid_argument("it replays pixels that do not exist");
     }
+    for (const Vec2& off : links.off_centre) {
+      if (!(std::abs(off.x) <= 0.5f && std::abs(off.y) <= 0.5f)) throw invalid_argument("it replays ways that end in no pixel");
+    }
   };
-  check(frame.replayed.pixel);
-  for (const std::vector<int32_t>& own : frame.replayed.of_component) check(own);
+  check(frame.replayed.links);
+  for (const PixelLinks& own : frame.replayed.of_component) check(own);
 }
 
 Imf::MultiPartInputFile open_file(const std::string& path) {

@@ -107,10 +107,11 @@ json describe_samples(const Frame& frame) {
 json describe(const Frame& frame) {
   json j = describe_samples(frame);
   if (!frame.shared.rays.empty()) j["shared"] = shared_to_json(frame.shared);
-  if (frame.replayed.pixel.empty()) return j;
+  if (frame.replayed.links.empty()) return j;
   j["replayed_frame"] = frame.replayed.stream_frame;
   j["replayed_scene_key"] = hex(frame.replayed.scene_key);
   j["replayed_seed"] = frame.replayed.seed;
+  j["off_centre"] = !frame.replayed.links.off_centre.empty();
   for (int c = 0; c < int(frame.components.size()); ++c) {
     if (frame.replayed.has_own(c)) j["own_sources"].push_back(c);
   }
@@ -245,12 +246,13 @@ Frame make_frame(const Imf::Header& header, StoredContent content, const std::st
   frame.passes = make_pass_planes(passes, pixels);
   if (has_fallback) frame.fallback.assign(pixels, 0.0f);
   if (description.contains("replayed_frame")) {
-    frame.replayed = {known.replayed_frame, std::vector<int32_t>(pixels), known.replayed_key, known.replayed_seed};
+    const PixelLinks links{std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
+    frame.replayed = {known.replayed_frame, links, known.replayed_key, known.replayed_seed};
     for (const int own : description.value("own_sources", std::vector<int>())) {
       if (own < 0 || own >= components) throw damaged("its planes are wrong");
       if (frame.components[size_t(own)].primal[0].empty()) continue;  // not read
       frame.replayed.of_component.resize(size_t(components));
-      frame.replayed.of_component[size_t(own)].resize(pixels);
+      frame.replayed.of_component[size_t(own)] = links;
     }
   }
   check_regions(frame);

@@ -39,8 +39,10 @@ class PlaneList {
     add(layer + ".object.V", false, &(*plane)[0].object, sizeof(ShownPoint));
     add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(ShownPoint));
   }
-  void links(const std::string& layer, std::vector<int32_t>* plane) {
-    if (!plane->empty()) add(layer + ".V", true, plane->data(), sizeof(int32_t));
+  void links(const std::string& layer, PixelLinks* links) {
+    if (!links->pixel.empty()) add(layer + ".V", true, links->pixel.data(), sizeof(int32_t));
+    if (links->off_centre.empty()) return;
+    for (int c = 0; c < 2; ++c) add(layer + ".off_centre." + kVectorNames[c], false, &links->off_centre[0][c], sizeof(Vec2));
   }
   void counts(const std::string& layer, std::vector<uint32_t>* plane) { add(layer + ".V", true, plane->data(), sizeof(uint32_t)); }
 
@@ -79,7 +81,7 @@ std::vector<StoredPlane> samples(Frame* frame, size_t component) {
 std::vector<StoredPlane> counts(Frame* frame) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) list.counts(std::string(kHalfNames[half]) + ".count", &frame->count[half]);
-  list.links("source", &frame->replayed.pixel);
+  list.links("source", &frame->replayed.links);
   return list.take();
 }
 

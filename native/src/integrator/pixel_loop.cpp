@@ -24,7 +24,7 @@ Source numbers_of(const PathContext& context, const WorkUnit& unit, int32_t x, i
 
 Source source_of(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) {
   if (unit.sources == nullptr) return numbers_of(context, unit, x, y);
-  const int32_t pixel = unit.sources->pixel[frame.index(x, y)];
+  const int32_t pixel = unit.sources->links.pixel[frame.index(x, y)];
   if (pixel == kNoLink) return {StreamKind::Hole, x, y, context.settings.frame, context.settings.seed};
   const int32_t width = frame.region.width();
   return numbers_of(context, unit, frame.region.x0 + pixel % width, frame.region.y0 + pixel / width);
@@ -60,7 +60,7 @@ bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& 
   if (!shares_jitter(context.camera, context.scene) || (unit.sources != nullptr && !unit.sources->shares_jitter)) return false;
   for (int32_t y = cell.y0; y < cell.y1 && unit.sources != nullptr; ++y) {
     for (int32_t x = cell.x0; x < cell.x1; ++x) {
-      if (unit.sources->pixel[frame.index(x, y)] != static_cast<int32_t>(frame.index(x, y))) return false;
+      if (unit.sources->links.pixel[frame.index(x, y)] != static_cast<int32_t>(frame.index(x, y))) return false;
     }
   }
   return true;

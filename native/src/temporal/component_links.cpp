@@ -20,11 +20,13 @@ bool shows_through(const ChainView& view) {
   return std::any_of(view.chains.begin(), view.chains.end(), [](const SpecularChain& chain) { return chain.way.length > 0; });
 }
 
-std::vector<int32_t> link_component(const std::vector<int32_t>& surface, const ChainView& from, const ChainMotion& motion) {
+PixelLinks link_component(const PixelLinks& surface, const ChainView& from, const ChainMotion& motion) {
   const Region& region = from.region();
-  std::vector<int32_t> links(surface.size(), kNoLink), owner(surface.size(), kNoLink);
-  std::vector<float> distances(surface.size(), kInfinity);
-  for (size_t i = 0; i < surface.size(); ++i) {
+  const size_t pixels = surface.pixel.size();
+  PixelLinks links{std::vector<int32_t>(pixels, kNoLink), std::vector<Vec2>(pixels, Vec2(0.0f))};
+  std::vector<int32_t> owner(pixels, kNoLink);
+  std::vector<float> distances(pixels, kInfinity);
+  for (size_t i = 0; i < pixels; ++i) {
     if (!is_seen_through(from, i) || motion.tracking[i] != Tracking::Tracked) continue;
     const Vec2 film = motion.film[i];
     const int32_t there = pixel_at(region, film);
@@ -32,15 +34,18 @@ std::vector<int32_t> link_component(const std::vector<int32_t>& surface, const C
     const auto next = size_t(there);
     const float distance = glm::length(film - centre_of(region, next));
     if (!(distance < distances[next])) continue;
-    if (owner[next] != kNoLink) links[size_t(owner[next])] = kNoLink;
+    if (owner[next] != kNoLink) links.pixel[size_t(owner[next])] = kNoLink;
     distances[next] = distance;
     owner[next] = int32_t(i);
-    links[i] = there;
+    links.pixel[i] = there;
+    links.off_centre[i] = off_centre(region, next, film);
   }
-  for (size_t i = 0; i < surface.size(); ++i) {
-    if (links[i] != kNoLink || surface[i] == kNoLink || owner[size_t(surface[i])] != kNoLink) continue;
-    owner[size_t(surface[i])] = int32_t(i);
-    links[i] = surface[i];
+  for (size_t i = 0; i < pixels; ++i) {
+    const int32_t there = surface.pixel[i];
+    if (links.pixel[i] != kNoLink || there == kNoLink || owner[size_t(there)] != kNoLink) continue;
+    owner[size_t(there)] = int32_t(i);
+    links.pixel[i] = there;
+    links.off_centre[i] = surface.off_centre.empty() ? Vec2(0.0f) : surface.off_centre[i];
   }
   return links;
 }

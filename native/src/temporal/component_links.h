@@ -2,6 +2,7 @@
 // surfaces, by surface motion elsewhere.
 #pragma once
 
+#include "frame/links.h"
 #include "motion/specular_motion.h"
 
 namespace gradus {
@@ -10,6 +11,6 @@ namespace gradus {
 bool shows_through(const ChainView& view);
 // surface: link_pixels() of the two frames. from, motion: the component's chains in the first, and where the second shows what they show.
 // One-to-one: of several chains that lead to one pixel the one that comes nearest to its centre has it, and a chain before a surface.
-std::vector<int32_t> link_component(const std::vector<int32_t>& surface, const ChainView& from, const ChainMotion& motion);
+PixelLinks link_component(const PixelLinks& surface, const ChainView& from, const ChainMotion& motion);
 
 }  // namespace gradus

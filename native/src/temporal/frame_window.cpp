@@ -53,7 +53,7 @@ void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const 
   }
   const float* next = plane_of(frames_[size_t(t) + 1]->replay.*part, kind).data();
   for (size_t i = first; i < first + width; ++i) {
-    const int32_t link = links_[size_t(t)][i];
+    const int32_t link = links_[size_t(t)].pixel[i];
     for (size_t c = 0; c < channels; ++c) {
       *out++ = link == kNoLink ? kAbsentPair : next[size_t(link) * channels + c] - base[i * channels + c];
     }
@@ -67,8 +67,14 @@ void FrameWindow::read_half_differences(RowKind kind, int t, int y, float* out) 
 }
 
 void FrameWindow::read_links(int t, int y, int32_t* out) const {
-  const std::vector<int32_t>& links = links_[size_t(t)];
-  const auto first = links.begin() + ptrdiff_t(y) * size().width;
+  const auto first = links_[size_t(t)].pixel.begin() + ptrdiff_t(y) * size().width;
+  std::copy(first, first + size().width, out);
+}
+
+void FrameWindow::read_off_centre(int t, int y, Vec2* out) const {
+  const std::vector<Vec2>& off_centre = links_[size_t(t)].off_centre;
+  if (off_centre.empty()) return HalvedWindowSource::read_off_centre(t, y, out);
+  const auto first = off_centre.begin() + ptrdiff_t(y) * size().width;
   std::copy(first, first + size().width, out);
 }
 

@@ -19,6 +19,7 @@ class FrameWindow final : public HalvedWindowSource {
   void read_row(RowKind kind, int t, int y, float* out) const override;
   void read_half_differences(RowKind kind, int t, int y, float* out) const override;
   void read_links(int t, int y, int32_t* out) const override;
+  void read_off_centre(int t, int y, Vec2* out) const override;
 
  private:
   using Part = GradientImages HalvedImages::*;
@@ -26,7 +27,7 @@ class FrameWindow final : public HalvedWindowSource {
   void read(RowKind kind, int t, int y, Part part, float* out) const;
 
   std::vector<std::shared_ptr<const TemporalFrame>> frames_;
-  std::vector<std::vector<int32_t>> links_;  // from each frame but the last
+  std::vector<PixelLinks> links_;  // from each frame but the last
 };
 
 }  // namespace gradus

@@ -15,6 +15,7 @@ namespace {
 constexpr float kLargestReturn = 1.0f;  // pixels, in x and in y
 const float kCutCosine = std::cos(kPi / 6.0f);
 constexpr float kCutZoom = 1.5f;
+constexpr float kStepsOfPixel = 256.0f;
 
 // Where a pixel's centre goes, and how far from the camera that is.
 struct Target {
@@ -70,6 +71,10 @@ Vec2 centre_of(const Region& region, size_t pixel) {
   return pixel_centre(region.x0 + int32_t(pixel % width), region.y0 + int32_t(pixel / width));
 }
 
+Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film) {
+  return glm::round(glm::clamp(film - centre_of(region, pixel), -0.5f, 0.5f) * kStepsOfPixel) / kStepsOfPixel;
+}
+
 int32_t pixel_at(const Region& region, const Vec2& film) {
   const float x = std::floor(film.x), y = std::floor(film.y);
   const bool inside = x >= float(region.x0) && x < float(region.x1) && y >= float(region.y0) && y < float(region.y1);
@@ -91,15 +96,17 @@ CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t heigh
   return view;
 }
 
-std::vector<int32_t> link_pixels(const CentreView& from, const CentreView& to) {
+PixelLinks link_pixels(const CentreView& from, const CentreView& to) {
   const Tracker forward(from, to), back(to, from);
-  std::vector<int32_t> links(from.hits.size(), kNoLink);
+  PixelLinks found{std::vector<int32_t>(from.hits.size(), kNoLink), std::vector<Vec2>(from.hits.size(), Vec2(0.0f))};
+  std::vector<int32_t>& links = found.pixel;
   std::vector<float> distances(from.hits.size(), kInfinity);
   for_each_pixel(links.size(), [&](size_t i) {
     const Target t = forward.target(i);
     const int32_t next = t.found ? pixel_at(to.region, t.film) : kNoLink;
     if (next == kNoLink || !returns(back, from, i, next)) return;
     links[i] = next;
+    found.off_centre[i] = off_centre(to.region, size_t(next), t.film);
     distances[i] = t.distance;
   });
   // In the pixels' order, so that ties go the same way on any number of threads.
@@ -112,13 +119,17 @@ std::vector<int32_t> link_pixels(const CentreView& from, const CentreView& to) {
     if (nearest) other = int32_t(i);
     if (!nearest) links[i] = kNoLink;
   }
-  return links;
+  return found;
 }
 
-std::vector<int32_t> inverse_links(const std::vector<int32_t>& links) {
-  std::vector<int32_t> inverse(links.size(), kNoLink);
-  for (size_t i = 0; i < links.size(); ++i)
-    if (links[i] != kNoLink) inverse[size_t(links[i])] = int32_t(i);
+PixelLinks inverse_links(const PixelLinks& links) {
+  PixelLinks inverse{std::vector<int32_t>(links.pixel.size(), kNoLink), std::vector<Vec2>(links.off_centre.size(), Vec2(0.0f))};
+  for (size_t i = 0; i < links.pixel.size(); ++i) {
+    if (links.pixel[i] == kNoLink) continue;
+    const auto end = size_t(links.pixel[i]);
+    inverse.pixel[end] = int32_t(i);
+    if (!links.off_centre.empty()) inverse.off_centre[end] = links.off_centre[i];
+  }
   return inverse;
 }
 

@@ -29,11 +29,14 @@ Vec2 centre_of(const Region& region, size_t pixel);
 // The pixel of the region that holds a film position; kNoLink outside.
 int32_t pixel_at(const Region& region, const Vec2& film);
 
-// By pixels of `from`: the pixel of `to`, or kNoLink. One-to-one. A link leads back to within a pixel of where it came from; of several
+// How far a film position lies from the middle of its pixel, in steps that leave what rests exactly there.
+Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film);
+
+// By pixels of `from`: the pixel of `to`. One-to-one. A link leads back to within a pixel of where it came from; of several
 // pixels that lead to one the nearest to the camera has it. Both views have the same region.
-std::vector<int32_t> link_pixels(const CentreView& from, const CentreView& to);
+PixelLinks link_pixels(const CentreView& from, const CentreView& to);
 // The other way round: by pixels of `to`, the pixel of `from`.
-std::vector<int32_t> inverse_links(const std::vector<int32_t>& links);
+PixelLinks inverse_links(const PixelLinks& links);
 
 // Whether the film or the view changes so much between two frames that they are no motion but a cut (test C8: a turn of more than 30°,
 // another type of camera, a jump of the zoom).

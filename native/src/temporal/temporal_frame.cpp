@@ -35,7 +35,7 @@ HalvedImages read_halved(const Frame& frame, TemporalContent content, int compon
 // Of one component: where that was.
 SampleSources sources_of(const SampleSources& replayed, int component) {
   SampleSources sources = replayed;
-  if (component != kAllComponents && replayed.has_own(component)) sources.pixel = replayed.of_component[size_t(component)];
+  if (component != kAllComponents && replayed.has_own(component)) sources.links = replayed.of_component[size_t(component)];
   if (component != kAllComponents) sources.of_component.clear();
   return sources;
 }
@@ -81,13 +81,13 @@ TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, Tempor
   return frame;
 }
 
-std::vector<int32_t> links_between(const TemporalFrame& frame, const TemporalFrame& next) {
+PixelLinks links_between(const TemporalFrame& frame, const TemporalFrame& next) {
   const GradientImages& images = next.replay.values;
-  std::vector<int32_t> links(size_t(images.width) * size_t(images.height), kNoLink);
-  if (is_repeated(frame, next)) std::iota(links.begin(), links.end(), 0);
+  std::vector<int32_t> pixel(size_t(images.width) * size_t(images.height), kNoLink);
+  if (is_repeated(frame, next)) std::iota(pixel.begin(), pixel.end(), 0);
   const SampleSources& replayed = next.replayed;
-  const bool follows = replayed.stream_frame == frame.stream && replayed.pixel.size() == links.size();
-  return follows && !is_repeated(frame, next) ? inverse_links(replayed.pixel) : links;
+  const bool follows = replayed.stream_frame == frame.stream && replayed.links.pixel.size() == pixel.size();
+  return follows && !is_repeated(frame, next) ? inverse_links(replayed.links) : PixelLinks{std::move(pixel)};
 }
 
 }  // namespace gradus

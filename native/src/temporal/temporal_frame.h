@@ -42,7 +42,7 @@ void check_alike(const GradientImages& images, const GradientImages& other, int3
 inline bool is_repeated(const TemporalFrame& frame, const TemporalFrame& next) {
   return next.stream == frame.stream && next.scene_key == frame.scene_key;
 }
-// By pixels of the frame: that of the next one, as y·width + x, or kNoLink: those that the replay of the next has followed.
-std::vector<int32_t> links_between(const TemporalFrame& frame, const TemporalFrame& next);
+// By pixels of the frame: that of the next one, as y·width + x: those that the replay of the next has followed.
+PixelLinks links_between(const TemporalFrame& frame, const TemporalFrame& next);
 
 }  // namespace gradus

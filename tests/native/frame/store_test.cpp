@@ -112,14 +112,35 @@ TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
   Frame frame = *rendered(small_settings(20, 10, 2));
   frame.replayed.stream_frame = -3;
   frame.replayed.seed = 11;
-  for (int32_t i = 0; i < 200; ++i) frame.replayed.pixel.push_back(i % 7 == 0 ? kNoLink : 199 - i);
+  for (int32_t i = 0; i < 200; ++i) frame.replayed.links.pixel.push_back(i % 7 == 0 ? kNoLink : 199 - i);
   save_frame(frame, path());
   EXPECT_EQ(load_frame(path())->replayed.stream_frame, -3);
   EXPECT_EQ(load_frame(path())->replayed.seed, 11u);
-  EXPECT_EQ(load_frame(path())->replayed.pixel, frame.replayed.pixel);
-  frame.replayed.pixel[5] = 200;
+  EXPECT_EQ(load_frame(path())->replayed.links, frame.replayed.links);
+  frame.replayed.links.pixel[5] = 200;
   save_frame(frame, path());
   EXPECT_THROW(load_frame(path()), Error);
+}
+
+TEST_F(F6_Store, ReplaysKeepWhereWaysEnd) {
+  Frame frame = *rendered(small_settings(20, 10, 2));
+  frame.replayed.links.pixel.assign(200, 3);
+  frame.replayed.links.off_centre.assign(200, Vec2(0.25f, -0.5f));
+  frame.replayed.links.off_centre[7] = Vec2(-0.125f, 0.0f);
+  save_frame(frame, path());
+  EXPECT_EQ(load_frame(path())->replayed.links, frame.replayed.links);
+}
+
+// They would take any pixel of the still picture for what is seen, or none.
+TEST_F(F6_Store, WaysThatEndOutsideTheirPixelAreRefused) {
+  for (const float wrong : {0.6f, -100.0f, NAN, INFINITY}) {
+    Frame frame = *rendered(small_settings(20, 10, 2));
+    frame.replayed.links.pixel.assign(200, 3);
+    frame.replayed.links.off_centre.assign(200, Vec2(0.0f));
+    frame.replayed.links.off_centre[7].y = wrong;
+    save_frame(frame, path());
+    EXPECT_THROW(load_frame(path()), Error) << wrong;
+  }
 }
 
 class F6_StoredComponents : public F6_Store {
@@ -133,8 +154,8 @@ class F6_StoredComponents : public F6_Store {
       frame.components[size_t(c)].name = kNames[c];
       frame.components[size_t(c)].primal[0].assign(200, Radiance(Rgb(float(c + 1)), 0.0f));
     }
-    frame.replayed.pixel.assign(200, kNoLink);
-    frame.replayed.of_component = {{}, {}, std::vector<int32_t>(200, 7)};
+    frame.replayed.links.pixel.assign(200, kNoLink);
+    frame.replayed.of_component = {{}, {}, {std::vector<int32_t>(200, 7)}};
     return frame;
   }
   std::shared_ptr<Frame> load(const char* name) const {
@@ -161,7 +182,7 @@ TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
     EXPECT_EQ(one->components[0].primal, stored.components[size_t(c)].primal);
     EXPECT_EQ(one->components[0].gradient, stored.components[size_t(c)].gradient);
     EXPECT_EQ(one->count, stored.count);
-    EXPECT_EQ(one->replayed.pixel, c == 2 ? stored.replayed.of_component[2] : stored.replayed.pixel);
+    EXPECT_EQ(one->replayed.links.pixel, c == 2 ? stored.replayed.of_component[2].pixel : stored.replayed.links.pixel);
     EXPECT_TRUE(one->replayed.of_component.empty());
   }
 }
@@ -176,7 +197,7 @@ TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
 
 TEST_F(F6_StoredComponents, WaysToPixelsThatDoNotExistAreRefused) {
   Frame stored = frame();
-  stored.replayed.of_component[2][3] = 200;
+  stored.replayed.of_component[2].pixel[3] = 200;
   save_frame(stored, path());
   EXPECT_THROW(load_frame(path()), Error);
   EXPECT_THROW(load("Reflection"), Error);
@@ -288,7 +309,7 @@ void set_format(int format, Imf::Header* header) {
 TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
   Frame frame = *rendered(small_settings(20, 10, 2));
   frame.settings.seed = 5;
-  frame.replayed = {3, std::vector<int32_t>(200), 0, 4};
+  frame.replayed = {3, {std::vector<int32_t>(200)}, 0, 4};
   save_frame(frame, path());
   EXPECT_EQ(load_header(path()).replayed_seed, 4u);
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {

@@ -181,7 +181,7 @@ TEST_P(LinksOfCameras, LeadWhereTheSamePointIsSeen) {
   const bool moves = change == Change::Move || change == Change::Blur;
   add_frame(pose, 1.0f, change == Change::Blur);
   add_frame(moves ? step * pose : pose, change == Change::Zoom ? 1.12f : 1.0f, change == Change::Blur);
-  const std::vector<int32_t> links = link_pixels(views_[0], views_[1]);
+  const std::vector<int32_t> links = link_pixels(views_[0], views_[1]).pixel;
   const bool rests_at_infinity = type.type == GRADUS_CAMERA_ORTHOGRAPHIC && !in_room;
   std::set<int> wanted;  // pixels that others lead to
   int linked = 0, astray = 0, reached = 0;

@@ -25,7 +25,7 @@ class ComponentLinks : public testing::Test {
     motion_.film[size_t(pixel)] = Vec2(x, 0.5f);
     motion_.tracking[size_t(pixel)] = tracking;
   }
-  std::vector<int32_t> links(const std::vector<int32_t>& surface) const { return link_component(surface, chains_, motion_); }
+  std::vector<int32_t> links(const std::vector<int32_t>& surface) const { return link_component({surface}, chains_, motion_).pixel; }
 
   CentreView centres_;
   ChainView chains_;
@@ -67,6 +67,15 @@ TEST_F(ComponentLinks, OfTwoChainsTheNearerToTheCentreHasThePixel) {
   EXPECT_EQ(links(rest_), (Row{0, 1, 3, -1, 4, 5}));
 }
 
+TEST_F(ComponentLinks, KeepWhereTheirWaysEnd) {
+  chain(1, 2.375f);
+  chain(4, 4.5f);
+  const std::vector<Vec2> off = link_component({rest_, std::vector<Vec2>(6, Vec2(0.25f, 0.0f))}, chains_, motion_).off_centre;
+  EXPECT_EQ(off[1], Vec2(-0.125f, 0.0f));
+  EXPECT_EQ(off[4], Vec2(0.0f)) << "a chain that rests does so exactly";
+  EXPECT_EQ(off[5], Vec2(0.25f, 0.0f)) << "the surface's way";
+}
+
 TEST_F(ComponentLinks, TakeNoPlaceThatIsNotANumber) {
   chain(1, NAN);
   EXPECT_EQ(links(rest_), rest_);
@@ -74,30 +83,30 @@ TEST_F(ComponentLinks, TakeNoPlaceThatIsNotANumber) {
 
 TEST(ComponentReplays, AreTakenWhereTheWaysPart) {
   SampleSources sources;
-  sources.pixel = {0, 1, 2, kNoLink};
-  sources.of_component = {{}, {0, 3, kNoLink, 2}};
+  sources.links.pixel = {0, 1, 2, kNoLink};
+  sources.of_component = {{}, {Row{0, 3, kNoLink, 2}}};
   const ComponentReplays replays = replays_of_components(sources);
   ASSERT_EQ(replays.own.size(), 1u);
   EXPECT_EQ(replays.own[0].component, 1u);
   EXPECT_EQ(replays.own[0].pixels, (std::vector<uint8_t>{0, 1, 0, 1}));
-  EXPECT_EQ(replays.own[0].sources.pixel, sources.of_component[1]);
+  EXPECT_EQ(replays.own[0].sources.links, sources.of_component[1]);
   EXPECT_EQ(replays.shared, (std::vector<uint32_t>{kEveryComponent, ~2u, kEveryComponent, ~2u}));
   EXPECT_EQ(replays.pixels, 2u);
 }
 
 TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
   SampleSources sources;
-  sources.pixel = {0, 1, 2, 3};
-  sources.of_component = {{1, 0, 3, 3}, {1, 1, 2, 3}, {0, 1, 3, 3}};
+  sources.links.pixel = {0, 1, 2, 3};
+  sources.of_component = {{Row{1, 0, 3, 3}}, {Row{1, 1, 2, 3}}, {Row{0, 1, 3, 3}}};
   SampleSources limited = sources;
   limit_own_ways(&limited);
-  EXPECT_EQ(limited.of_component, (std::vector<std::vector<int32_t>>{sources.of_component[0], sources.of_component[1], {}}));
+  EXPECT_EQ(limited.of_component, (std::vector<PixelLinks>{sources.of_component[0], sources.of_component[1], {}}));
   EXPECT_LE(replays_of_components(limited).pixels, 4u);
 }
 
 TEST(ComponentReplays, AreNoneWhereAllGoWithTheSurface) {
   SampleSources sources;
-  sources.pixel = {0, 1};
+  sources.links.pixel = {0, 1};
   EXPECT_TRUE(replays_of_components(sources).own.empty());
   EXPECT_TRUE(replays_of_components(sources).shared.empty());
 }

@@ -38,7 +38,7 @@ class TwoFrames : public testing::Test {
     second->replay = {row_of({7, 8, 9}, {70, 80, 0}), row_of({0.7f, 0.8f, 0.9f}, {7, 8, 0})};
     second->replay_share = {0.5f, 0.5f, 0.25f};
     second->stream = 1;
-    second->replayed = {first->stream, {kNoLink, 0, 1}};  // the picture moves to the right by a pixel
+    second->replayed = {first->stream, {{kNoLink, 0, 1}}};  // the picture moves to the right by a pixel
     frames_ = {first, second};
   }
   std::vector<float> row(RowKind kind, int t) const {
@@ -114,7 +114,7 @@ class FiveFrames : public testing::Test {
       base_.push_back(std::make_shared<Frame>(sampled(own, uint32_t(own))));
       auto replay = std::make_shared<Frame>(sampled(own, uint32_t(10 + own)));
       replay->replayed.stream_frame = place == 4 ? 2 : own - 1;
-      for (int i = 0; i < 160; ++i) replay->replayed.pixel.push_back(i == 7 ? kNoLink : (i + 3) % 160);
+      for (int i = 0; i < 160; ++i) replay->replayed.links.pixel.push_back(i == 7 ? kNoLink : (i + 3) % 160);
       replay_.push_back(std::move(replay));
     }
   }

@@ -31,12 +31,13 @@ class LinkedFrames : public testing::Test {
     return views_.back().get();
   }
   static std::vector<int32_t> links(const CentreView* from, const CentreView* to) {
-    std::vector<int32_t> found = link_pixels(*from, *to);
+    const PixelLinks links = link_pixels(*from, *to);
+    const std::vector<int32_t>& found = links.pixel;
     std::set<int32_t> taken;
     for (const int32_t link : found) {
       EXPECT_TRUE(link == kNoLink || taken.insert(link).second) << "two pixels lead to " << link;
     }
-    const std::vector<int32_t> inverse = inverse_links(found);
+    const std::vector<int32_t> inverse = inverse_links(links).pixel;
     for (size_t i = 0; i < found.size(); ++i) {
       EXPECT_TRUE(found[i] == kNoLink || inverse[size_t(found[i])] == int32_t(i));
     }
@@ -76,6 +77,21 @@ TEST_F(LinkedFrames, APannedCameraShiftsAll) {
     }
 }
 
+TEST_F(LinkedFrames, KeepWhereTheirWaysEndInBothDirections) {
+  const CentreView* from = view();
+  look_from(Vec3(3.25f * kPixel, -1.5f * kPixel, 3));
+  const PixelLinks links = link_pixels(*from, *view()), inverse = inverse_links(links);
+  int linked = 0;
+  for (size_t i = 0; i < links.pixel.size(); ++i) {
+    if (links.pixel[i] == kNoLink || !from->hits[i].valid()) continue;
+    ++linked;
+    EXPECT_EQ(links.off_centre[i].x, -0.25f);
+    EXPECT_EQ(std::abs(links.off_centre[i].y), 0.5f);
+    EXPECT_EQ(inverse.off_centre[size_t(links.pixel[i])], links.off_centre[i]);
+  }
+  EXPECT_GT(linked, kSize * kSize / 2);
+}
+
 TEST_F(LinkedFrames, AMovingObjectTakesItsPixelsAlong) {
   const CentreView* from = view();
   scene_.scene.move(1, translation(Vec3(4 * kPixel, 0, 0)));
@@ -88,7 +104,7 @@ TEST_F(LinkedFrames, AMovingObjectTakesItsPixelsAlong) {
       EXPECT_EQ(found[size_t(pixel(x, y))], expected) << x << ' ' << y;
     }
   // What comes into view has no partner.
-  const std::vector<int32_t> inverse = inverse_links(found);
+  const std::vector<int32_t> inverse = inverse_links({found}).pixel;
   for (int x = 12; x < 16; ++x) EXPECT_EQ(inverse[size_t(pixel(x, 15))], kNoLink);
 }
 

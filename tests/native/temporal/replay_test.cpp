@@ -35,7 +35,7 @@ Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSo
 }
 
 SampleSources sources_of(const IntegratorContext& before, const IntegratorContext& now, const Region& region = kWhole) {
-  const std::vector<int32_t> links =
+  const PixelLinks links =
       link_pixels(view_centres(*before.snapshot, kSize, kSize, region), view_centres(*now.snapshot, kSize, kSize, region));
   return {before.settings.frame, inverse_links(links), 0, before.settings.seed};
 }
@@ -64,8 +64,8 @@ TEST(Replay, SeesWhatWasSeenAtItsMomentsThroughTheLens) {
   build(Scenario::Moving, &scene);
   scene.camera_desc.aperture_radius = 0.1f;
   const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
-  SampleSources sources{7, std::vector<int32_t>(size_t(kSize) * kSize), 0, 0, false};
-  std::iota(sources.pixel.begin(), sources.pixel.end(), 0);
+  SampleSources sources{7, {std::vector<int32_t>(size_t(kSize) * kSize)}, 0, 0, false};
+  std::iota(sources.links.pixel.begin(), sources.links.pixel.end(), 0);
   const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources);
   for (int half = 0; half < kHalves; ++half) EXPECT_TRUE(base.components[0].primal[half] == offset.components[0].primal[half]);
 }
@@ -86,15 +86,15 @@ TEST(Replay, HolesHaveNumbersOfTheirOwn) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);
   const IntegratorContext now = scene.context(settings_of(8));
-  const SampleSources holes{7, std::vector<int32_t>(size_t(kSize) * kSize, kNoLink)};
+  const SampleSources holes{7, {std::vector<int32_t>(size_t(kSize) * kSize, kNoLink)}};
   const Frame own = sampled(now, 4), offset = sampled(now, 4, &holes);
   size_t lit = 0, alike = 0;
-  for (size_t i = 0; i < holes.pixel.size(); ++i) {
+  for (size_t i = 0; i < holes.links.pixel.size(); ++i) {
     const Radiance &a = own.components[0].primal[0][i], &b = offset.components[0].primal[0][i];
     lit += a.x > 0.0f;
     alike += a.x > 0.0f && a == b;
   }
-  EXPECT_GT(lit, holes.pixel.size() / 2);
+  EXPECT_GT(lit, holes.links.pixel.size() / 2);
   EXPECT_LT(alike, lit / 10);  // the lamp itself
 }
 
@@ -133,7 +133,7 @@ TEST(Replay, IsAPictureOfItsOwnFrame) {
     for (size_t i = 0; i < a.size(); ++i) a[i] = gray(offset, i), b[i] = gray(other, i);
     replayed.add(a);
     fresh.add(b);
-    for (const int32_t source : sources.pixel) holes += source == kNoLink;
+    for (const int32_t source : sources.links.pixel) holes += source == kNoLink;
   }
   EXPECT_GT(holes, 48 * 2 * int(kSize)) << "the strip that comes into view";
   double mean_a = 0.0, mean_b = 0.0, variance = 0.0;
@@ -156,8 +156,8 @@ TEST(Replay, MakesDifferencesOverTimeQuieter) {
       const IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
       const SampleSources sources = sources_of(before, now);
       const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources), other = sampled(now, 4);
-      for (size_t q = 0; q < sources.pixel.size(); ++q) {
-        const int32_t i = sources.pixel[q];
+      for (size_t q = 0; q < sources.links.pixel.size(); ++q) {
+        const int32_t i = sources.links.pixel[q];
         if (i == kNoLink) continue;
         linked += std::pow(gray(offset, q) - gray(base, size_t(i)), 2);
         independent += std::pow(gray(other, q) - gray(base, size_t(i)), 2);

@@ -7,6 +7,7 @@
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/linear_parts.h"
+#include "reconstruct/space_time/rounded_ways.h"
 #include "reconstruct/space_time/solve_tracks.h"
 
 namespace gradus {
@@ -76,17 +77,21 @@ struct ComponentChange {
   Field alpha;  // in four channels
 };
 
-ComponentChange read_change(const HalvedWindowSource& source, int t, const Links& links, float scale) {
+// Without what the links' rounding makes of it.
+ComponentChange read_change(const HalvedWindowSource& source, int t, const Links& links, Field* rounding, float scale) {
   const WindowSize size = source.size();
   const auto values = [&](int y, float* row) { source.read_row(RowKind::kDt, t, y, row); };
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
   ComponentChange change{{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves), false}, {}};
+  keep_sampled_share(change.image.mean, rounding);
+  for_values(&change.image.mean, [&](float& value, int x, int y, int c) { value -= rounding->row(y, c)[x]; });
   normalise(scale, &change.image);
   const HoleFiller holes(linked_pixels(links));
   holes.fill_with_mean(&change.image.mean);
   holes.fill_with_rms(&change.image.half_difference);
   if (size.channels > 3) {
     change.alpha = read_channels(size, 3, 1, values);
+    for_values(&change.alpha, [&](float& value, int x, int y, int) { value -= rounding->row(y, 3)[x]; });
     holes.fill_with_mean(&change.alpha);
   }
   return change;
@@ -96,22 +101,26 @@ void add(const Field& term, Field* sum) {
   for_values(sum, [&](float& value, int x, int y, int c) { value += term.row(y, c)[x]; });
 }
 
-// In units of the picture.
-Field join(const Field& colours, const Field& alpha, float scale) {
+// In units of the picture, and with what the rounding makes.
+Field join(const Field& colours, const Field& alpha, const Field& rounding, float scale) {
   Field joined(colours.width(), colours.height(), alpha.width() > 0 ? 4 : 3);
-  for_values(&joined, [&](float& value, int x, int y, int c) { value = c < 3 ? scale * colours.row(y, c)[x] : alpha.row(y)[x]; });
+  for_values(&joined, [&](float& value, int x, int y, int c) {
+    value = (c < 3 ? scale * colours.row(y, c)[x] : alpha.row(y)[x]) + rounding.row(y, c)[x];
+  });
   return joined;
 }
 
 }  // namespace
 
-Change regress_change(const ComponentSources& components, int t, const Features& features, float scale, const CancelTest& cancel) {
+Change regress_change(const ComponentSources& components, int t, const std::vector<Field>& pictures, const Features& features, float scale,
+                      const CancelTest& cancel) {
   Change change;
   HalvedImage sum;
-  std::vector<Field> colours, alphas;
-  for (const auto& source : components) {
-    change.links.push_back(read_links(*source, t));
-    ComponentChange component = read_change(*source, t, change.links.back(), scale);
+  std::vector<Field> colours, alphas, roundings;
+  for (size_t k = 0; k < components.size(); ++k) {
+    change.links.push_back(read_links(*components[k], t));
+    roundings.push_back(change_by_rounding(pictures[k], change.links[k], *components[k], t));
+    ComponentChange component = read_change(*components[k], t, change.links[k], &roundings[k], scale);
     colours.push_back(component.image.mean);
     alphas.push_back(std::move(component.alpha));
     if (colours.size() == 1) {
@@ -126,7 +135,7 @@ Change regress_change(const ComponentSources& components, int t, const Features&
       regression.image(), [&](size_t, const Field& part) { return regression.apply(part, cancel); }, &colours);
   for (size_t k = 0; k < components.size(); ++k) {
     if (alphas[k].width() > 0 && !is_black(alphas[k])) alphas[k] = regression.apply(alphas[k], cancel);
-    change.difference.push_back(join(colours[k], alphas[k], scale));
+    change.difference.push_back(join(colours[k], alphas[k], roundings[k], scale));
   }
   change.weight = make_field(sum.mean.width(), sum.mean.height(), [&](int x, int y) {
     return track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kLeastError));

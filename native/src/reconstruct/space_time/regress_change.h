@@ -20,8 +20,9 @@ struct Change {
 
 using ComponentSources = std::vector<std::unique_ptr<HalvedWindowSource>>;
 
-// From frame t on. All components go through one regression, that of their sum. features: the frame's, filtered; scale: its median
-// luminance.
-Change regress_change(const ComponentSources& components, int t, const Features& features, float scale, const CancelTest& cancel);
+// From frame t on. All components go through one regression, that of their sum. pictures: of the components of the frame, by which the part
+// of the change that links to whole pixels make is known; features: the frame's, filtered; scale: its median luminance.
+Change regress_change(const ComponentSources& components, int t, const std::vector<Field>& pictures, const Features& features, float scale,
+                      const CancelTest& cancel);
 
 }  // namespace gradus

@@ -148,7 +148,8 @@ const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, boo
   if (!changes || estimate.change) return estimate;
   const ComponentSources sources = differences_(frame, cancel);
   check_size(estimate.pictures, sources);
-  estimate.change = regress_change(sources, 0, std::exchange(estimate.features, {}), scale_of(estimate.pictures), cancel);
+  estimate.change =
+      regress_change(sources, 0, estimate.pictures, std::exchange(estimate.features, {}), scale_of(estimate.pictures), cancel);
   return estimate;
 }
 

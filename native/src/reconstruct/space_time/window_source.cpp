@@ -1,5 +1,6 @@
 #include "reconstruct/space_time/window_source.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -14,5 +15,7 @@ void HalvedWindowSource::read_deviations(RowKind kind, int t, int y, float* out)
     out[x] = std::sqrt((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / 3.0f);
   }
 }
+
+void HalvedWindowSource::read_off_centre(int, int, Vec2* out) const { std::fill_n(out, size().width, Vec2(0.0f)); }
 
 }  // namespace gradus

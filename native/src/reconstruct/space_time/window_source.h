@@ -38,6 +38,8 @@ class HalvedWindowSource : public WindowSource {
  public:
   // (A − B)/2 of the two halves of what read_row() gives.
   virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
+  // Where ways to linked pixels end, from the middle of these (PixelLinks::off_centre). By default there.
+  virtual void read_off_centre(int t, int y, Vec2* out) const;
   // By these: root mean squares over RGB.
   void read_deviations(RowKind kind, int t, int y, float* out) const override;
 };

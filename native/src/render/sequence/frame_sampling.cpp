@@ -222,7 +222,7 @@ bool FrameSampling::replays_before(const FrameHeader& offset) const {
 std::shared_ptr<const Replay> FrameSampling::follow(const FrameHeader& base, const std::vector<uint32_t>& counts) {
   auto replay = std::make_shared<Replay>();
   const GradusSettings& now = input_.settings;
-  replay->sources = {now.frame, std::vector<int32_t>(size_t(base.region.area()), kNoLink), base.scene_key, now.seed};
+  replay->sources = {now.frame, PixelLinks{std::vector<int32_t>(size_t(base.region.area()), kNoLink)}, base.scene_key, now.seed};
   const FrameBefore* before = sequence_->before_.get();
   if (follows_before()) {
     const Bill bill(&record_.stats.seconds.links, &record_.stats.cpu_seconds.links);

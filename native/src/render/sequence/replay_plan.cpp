@@ -18,21 +18,23 @@ bool follows(const FrameBefore* before, const Snapshot& now, const GradusSetting
 
 namespace {
 
-using Sources = std::vector<std::vector<int32_t>>;
+using Sources = std::vector<PixelLinks>;
 
 // What is left for Residual is mostly seen in mirrors of mirrors: it goes with what goes its own way there.
-std::vector<int32_t> sources_of_residual(const std::vector<int32_t>& surface, const Sources& others) {
-  std::vector<int32_t> sources = surface;
-  for (const std::vector<int32_t>& own : others) {
-    for (size_t i = 0; i < own.size(); ++i) {
-      if (own[i] != kNoLink && own[i] != surface[i] && sources[i] == surface[i]) sources[i] = own[i];
+PixelLinks sources_of_residual(const PixelLinks& surface, const Sources& others) {
+  PixelLinks sources = surface;
+  for (const PixelLinks& own : others) {
+    for (size_t i = 0; i < own.pixel.size(); ++i) {
+      if (own.pixel[i] == kNoLink || own.pixel[i] == surface.pixel[i] || sources.pixel[i] != surface.pixel[i]) continue;
+      sources.pixel[i] = own.pixel[i];
+      sources.off_centre[i] = own.off_centre[i];
     }
   }
   return sources;
 }
 
 Sources sources_of_components(const CentreView& from, const CentreView& to, const GradusSettings& settings, const ComponentSet& components,
-                              const std::vector<int32_t>& links, const std::vector<int32_t>& surface, const CancelTest& cancel) {
+                              const PixelLinks& links, const PixelLinks& surface, const CancelTest& cancel) {
   if (components.count() == 1 || settings.component_replays == 0) return {};
   Sources sources(static_cast<size_t>(components.count()));
   const ChainTracer tracer{*to.snapshot, to.camera, settings};
@@ -58,9 +60,9 @@ SampleSources link_sources(const FrameBefore& before, const Snapshot& now, const
   if (cancel()) return {};
   const Snapshot& scene = *before.snapshot;
   const bool shares = shares_jitter(Camera(scene.camera, settings.width, settings.height), scene);
-  const std::vector<int32_t> links = link_pixels(from, to);
+  const PixelLinks links = link_pixels(from, to);
   SampleSources sources{before.stream_frame, inverse_links(links), scene.content_key, before.settings.seed, shares};
-  sources.of_component = sources_of_components(from, to, settings, components, links, sources.pixel, cancel);
+  sources.of_component = sources_of_components(from, to, settings, components, links, sources.links, cancel);
   limit_own_ways(&sources);
   return sources;
 }
@@ -70,10 +72,10 @@ double mean_of(const std::vector<uint32_t>& counts) {
 }
 
 std::vector<uint32_t> replayed_counts(const SampleSources& sources, const FrameBefore* before, double mean) {
-  std::vector<uint32_t> counts(sources.pixel.size(), uint32_t(std::max(1L, std::lround(mean))));
+  std::vector<uint32_t> counts(sources.links.pixel.size(), uint32_t(std::max(1L, std::lround(mean))));
   if (!before || before->counts.empty()) return counts;
   for (size_t i = 0; i < counts.size(); ++i) {
-    const int32_t source = sources.pixel[i];
+    const int32_t source = sources.links.pixel[i];
     if (source != kNoLink) counts[i] = before->counts[size_t(source)];
   }
   return counts;

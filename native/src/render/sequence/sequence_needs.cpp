@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint64_t kFloat = sizeof(float);
+constexpr uint64_t kLink = sizeof(int32_t) + sizeof(Vec2);  // of a pixel (frame/links.h)
 
 struct Sizes {
   uint64_t frame, channels, halves, kinds;  // bytes of a frame's samples; images of each half; kinds of rows in space
@@ -26,9 +27,7 @@ struct Sizes {
 };
 
 // Images of both parts of a frame, and what links them to the frame before (temporal/temporal_frame.h).
-uint64_t temporal_frame_bytes(const Sizes& s) {
-  return s.components * (2 * s.kinds * (1 + s.halves) * s.channels * kFloat + 2 * sizeof(int32_t));
-}
+uint64_t temporal_frame_bytes(const Sizes& s) { return s.components * (2 * s.kinds * (1 + s.halves) * s.channels * kFloat + 2 * kLink); }
 
 // Of a window's pixels: four fields and the grids of their solver (reconstruct/space_time/window_solver.h), as measured; with the errors
 // what L2 makes of the noise, and of the values where the picture is not L2's.
@@ -114,7 +113,7 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
 
   const uint64_t delivered = sizes.frame + 11 * kFloat, apart = sizes.components > 1 ? sizes.components : 0,
                  pictures = in_window * ((1 + apart) * channels + 1) * kFloat;
-  const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * sizeof(int32_t);
+  const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * kLink;
   PlannedBytes needs;
   needs.memory = area * std::max(sampling, delivered + pictures + delivery_bytes(sizes, method, in_window));
   needs.kept = area * (pictures + (regularized ? temporal_frame_bytes(sizes) + in_window * estimate_bytes(sizes) : 0));
@@ -123,7 +122,7 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
     needs.memory += area * (flow + kFlow);
     needs.kept += area * flow;
   }
-  needs.frames = area * (keeps ? all : ahead) * 2 * (sizes.frame + sizeof(int32_t));
+  needs.frames = area * (keeps ? all : ahead) * 2 * (sizes.frame + kLink);
   if (!regularized) needs.temporary = area * in_window * (2 * sizes.kinds * (1 + sizes.halves) * channels * kFloat + sizeof(int32_t));
   return needs;
 }

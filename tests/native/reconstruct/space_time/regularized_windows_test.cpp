@@ -72,8 +72,8 @@ struct Shot {
   std::shared_ptr<const TemporalFrame> temporal(int t) const {
     auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
     frame->stream = t;
-    frame->replayed = {t - 1, std::vector<int32_t>(size_t(kWidth) * kHeight)};
-    for (int i = 0; i < kWidth * kHeight; ++i) frame->replayed.pixel[size_t(i)] = linked(i) ? i : kNoLink;
+    frame->replayed = {t - 1, {std::vector<int32_t>(size_t(kWidth) * kHeight)}};
+    for (int i = 0; i < kWidth * kHeight; ++i) frame->replayed.links.pixel[size_t(i)] = linked(i) ? i : kNoLink;
     return frame;
   }
   std::unique_ptr<HalvedWindowSource> pair(int t) const {
@@ -382,7 +382,7 @@ struct TakenApart {
     auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(base, replay, {}, component));
     frame->stream = t;
     frame->replayed = shot.temporal(t)->replayed;
-    if (component == 1 && !second_is_linked) std::ranges::fill(frame->replayed.pixel, kNoLink);
+    if (component == 1 && !second_is_linked) std::ranges::fill(frame->replayed.links.pixel, kNoLink);
     return frame;
   }
   RegularizedWindows windows() const {

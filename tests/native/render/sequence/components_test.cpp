@@ -96,17 +96,17 @@ TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
   for (const char* name : {"Reflection", "Transmission"}) {
     const int component = find_component(*offset, name);
     ASSERT_TRUE(sources.has_own(component)) << name;
-    const std::vector<int32_t>& own = sources.of_component[size_t(component)];
+    const std::vector<int32_t>& own = sources.of_component[size_t(component)].pixel;
     std::set<int32_t> taken;
     for (size_t i = 0; i < own.size(); ++i) {
-      apart += own[i] != kNoLink && own[i] != sources.pixel[i] ? 1 : 0;
+      apart += own[i] != kNoLink && own[i] != sources.links.pixel[i] ? 1 : 0;
       EXPECT_TRUE(own[i] == kNoLink || taken.insert(own[i]).second) << name;
     }
   }
   EXPECT_GT(apart, 50u);
   const auto whole =
       load_component(SequenceFolder(folder.path()).path(1, FramePart::kOffset), "Transmission", StoredContent::kAll, [] { return false; });
-  EXPECT_EQ(whole->replayed.pixel, sources.of_component[size_t(find_component(*offset, "Transmission"))]);
+  EXPECT_EQ(whole->replayed.links, sources.of_component[size_t(find_component(*offset, "Transmission"))]);
 }
 
 TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {

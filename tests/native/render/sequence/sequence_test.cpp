@@ -256,7 +256,8 @@ TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
   const auto sequence = make_sequence(5, 6, folder.path());
   sequence->pass_by(pan.at(4), with_passes(adaptive(4, 8)));
   for (int32_t t = 5; t <= 6; ++t) sample(sequence.get(), pan.at(t), adaptive(t, 8));
-  const std::vector<int32_t> sources = SequenceFolder(folder.path()).load(5, FramePart::kOffset, StoredContent::kSamples)->replayed.pixel;
+  const std::vector<int32_t> sources =
+      SequenceFolder(folder.path()).load(5, FramePart::kOffset, StoredContent::kSamples)->replayed.links.pixel;
   EXPECT_GT(size_t(std::count_if(sources.begin(), sources.end(), [](int32_t i) { return i != kNoLink; })), sources.size() / 2);
 }
 
@@ -587,8 +588,8 @@ TEST(A8_Sequence, ReplaysTakeTheCountsOfWhatTheyReplay) {
   const SequenceFolder files(folder.path());
   const auto base = files.load(0, FramePart::kBase), offset = files.load(1, FramePart::kOffset);
   uint32_t least = UINT32_MAX, most = 0;
-  for (size_t q = 0; q < offset->replayed.pixel.size(); ++q) {
-    const int32_t source = offset->replayed.pixel[q];
+  for (size_t q = 0; q < offset->replayed.links.pixel.size(); ++q) {
+    const int32_t source = offset->replayed.links.pixel[q];
     if (source == kNoLink) continue;
     EXPECT_EQ(samples_at(*offset, q), samples_at(*base, size_t(source)));
     least = std::min(least, samples_at(*offset, q));
