@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "api/objects.h"
+#include "component_layers.h"
 #include "frame/image_exr.h"
 #include "reconstruct.h"
 #include "render/pass_read.h"
@@ -60,6 +61,12 @@ int run(const ReconstructArguments& args) {
     layers.push_back(
         {client::pass_name(pass), int(client::pass_channels(pass)), pass == GRADUS_PASS_ERROR ? error : frame.read_pass(pass)});
   }
+  const uint32_t of_components = parse_component_passes(args.component_passes);
+  if (of_components != 0) {
+    const auto content = api::find_handle<api::FrameObject>(frame.id())->get();
+    const uint32_t held = held_component_passes(header_of(*content), of_components);
+    add_component_layers(content->settings, held, size_t(width) * height, reader_of(frame), &layers);
+  }
   save_image(args.output, int(width), int(height), layers);
   print_warnings(device);
   return 0;
@@ -115,6 +122,11 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
   command->add_option("--merge", args->merged, "Frames of the same scene with other samples, to add")->check(CLI::ExistingFile);
   command->add_option("--passes", args->passes, "Passes to write as layers, separated by commas, or all that the frame holds")
       ->check(bad_passes);
+  command
+      ->add_option(
+          "--component-passes", args->component_passes,
+          "Passes of components to write as layers, separated by commas, or all that the frame holds: color, reflectance and so on")
+      ->check(bad_component_passes);
   command->callback([args, exit_code] { *exit_code = run(*args); });
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common.h"
+#include "component_layers.h"
 #include "frame/frame_name.h"
 #include "frame/image_exr.h"
 #include "progress_line.h"
@@ -60,6 +61,9 @@ void write_image(const client::Frame& frame, const GradusSettings& settings, con
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if (pass != GRADUS_PASS_COMBINED && (settings.passes >> pass & 1) == 0) continue;
     layers.push_back({pass == 0 ? "" : client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
+  }
+  if (settings.use_decomposition != 0) {
+    add_component_layers(settings, settings.component_passes, size_t(width) * height, reader_of(frame), &layers);
   }
   save_image(path, int(width), int(height), layers);
 }

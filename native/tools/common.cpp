@@ -5,30 +5,13 @@
 #include <sstream>
 
 #include "base/text_list.h"
+#include "component_layers.h"
 #include "settings/options.h"
 
 namespace gradus::tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    const size_t begin = part.find_first_not_of(' '), end = part.find_last_not_of(' ');
-    parts.push_back(begin == std::string::npos ? "" : part.substr(begin, end + 1 - begin));
-  }
-  return parts;
-}
-
-std::string canonical(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if (c == ' ' || c == '-') c = '_';
-  }
-  return text;
-}
 
 std::string describe(const GradusOptionInfo& info) {
   std::ostringstream text;
@@ -42,17 +25,6 @@ std::string describe(const GradusOptionInfo& info) {
     text << " (default " << info.default_value << ")";
   }
   return text.str();
-}
-
-// What a parser throws.
-template <class Parse>
-std::string refusal(const Parse& parse) {
-  try {
-    parse();
-    return "";
-  } catch (const std::exception& e) {
-    return e.what();
-  }
 }
 
 bool is_same_file(const fs::path& a, const fs::path& b) {
@@ -75,6 +47,24 @@ void parse_region(const std::string& text, GradusSettings* settings) {
 
 }  // namespace
 
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    const size_t begin = part.find_first_not_of(' '), end = part.find_last_not_of(' ');
+    parts.push_back(begin == std::string::npos ? "" : part.substr(begin, end + 1 - begin));
+  }
+  return parts;
+}
+
+std::string canonical(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (c == ' ' || c == '-') c = '_';
+  }
+  return text;
+}
+
 void OptionFlags::add_to(CLI::App* command) {
   for (uint32_t i = 0; i < gradus_option_count(); ++i) {
     auto info = client::make<GradusOptionInfo>();
@@ -96,6 +86,10 @@ void OptionFlags::add_to(CLI::App* command) {
   command->add_option("--passes", passes_, "Passes besides Combined, separated by commas, or all")
       ->group("Render options")
       ->check(bad_passes);
+  command
+      ->add_option("--component-passes", component_passes_, "Passes of the components of --use-decomposition, separated by commas, or all")
+      ->group("Render options")
+      ->check(bad_component_passes);
 }
 
 void OptionFlags::apply(GradusSettings* settings) const {
@@ -104,6 +98,7 @@ void OptionFlags::apply(GradusSettings* settings) const {
   }
   if (!region_.empty()) parse_region(region_, settings);
   if (!passes_.empty()) settings->passes = parse_passes(passes_);
+  if (!component_passes_.empty()) settings->component_passes = parse_component_passes(component_passes_);
 }
 
 uint64_t parse_passes(const std::string& text) {

@@ -33,8 +33,23 @@ class OptionFlags {
     std::string name, value;
   };
   std::vector<std::unique_ptr<Flag>> flags_;
-  std::string region_, passes_;
+  std::string region_, passes_, component_passes_;
 };
+
+// Parts between commas, without the spaces around them.
+std::vector<std::string> split(const std::string& text);
+// As names are typed: in lower case and with '_'.
+std::string canonical(std::string text);
+// What a parser throws; "": nothing.
+template <class Parse>
+std::string refusal(const Parse& parse) {
+  try {
+    parse();
+    return "";
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+}
 
 inline constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
 // Bit mask from names separated by commas ("depth, diffuse_direct", any case, '_', '-' and ' ' alike; "all"); throws with the names there

@@ -11,7 +11,7 @@
 namespace gradus::tool {
 
 struct ReconstructArguments {
-  std::string input, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes, frames;
+  std::string input, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes, component_passes, frames;
   std::vector<std::string> merged;
   float alpha = 0.0f;
   double exposure = -1.0;                               // below 0: as it was sampled for

@@ -9,6 +9,7 @@
 #include <regex>
 #include <set>
 
+#include "component_layers.h"
 #include "frame/image_exr.h"
 #include "frame/store.h"
 #include "reconstruct/space_time/window_grid.h"
@@ -73,7 +74,8 @@ GradusSettings settings_of(const ReconstructArguments& args, const GradusSetting
   return settings;
 }
 
-client::Sequence open(const client::Device& device, const ReconstructArguments& args, const StoredSequence& stored, const Range& range) {
+client::Sequence open(const client::Device& device, const ReconstructArguments& args, const StoredSequence& stored, const Range& range,
+                      bool with_flow) {
   auto settings = client::make<GradusSequenceSettings>();
   settings.first = range.first;
   settings.last = range.last;
@@ -82,6 +84,7 @@ client::Sequence open(const client::Device& device, const ReconstructArguments& 
   settings.window_size = uint32_t(windows.frames);
   settings.window_overlap = uint32_t(windows.overlap);
   settings.folder = stored.folder().c_str();
+  settings.with_flow = with_flow ? 1 : 0;
   return client::Sequence(device, settings);
 }
 
@@ -108,14 +111,23 @@ std::map<int32_t, GradusSettings> settings_of_files(const StoredSequence& stored
   return all;
 }
 
-void write_picture(const client::Render& render, uint64_t passes, const std::string& path) {
+struct PassesToWrite {
+  uint64_t passes;
+  uint32_t of_components;
+};
+
+void write_picture(const client::Render& render, const PassesToWrite& wanted, const GradusSettings& settings, const std::string& path) {
   const auto [width, height] = render.frame().size();
   std::vector<ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    if ((passes >> pass & 1) == 0) continue;
+    if ((wanted.passes >> pass & 1) == 0) continue;
     const std::string name = pass == GRADUS_PASS_COMBINED ? "" : client::pass_name(pass);
     layers.push_back({name, int(client::pass_channels(pass)), render.read_pass(pass, size_t(width) * height)});
   }
+  const auto read = [&](const char* component, uint32_t pass, std::vector<float>* pixels) {
+    client::check(gradus_render_read_component(render.id(), component, pass, pixels->data(), pixels->size()));
+  };
+  add_component_layers(settings, wanted.of_components, size_t(width) * height, read, &layers);
   save_image(path, int(width), int(height), layers);
 }
 
@@ -125,21 +137,23 @@ struct Job {
   const StoredSequence& stored;
   const client::Device& device;
   const std::map<int32_t, GradusSettings>& of_files;
-  uint64_t passes;
+  PassesToWrite wanted;
 };
 
 // Pictures of frames that follow one another.
 void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<std::string>* warnings) {
-  const client::Sequence sequence = open(job.device, job.args, job.stored, {frames.front(), frames.back()});
+  const client::Sequence sequence =
+      open(job.device, job.args, job.stored, {frames.front(), frames.back()}, take_two_frames(job.wanted.of_components));
   const SequenceFolder folder(job.args.input);
   for (const int32_t frame : frames) {
     // Exposure and the like may change from frame to frame, of frames that share their files, too.
-    const GradusSettings settings = settings_of(job.args, folder.settings(frame).value_or(job.of_files.at(frame)));
+    GradusSettings settings = settings_of(job.args, folder.settings(frame).value_or(job.of_files.at(frame)));
+    settings.component_passes = job.wanted.of_components;
     const client::Render render = sequence.deliver(frame, settings);
     render.wait();
     for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings")) warnings->insert(text.get<std::string>());
     const std::string path = picture_path(job.args.output, frame);
-    write_picture(render, job.passes, path);
+    write_picture(render, job.wanted, settings, path);
     std::printf("%s\n", path.c_str());
     std::fflush(stdout);
   }
@@ -159,12 +173,14 @@ int reconstruct_sequence(const ReconstructArguments& args) {
                         args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
   }
   const std::map<int32_t, GradusSettings> of_files = settings_of_files(stored, chains);
-  const uint64_t passes = passes_of(args, stored.path(chains.front().front()));
+  const std::string first = stored.path(chains.front().front());
+  const uint32_t of_components = held_component_passes(load_header(first), parse_component_passes(args.component_passes));
+  const PassesToWrite wanted{passes_of(args, first), of_components};
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   fs::create_directories(args.output);
   std::set<std::string> warnings;
   if (!unlinked.empty()) warnings.insert("frames " + unlinked + " replay others than those before them, to which nothing links them");
-  for (const std::vector<int32_t>& chain : chains) write_chain({args, stored, device, of_files, passes}, chain, &warnings);
+  for (const std::vector<int32_t>& chain : chains) write_chain({args, stored, device, of_files, wanted}, chain, &warnings);
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
   print_warnings(device);
   return 0;

@@ -270,6 +270,51 @@ int occurrences(const std::string& text, const std::string& part) {
 }
 
 // "cannot load frame f.exr: Cannot read image file "f.exr". Unexpected end of file."
+std::vector<float> sum_of_layers(const std::string& path, const std::vector<std::string>& layers) {
+  std::vector<float> sum;
+  for (const std::string& layer : layers) {
+    const std::vector<float> rgb = load_rgb(path, layer).rgb;
+    sum.resize(rgb.size());
+    for (size_t i = 0; i < rgb.size(); ++i) sum[i] += rgb[i];
+  }
+  return sum;
+}
+
+const std::vector<std::string> kPaths = {"Path Emission", "Path Diffuse", "Path Reflection", "Path Transmission", "Path Residual"};
+
+void expect_sum(const std::string& path) {
+  const std::vector<float> sum = sum_of_layers(path, kPaths), whole = load_rgb(path, "").rgb;
+  double light = 0.0;
+  for (size_t i = 0; i < whole.size(); ++i) {
+    ASSERT_NEAR(sum[i], whole[i], 1e-4f + 1e-4f * std::abs(whole[i])) << path;
+    light += double(whole[i]);
+  }
+  EXPECT_GT(light, 0.0);
+}
+
+TEST_F(Tool, WritesPassesOfComponents) {
+  const std::string image = (folder / "i.exr").string(), again = (folder / "again.exr").string();
+  ASSERT_EQ(run("render good.gradus -o f.exr --image i.exr --use-decomposition 1 --component-passes color,normal").code, 0);
+  expect_sum(image);
+  EXPECT_NO_THROW(load_rgb(image, "Path Diffuse Normal"));
+  for (const char* how : {"none", "regularized"}) {
+    const Outcome made = run(std::string("reconstruct f.exr -o again.exr --component-passes all --reconstruction ") + how);
+    ASSERT_EQ(made.code, 0) << made.err;
+    expect_sum(again);
+    for (const char* pass : {" Reflectance", " Irradiance", " Normal"})
+      EXPECT_NO_THROW(load_rgb(again, "Path Diffuse" + std::string(pass)));
+  }
+  const Outcome missing = run("reconstruct f.exr -o x.exr --component-passes color,motion");
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_NE(missing.err.find("without motion; there are color, reflectance, irradiance, normal"), std::string::npos) << missing.err;
+  EXPECT_EQ(run("reconstruct f.exr -o x.exr --component-passes light").code, 2);
+  ASSERT_EQ(run("render good.gradus -o whole.exr").code, 0);
+  const Outcome whole = run("reconstruct whole.exr -o x.exr --component-passes color");
+  EXPECT_EQ(whole.code, 1);
+  EXPECT_NE(whole.err.find("--use-decomposition 1"), std::string::npos) << whole.err;
+  EXPECT_FALSE(fs::exists(folder / "x.exr"));
+}
+
 TEST_F(Tool, FilesThatAreCutShortAreNamedOnce) {
   ASSERT_EQ(run("render good.gradus -o f.exr").code, 0);
   const auto whole = fs::file_size(folder / "f.exr");
@@ -331,6 +376,7 @@ class ToolSequence : public Tool {
     uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2, samples = 4;
     float speed = 0.02f;  // of the camera
     bool brightens = false;
+    uint32_t component_passes = 0;
     int32_t first = 1, last = 6;
     uint32_t step = 1;
   };
@@ -353,6 +399,8 @@ class ToolSequence : public Tool {
       render_settings.reconstruction = job.reconstruction;
       if (job.brightens) render_settings.film_exposure = float(frame);
       render_settings.frame = frame;
+      render_settings.use_decomposition = job.component_passes != 0 ? 1 : 0;
+      render_settings.component_passes = job.component_passes;
       GradusRender render = 0;
       ASSERT_OK(gradus_sequence_sample(sequence, scene, &render_settings, &render));
       ASSERT_OK(gradus_render_wait(render, -1.0));
@@ -394,6 +442,25 @@ TEST_F(ToolSequence, WritesThePicturesThatWereDelivered) {
     EXPECT_NO_THROW(load_rgb(path, "Gradient X"));
   }
   EXPECT_EQ(stored(), before) << "nothing is sampled";
+}
+
+TEST_F(ToolSequence, WritesPassesOfComponents) {
+  for (const uint32_t how : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+    fs::remove_all(folder / kFolder);
+    render({.reconstruction = how, .component_passes = (1u << GRADUS_COMPONENT_PASS_COUNT) - 1});
+    const Outcome made = run("reconstruct store/anim/layer -o pictures --component-passes all");
+    ASSERT_EQ(made.code, 0) << made.err;
+    for (int frame = 1; frame <= 6; ++frame) {
+      const std::string path = (folder / ("pictures/000" + std::to_string(frame) + ".exr")).string();
+      expect_sum(path);
+      const std::vector<float> combined = load_rgb(path, "").rgb;
+      for (size_t i = 0; i < 24 * 16; ++i) ASSERT_NEAR(combined[3 * i], delivered[size_t(frame) - 1][4 * i], 1e-5f) << frame;
+      const std::vector<std::string> names = image_channels(path);
+      for (const char* name : {"Path Diffuse Motion.R", "Path Diffuse Tracked.V", "Path Diffuse Irradiance Tracked.V"}) {
+        EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+      }
+    }
+  }
 }
 
 // The frames beside those that are asked for have their share, whatever the job is split into.

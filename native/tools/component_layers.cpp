@@ -1,0 +1,85 @@
+#include "component_layers.h"
+
+#include "base/text_list.h"
+#include "common.h"
+#include "path/components.h"
+#include "settings/options.h"
+#include "settings/pass_table.h"
+
+namespace gradus::tool {
+namespace {
+
+std::string name_of(uint32_t pass) { return canonical(component_pass_info(pass).name); }
+
+bool is_held(const FrameHeader& frame, uint32_t pass) {
+  if (frame.settings.use_decomposition == 0) return false;
+  return (frame.rough || !is_of_rough_vertices(pass)) && (frame.motion || !is_motion(pass));
+}
+
+std::string layer_name(const std::string& component, uint32_t pass) {
+  const std::string name = "Path " + component;
+  return pass == GRADUS_COMPONENT_COLOR ? name : name + " " + component_pass_info(pass).name;
+}
+
+}  // namespace
+
+uint32_t parse_component_passes(const std::string& text) {
+  if (canonical(text) == "all") return kAllComponentPasses;
+  uint32_t mask = 0;
+  for (const std::string& part : split(text)) {
+    std::string all;
+    uint32_t pass = 0;
+    for (; pass < GRADUS_COMPONENT_PASS_COUNT && name_of(pass) != canonical(part); ++pass) add_item(&all, name_of(pass));
+    if (pass == GRADUS_COMPONENT_PASS_COUNT) {
+      throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "components have no pass " + part + "; they have " + all);
+    }
+    mask |= uint32_t{1} << pass;
+  }
+  return mask;
+}
+
+std::string bad_component_passes(const std::string& text) {
+  return refusal([&] { parse_component_passes(text); });
+}
+
+uint32_t held_component_passes(const FrameHeader& frame, uint32_t asked) {
+  uint32_t held = 0;
+  std::string names, missing;
+  for (uint32_t pass = 0; pass < GRADUS_COMPONENT_PASS_COUNT; ++pass) {
+    if (is_held(frame, pass)) {
+      held |= uint32_t{1} << pass;
+      add_item(&names, name_of(pass));
+    } else if (wants(asked, pass)) {
+      add_item(&missing, name_of(pass));
+    }
+  }
+  if (held == 0 && asked != 0) {
+    throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without components: --use-decomposition 1 samples them");
+  }
+  if (asked == kAllComponentPasses || missing.empty()) return asked & held;
+  throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame's components were rendered without " + missing + "; there are " + names);
+}
+
+bool take_two_frames(uint32_t passes) { return wants_any(passes, is_motion); }
+
+ReadComponent reader_of(const client::Frame& frame) {
+  return [id = frame.id()](const char* component, uint32_t pass, std::vector<float>* pixels) {
+    client::check(gradus_frame_read_component(id, component, pass, pixels->data(), pixels->size()));
+  };
+}
+
+void add_component_layers(const GradusSettings& settings, uint32_t passes, size_t pixels, const ReadComponent& read,
+                          std::vector<ImageLayer>* layers) {
+  if (passes == 0) return;
+  const ComponentSet set = ComponentSet::parse(get_text(settings, *find_option("components")));
+  for (int c = 0; c < set.count(); ++c) {
+    for (uint32_t pass = 0; pass < GRADUS_COMPONENT_PASS_COUNT; ++pass) {
+      if (!wants(passes, pass)) continue;
+      const uint32_t channels = component_pass_info(pass).channels;
+      layers->push_back({layer_name(set[c].name, pass), int(channels), std::vector<float>(pixels * channels)});
+      read(set[c].name.c_str(), pass, &layers->back().pixels);
+    }
+  }
+}
+
+}  // namespace gradus::tool
