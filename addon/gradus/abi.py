@@ -174,7 +174,8 @@ class ComponentPass(IntEnum):
     TRACKED = 5
     IRRADIANCE_MOTION = 6
     IRRADIANCE_TRACKED = 7
-    PASS_COUNT = 8
+    DEPTH = 8
+    PASS_COUNT = 9
 
 
 class OptionType(IntEnum):

@@ -120,6 +120,7 @@ PARTS: tuple[PartInfo, ...] = (
     PartInfo(ComponentPass.TRACKED, " Tracked", "X", "VALUE", "gradus.use_pass_component_motion"),
     PartInfo(ComponentPass.IRRADIANCE_MOTION, " Irradiance Motion", "XYZW", "VECTOR", "gradus.use_pass_component_irradiance_motion"),
     PartInfo(ComponentPass.IRRADIANCE_TRACKED, " Irradiance Tracked", "X", "VALUE", "gradus.use_pass_component_irradiance_motion"),
+    PartInfo(ComponentPass.DEPTH, " Depth", "X", "VALUE", "gradus.use_pass_component_depth"),
 )
 """Passes of a component: Path NAME, Path NAME Reflectance … (contract 6.6)."""
 

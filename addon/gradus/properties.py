@@ -68,6 +68,9 @@ class GradusViewLayerSettings(bpy.types.PropertyGroup):
     use_pass_component_reflectance: _switch("Reflectance", "Albedo of the first rough surface on the component's paths")
     use_pass_component_irradiance: _switch("Irradiance", "The component divided by its reflectance: light without texture")
     use_pass_component_normal: _switch("Normal", "Normal of the first rough surface on the component's paths")
+    use_pass_component_depth: _switch(
+        "Depth", "Length of the component's paths to their first rough surface: of a reflection by way of the mirror"
+    )
     use_pass_component_motion: _switch(
         "Motion", "Where the component comes from and goes to, as pass Vector tells it of surfaces, and Tracked: 1 where that is known"
     )

@@ -19,6 +19,7 @@ OF_COMPONENTS = (
     "use_pass_component_reflectance",
     "use_pass_component_irradiance",
     "use_pass_component_normal",
+    "use_pass_component_depth",
     "use_pass_component_motion",
     "use_pass_component_irradiance_motion",
 )

@@ -489,6 +489,7 @@ typedef enum GradusComponentPass {
   GRADUS_COMPONENT_TRACKED,        /* 1, or a negative cause */
   GRADUS_COMPONENT_IRRADIANCE_MOTION,  /* likewise, of the light that falls on what is shown: by optical flow, in sequences */
   GRADUS_COMPONENT_IRRADIANCE_TRACKED,
+  GRADUS_COMPONENT_DEPTH,          /* length of the path to the first rough vertex; 1e10 where there is none */
   GRADUS_COMPONENT_PASS_COUNT
 } GradusComponentPass;
 

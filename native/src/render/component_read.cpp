@@ -22,6 +22,7 @@ RoughVertices mean_at(const ComponentPlanes& planes, size_t i) {
 }
 
 Vec3 value_of(uint32_t pass, const RoughVertices& mean, const Vec3& color) {
+  if (pass == GRADUS_COMPONENT_DEPTH) return Vec3(mean.samples > 0.0f ? mean.depth : kFarDepth);
   if (pass == GRADUS_COMPONENT_REFLECTANCE) return mean.reflectance;
   if (pass == GRADUS_COMPONENT_NORMAL) return mean.normal;
   Vec3 irradiance = color;
@@ -52,7 +53,8 @@ bool is_by_flow(const std::string& component, uint32_t pass) {
 
 void read_absent_component(uint32_t pass, const Region& region, float* pixels) {
   const uint32_t channels = component_pass_info(pass).channels;
-  const float value = is_motion(pass) && channels == 1 ? kNothingToTrack : 0.0f;
+  const float nothing = pass == GRADUS_COMPONENT_DEPTH ? kFarDepth : 0.0f;
+  const float value = is_motion(pass) && channels == 1 ? kNothingToTrack : nothing;
   std::fill_n(pixels, size_t(region.area()) * channels, value);
 }
 
@@ -70,11 +72,11 @@ void read_component_pass(const Frame& frame, int component, uint32_t pass, const
   if (is_motion(pass)) return read_motion(frame, planes, info, region, pixels);
   if (planes.rough[0].empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
   for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x, pixels += 3) {
+    for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
       const size_t out = 3 * (size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0));
       const Vec3 light = is_of_picture(pass) ? Vec3(color[out], color[out + 1], color[out + 2]) : Vec3(0.0f);
       const Vec3 value = value_of(pass, mean_at(planes, frame.index(x, y)), light);
-      for (int c = 0; c < 3; ++c) pixels[c] = value[c];
+      for (int c = 0; c < int(info.channels); ++c) pixels[c] = value[c];
     }
   }
 }

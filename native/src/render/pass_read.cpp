@@ -12,7 +12,6 @@ namespace gradus {
 namespace {
 
 // Depth of a pixel that sees nothing, as in Blender.
-constexpr float kFarDepth = 1e10f;
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
 template <class Function>

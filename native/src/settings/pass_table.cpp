@@ -55,6 +55,7 @@ constexpr ComponentPassInfo kComponentPasses[] = {
     {GRADUS_COMPONENT_TRACKED,            "Tracked",            1},
     {GRADUS_COMPONENT_IRRADIANCE_MOTION,  "Irradiance Motion",  4},
     {GRADUS_COMPONENT_IRRADIANCE_TRACKED, "Irradiance Tracked", 1},
+    {GRADUS_COMPONENT_DEPTH,              "Depth",              1},
 };
 // clang-format on
 

@@ -40,6 +40,9 @@ constexpr bool is_in_halves(PassKind kind) { return kind == PassKind::Feature ||
 // Throws invalid_argument for a number that is no pass.
 const PassInfo& pass_info(uint32_t pass);
 
+// Depth where there is nothing.
+inline constexpr float kFarDepth = 1e10f;
+
 // Passes of a component.
 struct ComponentPassInfo {
   uint32_t pass;
@@ -61,7 +64,7 @@ constexpr bool is_of_picture(uint32_t component_pass) {
 }
 constexpr bool is_of_rough_vertices(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_REFLECTANCE || component_pass == GRADUS_COMPONENT_IRRADIANCE ||
-         component_pass == GRADUS_COMPONENT_NORMAL || is_irradiance_motion(component_pass);
+         component_pass == GRADUS_COMPONENT_NORMAL || component_pass == GRADUS_COMPONENT_DEPTH || is_irradiance_motion(component_pass);
 }
 constexpr bool is_motion(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_MOTION || component_pass == GRADUS_COMPONENT_TRACKED || is_irradiance_motion(component_pass);

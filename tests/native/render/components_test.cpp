@@ -66,9 +66,9 @@ std::vector<float> combined(const Render& render) {
 }
 
 std::vector<float> component(const Render& render, const std::string& name, uint32_t pass = GRADUS_COMPONENT_COLOR) {
-  std::vector<float> rgb(3 * kSide * kSide);
-  render.read_component(name, pass, rgb.data(), rgb.size());
-  return rgb;
+  std::vector<float> values(component_pass_info(pass).channels * kSide * kSide);
+  render.read_component(name, pass, values.data(), values.size());
+  return values;
 }
 
 double sum_of(const std::vector<float>& values) {
@@ -184,6 +184,12 @@ TEST(Components, HaveTheSurfacesThatTheirPathsMeetFirst) {
   EXPECT_EQ(behind[left], 0.0f);
   EXPECT_NEAR(behind[right], 0.9f, 1e-5f);
   EXPECT_NEAR(facing[right + 2], -1.0f, 1e-5f);
+  const std::vector<float> near = component(*render, "Diffuse", GRADUS_COMPONENT_DEPTH),
+                           far = component(*render, "Reflection", GRADUS_COMPONENT_DEPTH);
+  EXPECT_NEAR(near[left / 3], 3.0f, 0.05f);
+  EXPECT_NEAR(far[right / 3], 9.0f, 0.1f) << "to the mirror and back past the camera";
+  EXPECT_EQ(near[right / 3], 1e10f);
+  EXPECT_EQ(far[left / 3], 1e10f);
   // Irradiance · reflectance is the colour again; of black surfaces it is the colour itself.
   const std::vector<float> color = component(*render, "Diffuse"), light = component(*render, "Diffuse", GRADUS_COMPONENT_IRRADIANCE);
   EXPECT_GT(color[left], 0.0f);
