@@ -175,7 +175,11 @@ class ComponentPass(IntEnum):
     IRRADIANCE_MOTION = 6
     IRRADIANCE_TRACKED = 7
     DEPTH = 8
-    PASS_COUNT = 9
+    UV = 9
+    OBJECT_INDEX = 10
+    FACE_INDEX = 11
+    EMIT = 12
+    PASS_COUNT = 13
 
 
 class OptionType(IntEnum):

@@ -121,6 +121,10 @@ PARTS: tuple[PartInfo, ...] = (
     PartInfo(ComponentPass.IRRADIANCE_MOTION, " Irradiance Motion", "XYZW", "VECTOR", "gradus.use_pass_component_irradiance_motion"),
     PartInfo(ComponentPass.IRRADIANCE_TRACKED, " Irradiance Tracked", "X", "VALUE", "gradus.use_pass_component_irradiance_motion"),
     PartInfo(ComponentPass.DEPTH, " Depth", "X", "VALUE", "gradus.use_pass_component_depth"),
+    PartInfo(ComponentPass.UV, " UV", "UVA", "VECTOR", "gradus.use_pass_component_uv"),
+    PartInfo(ComponentPass.OBJECT_INDEX, " Object Index", "X", "VALUE", "gradus.use_pass_component_index"),
+    PartInfo(ComponentPass.FACE_INDEX, " Face Index", "X", "VALUE", "gradus.use_pass_component_index"),
+    PartInfo(ComponentPass.EMIT, " Emit", "RGB", "COLOR", "gradus.use_pass_component_emit"),
 )
 """Passes of a component: Path NAME, Path NAME Reflectance … (contract 6.6)."""
 

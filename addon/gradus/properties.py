@@ -71,6 +71,11 @@ class GradusViewLayerSettings(bpy.types.PropertyGroup):
     use_pass_component_depth: _switch(
         "Depth", "Length of the component's paths to their first rough surface: of a reflection by way of the mirror"
     )
+    use_pass_component_uv: _switch("UV", "Texture coordinates of that surface, as pass UV has them of what the camera sees")
+    use_pass_component_index: _switch(
+        "Object and Face Index", "Pass index of that surface's object, and the number of its face in the mesh: of what a mirror shows"
+    )
+    use_pass_component_emit: _switch("Emit", "Light that this surface sends out itself, before any mirror or glass has coloured it")
     use_pass_component_motion: _switch(
         "Motion", "Where the component comes from and goes to, as pass Vector tells it of surfaces, and Tracked: 1 where that is known"
     )

@@ -13,7 +13,8 @@ std::string name_of(uint32_t pass) { return canonical(component_pass_info(pass).
 
 bool is_held(const FrameHeader& frame, uint32_t pass) {
   if (frame.settings.use_decomposition == 0) return false;
-  return (frame.rough || !is_of_rough_vertices(pass)) && (frame.motion || !is_motion(pass));
+  const KeptOfComponents& held = frame.of_components;
+  return (held.rough || !is_of_rough_vertices(pass)) && (held.details || !is_of_rough_details(pass)) && (held.motion || !is_motion(pass));
 }
 
 std::string layer_name(const std::string& component, uint32_t pass) {

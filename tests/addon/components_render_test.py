@@ -100,9 +100,9 @@ def test_what_a_scene_does_not_have_is_black(sample: bpy.types.Scene, render: Ca
     bpy.data.objects.remove(bpy.data.objects["Glass"])
     bpy.data.objects.remove(bpy.data.objects["Slab"])
     rendered = render(sample)
-    assert all(
-        not part(rendered, "Transmission", info.suffix).any() for info in passes.PARTS if not info.suffix.endswith(("Tracked", "Depth"))
-    )
+    shown = [info.suffix for info in passes.PARTS if not info.suffix.endswith(("Tracked", "Depth", "Face Index"))]
+    assert not any(part(rendered, "Transmission", suffix).any() for suffix in shown)
+    assert (part(rendered, "Transmission", " Face Index") == -1.0).all()
     require_sum(rendered, DEFAULT)
 
 
@@ -115,6 +115,102 @@ def test_irradiance_times_reflectance_is_the_component(sample: bpy.types.Scene, 
     floor = part(rendered, "Diffuse", " Normal")[1, 1:30]
     np.testing.assert_allclose(np.linalg.norm(floor, axis=-1), 1.0, atol=0.02)
     np.testing.assert_allclose(floor[:, 2], 1.0, atol=0.05)
+
+
+# ------------------------------------------------------------------------------------------------ surfaces
+
+STEPS, CELL = 16, 1.25
+"""Faces along a side of the wall, and how large they are."""
+
+
+def add_plane(name: str, height: float, steps: int, cell: float, pass_index: int) -> bpy.types.Material:
+    """steps × steps faces about the z axis, row by row, with a UV map over all of them; its material, without nodes."""
+    side, half = steps + 1, 0.5 * steps
+    vertices = [((x - half) * cell, (y - half) * cell, height) for y in range(side) for x in range(side)]
+    corners = [(y * side + x, y * side + x + 1, (y + 1) * side + x + 1, (y + 1) * side + x) for y in range(steps) for x in range(steps)]
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices, [], corners)
+    mesh.uv_layers.new(name="UVMap").data.foreach_set(
+        "uv", [value / steps for corner in mesh.loops for value in (corner.vertex_index % side, corner.vertex_index // side)]
+    )
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    mesh.materials.append(material)
+    placed = bpy.data.objects.new(name, mesh)
+    placed.pass_index = pass_index
+    bpy.context.scene.collection.objects.link(placed)
+    return material
+
+
+def shade(material: bpy.types.Material, *kinds: str) -> list[bpy.types.Node]:
+    """Gives it the sum of these shaders."""
+    tree = material.node_tree
+    shaders = [tree.nodes.new(f"ShaderNode{kind}") for kind in kinds]
+    total = shaders[0].outputs[0]
+    for shader in shaders[1:]:
+        both = tree.nodes.new("ShaderNodeAddShader")
+        tree.links.new(total, both.inputs[0])
+        tree.links.new(shader.outputs[0], both.inputs[1])
+        total = both.outputs[0]
+    tree.links.new(total, tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return shaders
+
+
+@pytest.fixture
+def mirror(scene: bpy.types.Scene) -> bpy.types.Scene:
+    """A camera at height 3 looks down at a mirror, and so at a wall above itself, which shines."""
+    gloss = shade(add_plane("Mirror", 0.0, 1, 20.0, 7), "BsdfGlossy")[0]
+    gloss.inputs["Roughness"].default_value = 0.0
+    gloss.inputs["Color"].default_value = (0.5, 0.5, 0.5, 1.0)
+    screen = shade(add_plane("Wall", 6.0, STEPS, CELL, 9), "BsdfDiffuse", "Emission")[1]
+    screen.inputs["Color"].default_value = (0.25, 0.5, 1.0, 1.0)
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.camera.location.z = 3.0
+    scene.collection.objects.link(scene.camera)
+    scene.gradus.use_decomposition = True
+    show_all(scene.view_layers[0])
+    return scene
+
+
+def on_the_wall() -> tuple[np.ndarray, np.ndarray]:
+    """Where the middles of pixels meet it by way of the mirror, in faces from its corner: 9 m along the camera's axis."""
+    width = 9.0 * 36.0 / 50.0 / CELL  # of sensor and lens
+    y, x = np.mgrid[0:36, 0:64]
+    return STEPS / 2 + width * ((x + 0.5) / 64 - 0.5), STEPS / 2 + width * (y + 0.5 - 18) / 64
+
+
+def test_a_mirror_has_the_map_the_indices_and_the_light_of_what_it_shows(
+    mirror: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
+    rendered = render(mirror, film_exposure=2.0)
+    x, y = on_the_wall()
+    uv = part(rendered, "Reflection", " UV")
+    np.testing.assert_allclose(uv, np.stack((x / STEPS, y / STEPS, np.ones_like(x)), -1), atol=0.006)
+    assert (part(rendered, "Reflection", " Object Index") == 9.0).all()
+    inside = (np.abs(x - np.round(x)) > 0.2) & (np.abs(y - np.round(y)) > 0.2)
+    faces = part(rendered, "Reflection", " Face Index")[..., 0]
+    expected = np.floor(x) + STEPS * np.floor(y)
+    assert inside.sum() > 500
+    np.testing.assert_array_equal(faces[inside], expected[inside])
+    assert len(set(faces[inside])) > 10
+    np.testing.assert_allclose(part(rendered, "Reflection", " Emit"), np.broadcast_to((0.5, 1.0, 2.0), uv.shape), rtol=1e-5)
+    for name in ("Diffuse", "Emission"):  # the mirror itself is neither rough nor bright
+        assert (part(rendered, name, " Face Index") == -1.0).all()
+        assert not any(part(rendered, name, suffix).any() for suffix in (" UV", " Object Index", " Emit"))
+
+
+def test_a_surface_that_is_seen_has_what_blender_s_own_passes_have(mirror: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+    bpy.data.objects["Mirror"].location.z = 100.0
+    mirror.camera.rotation_euler.x = np.pi
+    layer = mirror.view_layers[0]
+    layer.use_pass_uv = layer.use_pass_object_index = layer.use_pass_emit = True
+    rendered = render(mirror)
+    index, emit = ("Object Index", "Emission") if bpy.app.version >= (5, 0, 0) else ("IndexOB", "Emit")
+    for name in ("Diffuse", "Emission"):
+        for suffix, own in ((" UV", "UV"), (" Object Index", index), (" Emit", emit)):
+            assert rendered[f"ViewLayer.{own}"].any()
+            np.testing.assert_allclose(part(rendered, name, suffix), rendered[f"ViewLayer.{own}"], rtol=1e-5, atol=1e-6, err_msg=own)
 
 
 # ------------------------------------------------------------------------------------------------ names
@@ -165,7 +261,8 @@ def test_a_border_is_the_crop_of_the_whole(sample: bpy.types.Scene, render: Call
     sample.render.border_min_x, sample.render.border_max_x, sample.render.border_min_y, sample.render.border_max_y = 0.25, 0.75, 0.25, 0.75
     crop = render(sample)
     for name in DEFAULT:
-        np.testing.assert_array_equal(part(crop, name), part(whole, name)[9:27, 16:48])
+        for suffix in ("", " UV", " Object Index", " Face Index", " Emit"):
+            np.testing.assert_array_equal(part(crop, name, suffix), part(whole, name, suffix)[9:27, 16:48])
 
 
 def test_each_eye_has_its_components(sample: bpy.types.Scene, tmp_path: Path) -> None:
@@ -185,12 +282,15 @@ def test_each_eye_has_its_components(sample: bpy.types.Scene, tmp_path: Path) ->
 def test_frames_of_an_animation_have_them(sample: bpy.types.Scene, tmp_path: Path, temporal: bool) -> None:
     sample.frame_start, sample.frame_end = 1, 3
     sample.gradus.use_temporal = temporal
+    bpy.data.objects["Floor"].pass_index = 3
     images.use_exr(sample, tmp_path / "f_####.exr")
     bpy.ops.render.render(animation=True, scene=sample.name)
     frames = [images.read(tmp_path / f"f_{frame:04d}.exr") for frame in (1, 2, 3)]
     for rendered in frames:
         assert path_passes(rendered) == {info.of(name).name for name in DEFAULT for info in passes.PARTS}
         require_sum(rendered, DEFAULT)
+        assert (part(rendered, "Diffuse", " Object Index")[0, :30] == 3.0).all()
+        assert (part(rendered, "Reflection", " Object Index") == 3.0).mean() > 0.01, "the ball shows the floor"
     assert not np.array_equal(part(frames[0], "Reflection"), part(frames[2], "Reflection"))
 
 

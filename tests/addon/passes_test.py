@@ -135,6 +135,7 @@ def named(view_layer: SimpleNamespace, components: tuple[str, ...], extra: passe
 def test_each_component_has_the_passes_that_are_switched_on() -> None:
     assert named(layer(gradus_use_pass_components=True), ("Diffuse", "A_1")) == ["Combined", "Path Diffuse", "Path A_1"]
     assert named(layer(gradus_use_pass_component_motion=True), ("A",)) == ["Combined", "Path A Motion", "Path A Tracked"]
+    assert named(layer(gradus_use_pass_component_index=True), ("A",)) == ["Combined", "Path A Object Index", "Path A Face Index"]
     assert named(layer(gradus_use_pass_components=True), ()) == ["Combined"]
     wanted = passes.Extra(parts=frozenset((ComponentPass.NORMAL,)))
     assert named(layer(), ("A",), wanted) == ["Combined", "Path A Normal"]

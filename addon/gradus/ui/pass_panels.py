@@ -20,6 +20,9 @@ OF_COMPONENTS = (
     "use_pass_component_irradiance",
     "use_pass_component_normal",
     "use_pass_component_depth",
+    "use_pass_component_uv",
+    "use_pass_component_index",
+    "use_pass_component_emit",
     "use_pass_component_motion",
     "use_pass_component_irradiance_motion",
 )

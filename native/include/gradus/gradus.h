@@ -490,6 +490,11 @@ typedef enum GradusComponentPass {
   GRADUS_COMPONENT_IRRADIANCE_MOTION,  /* likewise, of the light that falls on what is shown: by optical flow, in sequences */
   GRADUS_COMPONENT_IRRADIANCE_TRACKED,
   GRADUS_COMPONENT_DEPTH,          /* length of the path to the first rough vertex; 1e10 where there is none */
+  /* Of the first rough vertex, or of what shines on the way: */
+  GRADUS_COMPONENT_UV,             /* u, v, 1 by the default UV map; 0 without one */
+  GRADUS_COMPONENT_OBJECT_INDEX,   /* pass_indices of its instance, of the first sample that met a surface; 0 where there is none */
+  GRADUS_COMPONENT_FACE_INDEX,     /* its face in the mesh, likewise, from 0 on; -1 where there is none */
+  GRADUS_COMPONENT_EMIT,           /* radiance that shines from there */
   GRADUS_COMPONENT_PASS_COUNT
 } GradusComponentPass;
 

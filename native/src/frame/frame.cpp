@@ -47,6 +47,7 @@ uint64_t Frame::memory_bytes() const {
   for (const ComponentPlanes& component : components) {
     bytes +=
         component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float) + component.shown.size() * sizeof(ShownPoint);
+    bytes += component.details.size() * sizeof(RoughDetails);
     for (int half = 0; half < kHalves; ++half) {
       bytes += component.primal[half].size() * sizeof(Radiance) + component.rough[half].size() * sizeof(RoughVertices);
       for (const auto& plane : component.gradient[half]) {
@@ -91,6 +92,7 @@ ComponentPlanes black_component(std::string_view name, const ComponentPlanes& li
   std::fill(black.motion.begin(), black.motion.end(), Vec4(0.0f));
   std::fill(black.tracked.begin(), black.tracked.end(), kNothingToTrack);
   std::fill(black.shown.begin(), black.shown.end(), ShownPoint{});
+  std::fill(black.details.begin(), black.details.end(), RoughDetails{});
   for (int half = 0; half < kHalves; ++half) {
     std::fill(black.primal[half].begin(), black.primal[half].end(), Radiance(0.0f));
     for (auto& plane : black.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));

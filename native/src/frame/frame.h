@@ -48,6 +48,19 @@ struct RoughVertices {
   float samples = 0.0f;
 };
 
+inline constexpr uint32_t kNoSample = std::numeric_limits<uint32_t>::max();
+
+// More of these vertices, and of what shines, be it rough or not: sums over the segments at whose ends, or on which, there was one or the
+// other; what cannot be averaged is that of the first sample that met a surface.
+struct RoughDetails {
+  Vec3 uv = Vec3(0.0f);      // u, v, 1; 0 without a UV map
+  Rgb emission = Rgb(0.0f);  // radiance that shines from there
+  float segments = 0.0f;
+  float object = 0.0f;          // pass index
+  float face = -1.0f;           // of the mesh
+  uint32_t sample = kNoSample;  // of which object and face are
+};
+
 // What a component shows at the centre of a pixel, through smooth surfaces.
 struct ShownPoint {
   float object = 0.0f;  // a number of the way and of the object at its end, not above 2^24: others have others; 0: it shows nothing
@@ -60,6 +73,7 @@ struct ComponentPlanes {
   std::array<std::vector<Radiance>, kHalves> primal;
   std::array<std::array<std::vector<Radiance>, kOffsets>, kHalves> gradient;  // empty where the integrator makes none
   std::array<std::vector<RoughVertices>, kHalves> rough;                      // empty unless asked for
+  std::vector<RoughDetails> details;                                          // likewise
   // Of what the component shows at the centres of pixels: previous − now, now − next, in pixels; 1, or why that is not known
   // (motion/component_motion.h). Empty unless asked for.
   std::vector<Vec4> motion;

@@ -11,9 +11,7 @@ struct FrameHeader {
   int channels = 3;
   bool gradients = false;
   uint64_t planes = 0;  // of passes, a bit each
-  bool rough = false;   // the first rough vertices of components
-  bool motion = false;  // of components
-  bool shown = false;   // and what they show
+  KeptOfComponents of_components;
   GradusSettings settings{};
   SampleRanges samples;
   uint64_t scene_key = 0;
@@ -26,21 +24,9 @@ struct FrameHeader {
 
 inline FrameHeader header_of(const Frame& frame) {
   const SampleSources& replayed = frame.replayed;
-  return {frame.region,
-          frame.channels,
-          frame.gradients,
-          kept_passes(frame),
-          !frame.components[0].rough[0].empty(),
-          !frame.components[0].motion.empty(),
-          !frame.components[0].shown.empty(),
-          frame.settings,
-          frame.samples,
-          frame.scene_key,
-          frame.frame_number,
-          replayed.stream_frame,
-          replayed.scene_key,
-          replayed.seed,
-          frame.shared};
+  return {frame.region,       frame.channels, frame.gradients, kept_passes(frame), kept_of_components(frame),
+          frame.settings,     frame.samples,  frame.scene_key, frame.frame_number, replayed.stream_frame,
+          replayed.scene_key, replayed.seed,  frame.shared};
 }
 
 }  // namespace gradus

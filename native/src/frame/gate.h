@@ -46,6 +46,19 @@ inline void add_rough(const RoughVertices& vertex, RoughVertices* sum, Counters*
   }
 }
 
+// Of a segment of one sample, or of other samples: the first of all tells which object and face it is.
+inline void add_details(const RoughDetails& more, RoughDetails* sum, Counters* counters) {
+  RoughDetails next = more.sample < sum->sample ? more : *sum;
+  next.uv = sum->uv + more.uv;
+  next.emission = sum->emission + more.emission;
+  next.segments = sum->segments + more.segments;
+  if (fits(Radiance(next.uv, next.segments)) && fits(Radiance(next.emission, next.object))) {
+    *sum = next;
+  } else {
+    ++counters->nonfinite_feature;
+  }
+}
+
 // Values of a pass: added to its sums, or kept as they are where only the first sample counts.
 inline void add_feature(const float* values, float weight, size_t pixel, int half, PassPlane* plane, Counters* counters) {
   float* sum = plane->of_half(half).data() + pixel * plane->channels;

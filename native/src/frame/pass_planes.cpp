@@ -21,21 +21,20 @@ std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
   return planes;
 }
 
-void keep_rough_vertices(Frame* frame) {
+void keep_of_components(const KeptOfComponents& kept, Frame* frame) {
+  const auto pixels = size_t(frame->region.area());
   for (ComponentPlanes& planes : frame->components) {
-    for (auto& half : planes.rough) half.assign(size_t(frame->region.area()), RoughVertices{});
+    for (auto& half : planes.rough) half.assign(kept.rough ? pixels : 0, RoughVertices{});
+    planes.details.assign(kept.details ? pixels : 0, RoughDetails{});
+    planes.motion.assign(kept.motion ? pixels : 0, Vec4(0.0f));
+    planes.tracked.assign(kept.motion ? pixels : 0, kNothingToTrack);
+    planes.shown.assign(kept.shown ? pixels : 0, ShownPoint{});
   }
 }
 
-void keep_motion(Frame* frame) {
-  for (ComponentPlanes& planes : frame->components) {
-    planes.motion.assign(size_t(frame->region.area()), Vec4(0.0f));
-    planes.tracked.assign(size_t(frame->region.area()), kNothingToTrack);
-  }
-}
-
-void keep_shown(Frame* frame) {
-  for (ComponentPlanes& planes : frame->components) planes.shown.assign(size_t(frame->region.area()), ShownPoint{});
+KeptOfComponents kept_of_components(const Frame& frame) {
+  const ComponentPlanes& planes = frame.components.front();
+  return {!planes.rough[0].empty(), !planes.details.empty(), !planes.motion.empty(), !planes.shown.empty()};
 }
 
 uint64_t kept_passes(const Frame& frame) {
@@ -49,12 +48,14 @@ const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
   return plane != frame.passes.end() ? &*plane : nullptr;
 }
 
-uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, bool rough, bool motion, bool shown) {
+uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, const KeptOfComponents& kept) {
   const uint64_t offsets = gradients ? uint64_t{kOffsets} : 0, radiances = uint64_t(components) * (1 + offsets);
-  const uint64_t features = rough ? uint64_t(components) * sizeof(RoughVertices) : 0;
+  const uint64_t features = kept.rough ? uint64_t(components) * sizeof(RoughVertices) : 0;
   const uint64_t half = radiances * sizeof(Radiance) + features + sizeof(uint32_t) + offsets * sizeof(float);
-  const uint64_t moves = uint64_t(components) * ((motion ? sizeof(Vec4) + sizeof(float) : 0) + (shown ? sizeof(ShownPoint) : 0));
-  return kHalves * half + moves + pass_bytes_per_pixel(passes) + (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
+  const uint64_t others =
+      (kept.details ? sizeof(RoughDetails) : 0) + (kept.motion ? sizeof(Vec4) + sizeof(float) : 0) + (kept.shown ? sizeof(ShownPoint) : 0);
+  return kHalves * half + uint64_t(components) * others + pass_bytes_per_pixel(passes) +
+         (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
 }
 
 }  // namespace gradus

@@ -86,15 +86,21 @@ void name_components(const json& list, Frame* frame) {
   }
 }
 
+KeptOfComponents kept_from_json(const json& j) {
+  return {j.at("rough"), j.value("details", false), j.at("motion"), j.at("shown")};  // once there were no details
+}
+
 json describe_samples(const Frame& frame) {
+  const KeptOfComponents kept = kept_of_components(frame);
   return {{"format", kFormat},
           {"version", gradus_version_text()},
           {"frame", frame.frame_number},
           {"channels", frame.channels},
           {"components", components_to_json(frame)},
-          {"rough", !frame.components[0].rough[0].empty()},
-          {"motion", !frame.components[0].motion.empty()},
-          {"shown", !frame.components[0].shown.empty()},
+          {"rough", kept.rough},
+          {"details", kept.details},
+          {"motion", kept.motion},
+          {"shown", kept.shown},
           {"gradients", frame.gradients},
           {"sampling_key", hex(sampling_key(frame.settings))},
           {"scene_key", hex(frame.scene_key)},
@@ -176,9 +182,7 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   if (frame.channels != 3 && frame.channels != 4) throw damaged("its planes are wrong");
   frame.gradients = description.at("gradients");
   frame.planes = description.at("planes");
-  frame.rough = description.at("rough");
-  frame.motion = description.at("motion");
-  frame.shown = description.at("shown");
+  frame.of_components = kept_from_json(description);
   frame.settings = settings_from_json(description.at("settings"));
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
@@ -221,20 +225,18 @@ Frame make_frame(const Imf::Header& header, StoredContent content, const std::st
   const json& names = description.at("components");
   if (!names.is_array() || names.empty() || names.size() > kMostStoredComponents) throw damaged("its planes are wrong");
   const int components = int(names.size());
-  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients, rough = is_whole && known.rough,
-             motion = is_whole && known.motion, shown = is_whole && known.shown;
+  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
+  const KeptOfComponents kept = is_whole ? known.of_components : KeptOfComponents{};
   const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
   const bool has_fallback = is_whole && wants(known.settings.passes, GRADUS_PASS_FALLBACK);
   const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
   const int held = only ? 1 : components;
-  const uint64_t bytes = frame_bytes_per_pixel(held, gradients, planes, rough, motion, shown) * pixels, available = machine_memory_bytes();
+  const uint64_t bytes = frame_bytes_per_pixel(held, gradients, planes, kept) * pixels, available = machine_memory_bytes();
   if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   const Imath::V2i last = header.displayWindow().max;
   Frame frame(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
-  if (rough) keep_rough_vertices(&frame);
-  if (motion) keep_motion(&frame);
-  if (shown) keep_shown(&frame);
+  keep_of_components(kept, &frame);
   if (only) place_component(place_of(names, *only), names.size(), &frame);
   name_components(names, &frame);
   frame.settings = known.settings;

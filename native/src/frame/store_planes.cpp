@@ -30,6 +30,16 @@ class PlaneList {
     add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(RoughVertices));
     add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(RoughVertices));
   }
+  void details(const std::string& layer, std::vector<RoughDetails>* plane) {
+    if (plane->empty()) return;
+    RoughDetails& first = plane->front();
+    for (int c = 0; c < 3; ++c) add(layer + ".uv." + kVectorNames[c], false, &first.uv[c], sizeof(RoughDetails));
+    for (int c = 0; c < 3; ++c) add(layer + ".emission." + kColorNames[c], false, &first.emission[c], sizeof(RoughDetails));
+    add(layer + ".segments.V", false, &first.segments, sizeof(RoughDetails));
+    add(layer + ".object.V", false, &first.object, sizeof(RoughDetails));
+    add(layer + ".face.V", false, &first.face, sizeof(RoughDetails));
+    add(layer + ".sample.V", true, &first.sample, sizeof(RoughDetails));
+  }
   void vectors(const std::string& layer, std::vector<Vec4>* plane) {
     if (plane->empty()) return;
     for (int c = 0; c < 4; ++c) add(layer + "." + kVectorNames[c], false, &(*plane)[0][c], sizeof(Vec4));
@@ -119,6 +129,12 @@ std::vector<StoredPlane> rough(Frame* frame, size_t component) {
   return list.take();
 }
 
+std::vector<StoredPlane> details(Frame* frame, size_t component) {
+  PlaneList list;
+  list.details(layer_of(component), &frame->components[component].details);
+  return list.take();
+}
+
 std::vector<StoredPlane> motion(Frame* frame, size_t component) {
   PlaneList list;
   ComponentPlanes& planes = frame->components[component];
@@ -150,6 +166,7 @@ std::vector<StoredPart> stored_parts(Frame* frame) {
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("gradients", c), gradients(frame, c)});
   parts.push_back({"pairs", pairs(frame)});
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("rough", c), rough(frame, c)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("details", c), details(frame, c)});
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("motion", c), motion(frame, c)});
   for (PassPlane& plane : frame->passes) {
     if (plane.in_halves) parts.push_back({layer_of(plane), feature(&plane)});

@@ -61,19 +61,23 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
     features_ |= is_feature;
     others_ |= !is_feature;
   }
-  if (!frame->components[0].rough[0].empty()) {
+  keeps_rough_ = !frame->components[0].rough[0].empty();
+  keeps_details_ = !frame->components[0].details.empty();
+  if (keeps_rough_ || keeps_details_) {
     components_ = &frame->components;
     active_ = true;
   }
 }
 
-void PassRecorder::begin_sample(size_t pixel, int half, bool first_sample, bool again) {
+void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool again) {
   pixel_ = pixel;
   half_ = half;
-  first_sample_ = first_sample;
+  number_ = number;
+  first_sample_ = number == context_.settings.first_sample;
   again_ = again;
   features_done_ = !features_ || again;
   looks_for_rough_ = components_ != nullptr && !again;
+  told_ = 0;
   path_length_ = 0.0f;
   albedo_ = Rgb(0.0f);
 }
@@ -109,6 +113,7 @@ void PassRecorder::light(const PathState& state, const Vertex& vertex, ScatterCl
 
 void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
   looks_for_rough_ = looks_for_rough_ && event.scatter_class != ScatterClass::Diffuse;
+  told_ = 0;
   if (depth > 0 || !lights_) {
     return;
   }
@@ -133,7 +138,8 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
     features(state, vertex);
   }
   if (looks_for_rough_) {
-    rough_vertex(state, vertex);
+    if (keeps_rough_) rough_vertex(state, vertex);
+    if (keeps_details_) details(state, vertex);
   }
 }
 
@@ -254,13 +260,20 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
 }
 
 // The first rough vertex of all paths that scatter here in class D; some of them may have been seen in a mirror on the way.
+uint32_t PassRecorder::components_of_rough(const PathState& state, const Vertex& vertex) const {
+  if (!(vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f)) {
+    return 0;
+  }
+  return context_.components.ahead(context_.components.next(state.word, ScatterClass::Diffuse));
+}
+
 void PassRecorder::rough_vertex(const PathState& state, const Vertex& vertex) {
-  const Closures& closures = vertex.shade.closures;
-  if (!(closures.class_probability(ScatterClass::Diffuse) > 0.0f)) {
+  const uint32_t ahead = components_of_rough(state, vertex);
+  if (ahead == 0) {
     return;
   }
-  const uint32_t ahead = context_.components.ahead(context_.components.next(state.word, ScatterClass::Diffuse));
-  const RoughVertices here{glm::clamp(closures.albedo(vertex.wo), Rgb(0.0f), Rgb(1.0f)), shown_normal(vertex), path_length_, 1.0f};
+  const Rgb albedo = glm::clamp(vertex.shade.closures.albedo(vertex.wo), Rgb(0.0f), Rgb(1.0f));
+  const RoughVertices here{albedo, shown_normal(vertex), path_length_, 1.0f};
   for (size_t c = 0; c < components_->size(); ++c) {
     if ((ahead >> c & 1) != 0) {
       add_rough(here, &(*components_)[c].rough[half_][pixel_], counters_);
@@ -268,8 +281,32 @@ void PassRecorder::rough_vertex(const PathState& state, const Vertex& vertex) {
   }
 }
 
+// Of a surface that is rough, or that shines.
+void PassRecorder::details(const PathState& state, const Vertex& vertex) {
+  uint32_t components = components_of_rough(state, vertex);
+  if (!is_black(vertex.shade.emission)) components |= uint32_t{1} << context_.components.component(state.word);
+  if (components == 0) {
+    return;
+  }
+  const Hit& hit = vertex.point.hit;
+  const InstanceData& instance = context_.scene.instances[hit.instance];
+  const auto object = static_cast<float>(instance.pass_index), face = static_cast<float>(instance.mesh->face(hit.triangle));
+  tell(components, {uv_of(*instance.mesh, hit), vertex.shade.emission, 0.0f, object, face, number_});
+}
+
+// What a segment shows counts once, be it several lamps and the surface behind them.
+void PassRecorder::tell(uint32_t components, const RoughDetails& here) {
+  for (size_t c = 0; c < components_->size(); ++c) {
+    if ((components >> c & 1) == 0) continue;
+    RoughDetails once = here;
+    once.segments = (told_ >> c & 1) == 0 ? 1.0f : 0.0f;
+    add_details(once, &(*components_)[c].details[pixel_], counters_);
+  }
+  told_ |= components;
+}
+
 void PassRecorder::shines(int component, const Rgb& light) {
-  if (looks_for_rough_ && !is_black(light)) {
+  if (looks_for_rough_ && keeps_rough_ && !is_black(light)) {
     const RoughVertices here{glm::clamp(light, Rgb(0.0f), Rgb(1.0f)), Vec3(0.0f), path_length_, 1.0f};
     add_rough(here, &(*components_)[size_t(component)].rough[half_][pixel_], counters_);
   }

@@ -17,7 +17,7 @@ class PassRecorder {
   bool active() const { return active_; }
 
   // again: all but the light was recorded before.
-  void begin_sample(size_t pixel, int half, bool first_sample, bool again = false);
+  void begin_sample(size_t pixel, int half, uint32_t number, bool again = false);
   // surface() will look at the closures of the vertex with `depth` scatterings before it.
   bool needs_closures(int depth) const { return (depth == 0 && !again_) || !features_done_ || looks_for_rough_; }
   // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
@@ -32,6 +32,7 @@ class PassRecorder {
   void sighting(const Rgb& throughput, int component, const Rgb& light) {
     if (!features_done_) add_albedo(throughput * light);
     shines(component, light);
+    if (looks_for_rough_ && keeps_details_ && !is_black(light)) tell(uint32_t{1} << component, {.emission = light});
   }
   // Light that a ray found, before any weight. Seen in a mirror or behind glass it is a feature of its component, as the albedo is.
   void shines(int component, const Rgb& light);
@@ -57,7 +58,10 @@ class PassRecorder {
   void background_motion(const Vec3& direction);
   void features(const PathState& state, const Vertex& vertex);
   void add_albedo(const Rgb& value);
+  uint32_t components_of_rough(const PathState& state, const Vertex& vertex) const;
   void rough_vertex(const PathState& state, const Vertex& vertex);
+  void details(const PathState& state, const Vertex& vertex);
+  void tell(uint32_t components, const RoughDetails& here);
 
   const PathContext& context_;
   Counters* counters_;
@@ -66,8 +70,12 @@ class PassRecorder {
   bool lights_ = false;
   bool features_ = false;
   bool others_ = false;                                 // planes that are no features
-  std::vector<ComponentPlanes>* components_ = nullptr;  // that keep rough vertices
-  bool looks_for_rough_ = false;                        // the path has met none so far
+  std::vector<ComponentPlanes>* components_ = nullptr;  // that keep rough vertices, or details of them
+  bool keeps_rough_ = false;
+  bool keeps_details_ = false;
+  bool looks_for_rough_ = false;  // the path has met none so far
+  uint32_t told_ = 0;             // bits of components that know details of this segment
+  uint32_t number_ = 0;           // of the sample
   bool first_sample_ = false;
   bool again_ = false;
   bool features_done_ = false;

@@ -155,6 +155,7 @@ void choose_components(const GradusSettings& settings, const SceneFeatures& feat
   const ComponentSet all = ComponentSet::parse(text);
   const uint32_t seen = shows_light(features) ? 1u << all.component(PathWord{0}) : 0;
   plan->rough_vertices = wants_any(settings.component_passes, is_of_rough_vertices);
+  plan->rough_details = wants_any(settings.component_passes, is_of_rough_details);
   plan->component_motion = wants_any(settings.component_passes, is_motion);
   const uint32_t kept = all.reached(letters_of(settings, features)) | seen;
   plan->components = all.without_empty(kept);
@@ -315,7 +316,8 @@ uint64_t quarter_bytes(const Plan& plan) {
 }  // namespace
 
 uint64_t planned_bytes(const Plan& plan) {
-  uint64_t bytes = frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes, plan.rough_vertices, plan.component_motion);
+  uint64_t bytes = frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes,
+                                         {plan.rough_vertices, plan.rough_details, plan.component_motion});
   bytes += 4 * sizeof(float);  // the noisy image that is shown meanwhile
   uint64_t floats = reconstruction_floats(plan);
   if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is

@@ -36,6 +36,7 @@ struct Plan {
   ComponentSet components;        // that are sampled
   bool component_motion = false;  // of which passes tell where they were, and go
   bool rough_vertices = false;    // of which passes look at where paths become rough
+  bool rough_details = false;     // and more closely
   uint64_t passes = 0;            // that the frame keeps: those asked for, and what the reconstruction reads
   uint32_t first_check = 0;       // samples before a tile may stop
   Region delivered;

@@ -30,17 +30,45 @@ Vec3 value_of(uint32_t pass, const RoughVertices& mean, const Vec3& color) {
   return irradiance;
 }
 
+Vec3 value_of(uint32_t pass, const RoughDetails& details, float exposure) {
+  if (pass == GRADUS_COMPONENT_OBJECT_INDEX) return Vec3(details.object);
+  if (pass == GRADUS_COMPONENT_FACE_INDEX) return Vec3(details.face);
+  const float factor = details.segments > 0.0f ? 1.0f / details.segments : 0.0f;
+  return pass == GRADUS_COMPONENT_UV ? factor * details.uv : exposure * (factor * details.emission);
+}
+
+// Where the component shows nothing.
+float nothing_of(const ComponentPassInfo& info) {
+  if (info.pass == GRADUS_COMPONENT_DEPTH) return kFarDepth;
+  if (info.pass == GRADUS_COMPONENT_FACE_INDEX) return kNoFace;
+  return is_motion(info.pass) && info.channels == 1 ? kNothingToTrack : 0.0f;
+}
+
+Error not_asked_for(const ComponentPassInfo& info) {
+  return invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
+}
+
 // Flow takes two frames.
 float tracked_in_one_frame(float tracked, bool by_flow) { return by_flow && tracked == kTracked ? kNoNeighbour : tracked; }
 
 void read_motion(const Frame& frame, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
   const bool by_flow = is_by_flow(planes.name, info.pass);
-  if (planes.motion.empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
+  if (planes.motion.empty()) throw not_asked_for(info);
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
       const size_t i = frame.index(x, y);
       if (info.channels == 1) *pixels = tracked_in_one_frame(planes.tracked[i], by_flow);
       if (info.channels == 4) std::copy_n(&planes.motion[i][0], 4, pixels);
+    }
+  }
+}
+
+void read_details(const Frame& frame, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
+  if (planes.details.empty()) throw not_asked_for(info);
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
+      const Vec3 value = value_of(info.pass, planes.details[frame.index(x, y)], frame.settings.film_exposure);
+      std::copy_n(&value.x, info.channels, pixels);
     }
   }
 }
@@ -52,10 +80,8 @@ bool is_by_flow(const std::string& component, uint32_t pass) {
 }
 
 void read_absent_component(uint32_t pass, const Region& region, float* pixels) {
-  const uint32_t channels = component_pass_info(pass).channels;
-  const float nothing = pass == GRADUS_COMPONENT_DEPTH ? kFarDepth : 0.0f;
-  const float value = is_motion(pass) && channels == 1 ? kNothingToTrack : nothing;
-  std::fill_n(pixels, size_t(region.area()) * channels, value);
+  const ComponentPassInfo& info = component_pass_info(pass);
+  std::fill_n(pixels, size_t(region.area()) * info.channels, nothing_of(info));
 }
 
 void check_component(const GradusSettings& settings, const std::string& name) {
@@ -70,7 +96,8 @@ void read_component_pass(const Frame& frame, int component, uint32_t pass, const
   if (pass == GRADUS_COMPONENT_COLOR) return static_cast<void>(std::copy(color.begin(), color.end(), pixels));
   const ComponentPlanes& planes = frame.components[size_t(component)];
   if (is_motion(pass)) return read_motion(frame, planes, info, region, pixels);
-  if (planes.rough[0].empty()) throw invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
+  if (is_of_rough_details(pass)) return read_details(frame, planes, info, region, pixels);
+  if (planes.rough[0].empty()) throw not_asked_for(info);
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
       const size_t out = 3 * (size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0));

@@ -120,9 +120,8 @@ void RenderLoop::prepare() {
     frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, plan_.components.count(),
                                     !gradients_.none());
     name_planes(plan_.components, frame.get());
-    if (plan_.rough_vertices) keep_rough_vertices(frame.get());
-    if (plan_.component_motion && !input_.replay) keep_motion(frame.get());
-    if (plan_.component_motion && !input_.replay && input_.samples_only) keep_shown(frame.get());
+    const bool motion = plan_.component_motion && !input_.replay;
+    keep_of_components({plan_.rough_vertices, plan_.rough_details, motion, motion && input_.samples_only}, frame.get());
     frame->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
     if (wants(plan_.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }

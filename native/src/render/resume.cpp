@@ -33,7 +33,8 @@ void add_planes(PassPlane* to, const PassPlane& from) {
 }
 
 bool same_planes(const Frame& a, const Frame& b) {
-  if (a.components[0].rough[0].size() != b.components[0].rough[0].size()) return false;
+  const KeptOfComponents of_a = kept_of_components(a), of_b = kept_of_components(b);
+  if (of_a.rough != of_b.rough || of_a.details != of_b.details) return false;
   if (a.passes.size() != b.passes.size() || a.fallback.size() != b.fallback.size()) return false;
   for (size_t i = 0; i < a.passes.size(); ++i) {
     if (a.passes[i].pass != b.passes[i].pass) return false;
@@ -85,7 +86,8 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
   const std::string gap = frame.samples.first_gap(settings.first_sample);
   if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
   if (frame.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
-  if (plan.rough_vertices && frame.components[0].rough[0].empty())
+  const KeptOfComponents held = kept_of_components(frame);
+  if ((plan.rough_vertices && !held.rough) || (plan.rough_details && !held.details))
     throw invalid_argument("the frame was sampled without the passes of components");
   const uint64_t kept = kept_passes(frame);
   for (const PassInfo& info : stored_passes(plan.passes)) {
@@ -96,6 +98,10 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
 }
 
 void add_sums(Frame* frame, const Frame& other) {
+  for (size_t c = 0; c < frame->components.size(); ++c) {
+    std::vector<RoughDetails>& details = frame->components[c].details;
+    for (size_t i = 0; i < details.size(); ++i) add_details(other.components[c].details[i], &details[i], &frame->counters);
+  }
   for (int half = 0; half < kHalves; ++half) {
     for (size_t c = 0; c < frame->components.size(); ++c) {
       add(&frame->components[c].primal[half], other.components[c].primal[half]);

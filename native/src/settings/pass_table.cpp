@@ -56,6 +56,10 @@ constexpr ComponentPassInfo kComponentPasses[] = {
     {GRADUS_COMPONENT_IRRADIANCE_MOTION,  "Irradiance Motion",  4},
     {GRADUS_COMPONENT_IRRADIANCE_TRACKED, "Irradiance Tracked", 1},
     {GRADUS_COMPONENT_DEPTH,              "Depth",              1},
+    {GRADUS_COMPONENT_UV,                 "UV",                 3},
+    {GRADUS_COMPONENT_OBJECT_INDEX,       "Object Index",       1},
+    {GRADUS_COMPONENT_FACE_INDEX,         "Face Index",         1},
+    {GRADUS_COMPONENT_EMIT,               "Emit",               3},
 };
 // clang-format on
 

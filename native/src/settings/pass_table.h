@@ -40,8 +40,9 @@ constexpr bool is_in_halves(PassKind kind) { return kind == PassKind::Feature ||
 // Throws invalid_argument for a number that is no pass.
 const PassInfo& pass_info(uint32_t pass);
 
-// Depth where there is nothing.
+// Depth and face where there is nothing.
 inline constexpr float kFarDepth = 1e10f;
+inline constexpr float kNoFace = -1.0f;
 
 // Passes of a component.
 struct ComponentPassInfo {
@@ -58,13 +59,18 @@ inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) 
 constexpr bool is_irradiance_motion(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_IRRADIANCE_MOTION || component_pass == GRADUS_COMPONENT_IRRADIANCE_TRACKED;
 }
-// Passes of a component that are made of its picture, of the first rough vertices of its paths, of its motion.
+// Passes of a component that are made of its picture, of the first rough vertices of its paths, of more that is kept of these, of its
+// motion.
 constexpr bool is_of_picture(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_COLOR || component_pass == GRADUS_COMPONENT_IRRADIANCE;
 }
 constexpr bool is_of_rough_vertices(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_REFLECTANCE || component_pass == GRADUS_COMPONENT_IRRADIANCE ||
          component_pass == GRADUS_COMPONENT_NORMAL || component_pass == GRADUS_COMPONENT_DEPTH || is_irradiance_motion(component_pass);
+}
+constexpr bool is_of_rough_details(uint32_t component_pass) {
+  return component_pass == GRADUS_COMPONENT_UV || component_pass == GRADUS_COMPONENT_OBJECT_INDEX ||
+         component_pass == GRADUS_COMPONENT_FACE_INDEX || component_pass == GRADUS_COMPONENT_EMIT;
 }
 constexpr bool is_motion(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_MOTION || component_pass == GRADUS_COMPONENT_TRACKED || is_irradiance_motion(component_pass);

@@ -48,6 +48,26 @@ TEST(B6_Gate, SumsThatWouldOverflowStayOutAndAreCounted) {
   EXPECT_TRUE(is_finite(read_variance(frame)[15]));
 }
 
+TEST(B6_Gate, NumbersOfObjectsAreThoseOfTheFirstSample) {
+  Counters counters;
+  RoughDetails sum;
+  add_details({Vec3(0.0f), Rgb(5.0f), 1.0f}, &sum, &counters);  // a lamp has none
+  EXPECT_EQ(sum.face, -1.0f);
+  for (const auto& [object, sample] : {std::pair{3.0f, 6u}, {4.0f, 2u}, {5.0f, 2u}, {6.0f, 7u}}) {
+    add_details({Vec3(1.0f), Rgb(1.0f), 1.0f, object, 10.0f * object, sample}, &sum, &counters);
+  }
+  EXPECT_EQ(sum.object, 4.0f);
+  EXPECT_EQ(sum.face, 40.0f);
+  EXPECT_EQ(sum.sample, 2u);
+  EXPECT_EQ(sum.segments, 5.0f);
+  EXPECT_EQ(sum.uv, Vec3(4.0f));
+  EXPECT_EQ(sum.emission, Rgb(9.0f));
+  add_details({Vec3(1.0f), Rgb(kInfinity), 1.0f}, &sum, &counters);
+  EXPECT_EQ(sum.emission, Rgb(9.0f));
+  EXPECT_EQ(sum.segments, 5.0f);
+  EXPECT_EQ(counters.nonfinite_feature, 1u);
+}
+
 // Loading a frame left its counts out of what it asks of the memory.
 TEST(Frame, BytesPerPixelAreThoseOfAllItsPlanes) {
   constexpr size_t kPixels = 12;
@@ -57,7 +77,10 @@ TEST(Frame, BytesPerPixelAreThoseOfAllItsPlanes) {
         Frame frame(4, 3, Region{0, 0, 4, 3}, 4, components, gradients);
         frame.passes = make_pass_planes(passes, kPixels);
         if (passes != 0) frame.fallback.assign(kPixels, 0.0f);
-        EXPECT_EQ(frame.memory_bytes() - sizeof(Frame), kPixels * frame_bytes_per_pixel(components, gradients, passes));
+        for (const KeptOfComponents& kept : {KeptOfComponents{}, {.rough = true}, {.details = true}, {.motion = true, .shown = true}}) {
+          keep_of_components(kept, &frame);
+          EXPECT_EQ(frame.memory_bytes() - sizeof(Frame), kPixels * frame_bytes_per_pixel(components, gradients, passes, kept));
+        }
       }
     }
   }

@@ -320,6 +320,41 @@ TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
   EXPECT_EQ(load_header(path("earlier.exr")).replayed_seed, 5u);
 }
 
+// Nothing of what components show was kept but the first rough vertices.
+TEST_F(F6_Store, FramesOfEarlierVersionsHaveNoDetailsOfComponents) {
+  save_frame(*rendered(small_settings(20, 10, 2)), path());
+  rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
+    nlohmann::json j = description_of(headers->front());
+    ASSERT_EQ(j.erase("details"), 1u);
+    headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
+  });
+  EXPECT_FALSE(load_header(path("earlier.exr")).of_components.details);
+  EXPECT_TRUE(load_frame(path("earlier.exr"))->components[0].details.empty());
+}
+
+TEST_F(F6_StoredComponents, HaveTheirDetails) {
+  Frame stored = frame();
+  keep_of_components({.details = true}, &stored);
+  float value = 0.0f;
+  for (ComponentPlanes& planes : stored.components) {
+    for (RoughDetails& details : planes.details) {
+      ++value;
+      details = {Vec3(value, 2, 3), Rgb(4, value, 6), 7 * value, 8 * value, value, uint32_t(value)};
+    }
+  }
+  stored.components[1].details[4] = {};
+  save_frame(stored, path());
+  const auto same = [](const std::vector<RoughDetails>& a, const std::vector<RoughDetails>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(RoughDetails)) == 0;
+  };
+  const auto back = load_frame(path());
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_TRUE(same(back->components[c].details, stored.components[c].details));
+    EXPECT_TRUE(same(load(kNames[c])->components[0].details, stored.components[c].details));
+  }
+  for (const RoughDetails& details : load("Glass")->components[0].details) ASSERT_EQ(details.sample, kNoSample);
+}
+
 TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
   save_frame(*rendered(all_passes(32, 32, 1)), path());
   const Refusal refusals[] = {

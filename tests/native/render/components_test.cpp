@@ -197,6 +197,156 @@ TEST(Components, HaveTheSurfacesThatTheirPathsMeetFirst) {
   EXPECT_EQ(light[right], color[right]);
 }
 
+// A quad with u along a and v along b, face 3 of its mesh.
+void add_mapped_quad(PathScene* scene, const Vec3& corner, const Vec3& a, const Vec3& b, const test::Surface& surface) {
+  test::Soup soup;
+  soup.triangle(corner, corner + a, corner + a + b);
+  soup.triangle(corner, corner + a + b, corner + b);
+  const float uv[] = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1};
+  const int32_t faces[] = {3, 3};
+  GradusAttribute map{};
+  map.struct_size = sizeof(map);
+  map.domain = GRADUS_DOMAIN_CORNER;
+  map.channels = 2;
+  map.is_uv = 1;
+  map.name = "UVMap";
+  map.data = uv;
+  test::MeshDesc mesh(soup);
+  mesh.desc.attributes = &map;
+  mesh.desc.attribute_count = 1;
+  mesh.desc.triangle_faces = faces;
+  mesh.desc.face_count = 4;
+  const uint64_t material = scene->material(surface), key = 1000 + material;
+  scene->scene.scene.set_mesh(key, mesh.desc);
+  scene->scene.instance(key, Mat4(1.0f), GRADUS_VISIBLE_ALL, material);
+}
+
+constexpr uint32_t kDetails =
+    1u << GRADUS_COMPONENT_UV | 1u << GRADUS_COMPONENT_OBJECT_INDEX | 1u << GRADUS_COMPONENT_FACE_INDEX | 1u << GRADUS_COMPONENT_EMIT;
+
+GradusSettings details_settings() {
+  GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_NONE);
+  settings.component_passes = kDetails;
+  settings.film_exposure = 1.5f;
+  return settings;
+}
+
+// What passes of a component have in a pixel.
+struct Shown {
+  Vec3 uv, emit;
+  float object, face;
+};
+
+Shown shown_at(const Render& render, const std::string& name, size_t pixel) {
+  const auto values = [&](uint32_t pass) { return component(render, name, pass); };
+  const std::vector<float> uv = values(GRADUS_COMPONENT_UV), emit = values(GRADUS_COMPONENT_EMIT);
+  const auto vec = [&](const std::vector<float>& v) { return Vec3(v[3 * pixel], v[3 * pixel + 1], v[3 * pixel + 2]); };
+  return {vec(uv), vec(emit), values(GRADUS_COMPONENT_OBJECT_INDEX)[pixel], values(GRADUS_COMPONENT_FACE_INDEX)[pixel]};
+}
+
+void expect_shown(const Shown& found, const Shown& expected) {
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(found.uv[c], expected.uv[c], 0.005f);
+    EXPECT_NEAR(found.emit[c], expected.emit[c], 1e-5f);
+  }
+  EXPECT_EQ(found.object, expected.object);
+  EXPECT_EQ(found.face, expected.face);
+}
+
+const Shown kNothingShown{Vec3(0.0f), Vec3(0.0f), 0.0f, -1.0f};
+
+// A dim wall and a mirror, each with a map and an index of its own; the mirror shows a wall behind the camera that is a screen.
+TEST(Components, HaveTheMapsIndicesAndEmissionOfWhatTheyShow) {
+  PathScene scene;
+  test::Surface dim = test::matte(Rgb(0.3f)), mirror = test::glossy(0.0f), screen = test::matte(Rgb(0.9f));
+  dim.emission = Rgb(0.25f);
+  mirror.glossy = Rgb(0.5f);
+  screen.emission = Rgb(2.0f, 1.0f, 0.5f);
+  scene.scene.pass_index = 4;
+  add_mapped_quad(&scene, Vec3(-1, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), dim);
+  scene.scene.pass_index = 7;
+  add_mapped_quad(&scene, Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), mirror);
+  scene.scene.pass_index = 9;
+  add_mapped_quad(&scene, Vec3(-9, -9, 6), Vec3(0, 18, 0), Vec3(18, 0, 0), screen);
+  scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
+  const auto render = rendered(&scene, details_settings());
+  const size_t left = 20 * kSide + 10, right = 20 * kSide + 30;
+  const float x = 0.3f * (30.5f / kSide - 0.5f), y = 0.3f * (20.5f / kSide - 0.5f);  // of the ray to `right`, by distance
+  expect_shown(shown_at(*render, "Reflection", right), {Vec3(0.5f + y / 2.0f, 0.5f + x / 2.0f, 1), 1.5f * Vec3(2, 1, 0.5f), 9, 3});
+  expect_shown(shown_at(*render, "Diffuse", right), kNothingShown);
+  const Vec3 map_of_left(1.0f - 0.9f * (0.5f - 10.5f / kSide), 0.5f + 0.45f * (20.5f / kSide - 0.5f), 1);
+  const Shown wall{map_of_left, Vec3(0.375f), 4, 3};
+  expect_shown(shown_at(*render, "Diffuse", left), wall);
+  expect_shown(shown_at(*render, "Emission", left), wall);  // it shines
+  expect_shown(shown_at(*render, "Reflection", left), kNothingShown);
+  expect_shown(shown_at(*render, "Transmission", left), kNothingShown);
+  EXPECT_TRUE(render->frame()->components[0].rough[0].empty()) << "nobody asked for these";
+}
+
+// Of what is seen directly, the emission is the picture: a lamp before another one, and both before the world.
+TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
+  PathScene scene;
+  scene.world(Rgb(0.25f, 0.5f, 0.1f));
+  for (const float z : {0.0f, -1.0f}) {
+    const Mat4 towards_the_camera = test::translation(Vec3(0, 0, z)) * test::scaling(Vec3(1, -1, -1));
+    scene.light(test::make_light(GRADUS_LIGHT_RECTANGLE, towards_the_camera, Rgb(3.0f, 2.0f, 1.0f)));
+  }
+  scene.camera(Vec3(0, 0, 3), Vec3(0), 0.6f);
+  GradusSettings settings = details_settings();
+  settings.component_passes |= 1u << GRADUS_COMPONENT_COLOR;
+  const auto render = rendered(&scene, settings);
+  const std::vector<float> color = component(*render, "Emission"), emit = component(*render, "Emission", GRADUS_COMPONENT_EMIT);
+  for (size_t i = 0; i < color.size(); ++i) ASSERT_NEAR(emit[i], color[i], 1e-5f * color[i]) << i;
+  const float lit = color[3 * (20 * kSide + 20)], world = color[0];
+  EXPECT_NEAR(world, 0.375f, 1e-5f);
+  EXPECT_GT(lit, 2.0f * world);
+}
+
+// Glass reflects few of a pixel's samples, and the first of them is seldom the first of all.
+TEST(Components, IndicesAreThoseOfTheFirstSampleThatMetSomething) {
+  PathScene scene;
+  test::build(Scenario::Glass, &scene);
+  GradusSettings settings = details_settings();
+  const auto found = [&](uint32_t samples) {
+    settings.samples = samples;
+    return component(*rendered(&scene, settings), "Transmission", GRADUS_COMPONENT_FACE_INDEX);
+  };
+  const std::vector<float> one = found(1), eight = found(8);
+  size_t more = 0;
+  for (size_t i = 0; i < one.size(); ++i) {
+    ASSERT_TRUE(one[i] < 0.0f || one[i] == eight[i]);
+    more += one[i] < 0.0f && eight[i] >= 0.0f ? 1 : 0;
+  }
+  EXPECT_GT(more, 20u);
+}
+
+// Whichever comes first.
+TEST(Components, IndicesOfMergedFramesAreThoseOfTheWhole) {
+  PathScene scene;
+  test::build(Scenario::Glass, &scene);
+  GradusSettings settings = details_settings();
+  const auto details = [](const Frame& frame) { return frame.components[size_t(find_component(frame, "Transmission"))].details; };
+  const auto whole = details(*rendered(&scene, settings)->frame());
+  settings.samples = 4;
+  const auto early = rendered(&scene, settings)->frame();
+  settings.first_sample = 4;
+  const auto late = rendered(&scene, settings)->frame();
+  size_t others = 0;
+  for (const auto& [to, from] : {std::pair{early, late}, {late, early}}) {
+    Frame merged = *to;
+    merge_frames(&merged, *from);
+    const auto found = details(merged);
+    for (size_t i = 0; i < whole.size(); ++i) {
+      ASSERT_EQ(found[i].object, whole[i].object);
+      ASSERT_EQ(found[i].face, whole[i].face) << i;
+      ASSERT_EQ(found[i].sample, whole[i].sample) << i;
+      ASSERT_EQ(found[i].segments, whole[i].segments);
+      others += details(*late)[i].face != whole[i].face ? 1 : 0;
+    }
+  }
+  EXPECT_GT(others, 20u);
+}
+
 TEST(Components, AreKeptInFramesAndGoOnFromThere) {
   PathScene scene;
   test::build(Scenario::Glass, &scene);
@@ -215,15 +365,39 @@ TEST(Components, AreKeptInFramesAndGoOnFromThere) {
     const auto &rough = stored->components[c].rough[1], &kept = first->frame()->components[c].rough[1];
     ASSERT_EQ(rough.size(), kept.size());
     EXPECT_EQ(std::memcmp(rough.data(), kept.data(), rough.size() * sizeof(RoughVertices)), 0);
+    const auto &details = stored->components[c].details, &kept_details = first->frame()->components[c].details;
+    ASSERT_EQ(details.size(), kept_details.size());
+    EXPECT_EQ(std::memcmp(details.data(), kept_details.data(), details.size() * sizeof(RoughDetails)), 0);
   }
   settings.samples = 8;
   Render more(test::test_device(), scene.context(settings).snapshot, settings, stored);
   ASSERT_TRUE(more.wait(-1.0));
   EXPECT_EQ(combined(more), combined(*whole));
-  EXPECT_EQ(component(more, "Transmission"), component(*whole, "Transmission"));
+  for (const uint32_t pass : {GRADUS_COMPONENT_COLOR, GRADUS_COMPONENT_NORMAL, GRADUS_COMPONENT_FACE_INDEX, GRADUS_COMPONENT_EMIT}) {
+    EXPECT_EQ(component(more, "Transmission", pass), component(*whole, "Transmission", pass));
+  }
   // Not as other components.
   const GradusSettings others = settings_with("Direct=EDL");
   EXPECT_THROW(Render(test::test_device(), scene.context(others).snapshot, others, stored), Error);
+}
+
+// It would have passes of half of its samples.
+TEST(Components, DoNotGoOnFromFramesWithoutTheirSurfaces) {
+  PathScene scene;
+  test::build(Scenario::DiffuseArea, &scene);
+  for (const uint32_t pass : {GRADUS_COMPONENT_NORMAL, GRADUS_COMPONENT_UV}) {
+    GradusSettings settings = settings_with("");
+    settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
+    settings.samples = 4;
+    const auto first = rendered(&scene, settings)->frame();
+    settings.component_passes |= 1u << pass;
+    settings.samples = 8;
+    EXPECT_THROW(Render(test::test_device(), scene.context(settings).snapshot, settings, first), Error) << pass;
+    settings.samples = 4;
+    settings.first_sample = 4;
+    Frame merged = *first;
+    EXPECT_THROW(merge_frames(&merged, *rendered(&scene, settings)->frame()), Error) << pass;
+  }
 }
 
 TEST(Components, OfDifferentSetsAreNotMerged) {
@@ -320,7 +494,11 @@ TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
   GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
   const auto frame = rendered(Scenario::Glass, settings)->frame();
-  for (const ComponentPlanes& planes : frame->components) EXPECT_TRUE(planes.rough[0].empty());
+  for (const ComponentPlanes& planes : frame->components) EXPECT_TRUE(planes.rough[0].empty() && planes.details.empty());
+  settings.component_passes = 1u << GRADUS_COMPONENT_NORMAL;
+  const auto render = rendered(Scenario::Glass, settings);
+  for (const ComponentPlanes& planes : render->frame()->components) EXPECT_TRUE(!planes.rough[0].empty() && planes.details.empty());
+  EXPECT_THROW(component(*render, "Diffuse", GRADUS_COMPONENT_UV), Error);
 }
 
 // The picture is clamped, and so are its parts: by what there is too much of, nothing is added.

@@ -157,6 +157,7 @@ class TestScene {
     count_.push_back(1);
     materials_.push_back(material);
     terminators_.push_back(shadow_terminator_offset);
+    pass_indices_.push_back(pass_index);
     shutter_first_.push_back(uint32_t(shutter_matrices_.size()));
     shutter_count_.push_back(uint32_t(way.size()));
     for (const Mat4& m : way) shutter_matrices_.push_back(m * matrix);
@@ -170,6 +171,7 @@ class TestScene {
     for (auto* values : {&visibility_, &first_, &count_, &shutter_first_, &shutter_count_}) values->pop_back();
     matrices_.pop_back();
     terminators_.pop_back();
+    pass_indices_.pop_back();
   }
   std::shared_ptr<const Snapshot> commit() {
     GradusInstances instances{};
@@ -180,6 +182,7 @@ class TestScene {
     if (matrices_before.size() == matrices_.size()) instances.matrices_previous = &matrices_before[0][0][0];
     if (matrices_after.size() == matrices_.size()) instances.matrices_next = &matrices_after[0][0][0];
     instances.visibility = visibility_.data();
+    instances.pass_indices = pass_indices_.data();
     instances.material_first = first_.data();
     instances.material_count = count_.data();
     instances.materials = materials_.data();
@@ -198,10 +201,12 @@ class TestScene {
   std::vector<Mat4> matrices_before;      // one frame earlier, of all instances; of another number: at rest
   std::vector<Mat4> matrices_after;       // one frame later, likewise
   float shadow_terminator_offset = 0.0f;  // of the instances that follow
+  int32_t pass_index = 0;                 // likewise
   std::vector<Mat4> way;                  // theirs while the shutter is open, times their matrix; empty: at rest
 
  private:
   std::vector<float> terminators_;
+  std::vector<int32_t> pass_indices_;
   std::vector<uint32_t> shutter_first_, shutter_count_;
   std::vector<Mat4> shutter_matrices_;
   std::vector<uint64_t> meshes_, materials_;

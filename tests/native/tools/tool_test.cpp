@@ -308,6 +308,13 @@ TEST_F(Tool, WritesPassesOfComponents) {
   EXPECT_EQ(missing.code, 1);
   EXPECT_NE(missing.err.find("without motion; there are color, reflectance, irradiance, normal"), std::string::npos) << missing.err;
   EXPECT_EQ(run("reconstruct f.exr -o x.exr --component-passes light").code, 2);
+  EXPECT_NE(run("reconstruct f.exr -o x.exr --component-passes uv").err.find("without uv"), std::string::npos);
+  ASSERT_EQ(run("render good.gradus -o d.exr --use-decomposition 1 --component-passes object_index").code, 0);
+  ASSERT_EQ(run("reconstruct d.exr -o details.exr --component-passes all").code, 0);
+  const std::vector<std::string> layers = image_channels((folder / "details.exr").string());
+  for (const char* layer : {"Path Diffuse UV.G", "Path Diffuse Object Index.V", "Path Diffuse Face Index.V", "Path Diffuse Emit.B"})
+    EXPECT_NE(std::find(layers.begin(), layers.end(), layer), layers.end()) << layer;
+  EXPECT_EQ(std::find(layers.begin(), layers.end(), "Path Diffuse Normal.R"), layers.end()) << "nobody asked for its sampling";
   ASSERT_EQ(run("render good.gradus -o whole.exr").code, 0);
   const Outcome whole = run("reconstruct whole.exr -o x.exr --component-passes color");
   EXPECT_EQ(whole.code, 1);
@@ -456,7 +463,8 @@ TEST_F(ToolSequence, WritesPassesOfComponents) {
       const std::vector<float> combined = load_rgb(path, "").rgb;
       for (size_t i = 0; i < 24 * 16; ++i) ASSERT_NEAR(combined[3 * i], delivered[size_t(frame) - 1][4 * i], 1e-5f) << frame;
       const std::vector<std::string> names = image_channels(path);
-      for (const char* name : {"Path Diffuse Motion.R", "Path Diffuse Tracked.V", "Path Diffuse Irradiance Tracked.V"}) {
+      for (const char* name : {"Path Diffuse Motion.R", "Path Diffuse Tracked.V", "Path Diffuse Irradiance Tracked.V", "Path Diffuse UV.R",
+                               "Path Diffuse Face Index.V"}) {
         EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
       }
     }

@@ -69,7 +69,7 @@ class GradientIntegrator final : public Integrator {
   void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto worker = std::make_unique<Worker>(path_, frame, counters);
     for_each_sample(path_, unit, *frame, &worker->vertices, stop, [&](const PixelSample& s) {
-      worker->recorder.begin_sample(s.pixel, s.half, s.number == path_.settings.first_sample, unit.again);
+      worker->recorder.begin_sample(s.pixel, s.half, s.number, unit.again);
       const uint32_t wanted = unit_components(unit, s.pixel);
       if (!has_gradients(unit, s.pixel)) {
         worker->plain.want(wanted);

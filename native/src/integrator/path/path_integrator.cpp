@@ -18,7 +18,7 @@ class PathIntegrator final : public Integrator {
     PathTracer<NoObserver> tracer(path_, scratch.get(), &recorder, counters, &observer);
     const auto vertices = std::make_unique<CameraVertices>(path_);
     for_each_sample(path_, unit, *frame, vertices.get(), stop, [&](const PixelSample& s) {
-      recorder.begin_sample(s.pixel, s.half, s.number == path_.settings.first_sample, unit.again);
+      recorder.begin_sample(s.pixel, s.half, s.number, unit.again);
       tracer.want(unit_components(unit, s.pixel));
       add_primal(tracer.trace(s.sampler, s.film, s.first), s, unit, frame, counters);
     });

@@ -174,9 +174,10 @@ LoadPart Sequence::load_part(FramePart part, const std::vector<std::string>& com
 }
 
 void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
-  if (base->count[0].size() != offset.count[0].size() || base->channels != offset.channels || base->gradients != offset.gradients ||
-      base->passes.size() != offset.passes.size() || !same_components(*base, offset) ||
-      sampling_key(base->settings) != sampling_key(offset.settings)) {
+  const KeptOfComponents of_base = kept_of_components(*base), of_offset = kept_of_components(offset);
+  if (of_base.rough != of_offset.rough || of_base.details != of_offset.details || base->count[0].size() != offset.count[0].size() ||
+      base->channels != offset.channels || base->gradients != offset.gradients || base->passes.size() != offset.passes.size() ||
+      !same_components(*base, offset) || sampling_key(base->settings) != sampling_key(offset.settings)) {
     throw invalid_argument("stored frame " + folder_.path(number, FramePart::kBase) + " and its offset do not belong together");
   }
   add_sums(base, offset);

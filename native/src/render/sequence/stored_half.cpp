@@ -28,13 +28,20 @@ std::string region_text(const uint32_t* r) {
   return text;
 }
 
+bool lacks_surfaces(const KeptOfComponents& held, const GradusSettings& settings) {
+  if (settings.use_decomposition == 0) return false;
+  return (!held.rough && wants_any(settings.component_passes, is_of_rough_vertices)) ||
+         (!held.details && wants_any(settings.component_passes, is_of_rough_details));
+}
+
 // What makes a stored frame another one than is asked for; "" if it fits.
 std::string difference(const FrameHeader& stored, const GradusSettings& settings, uint64_t scene_key) {
   const GradusSettings& other = stored.settings;
   if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
   const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
   if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
-  if (wants_flow(settings) && !stored.shown) return "was sampled without the motion of components";
+  if (lacks_surfaces(stored.of_components, settings)) return "was sampled without the surfaces of components";
+  if (wants_flow(settings) && !stored.of_components.shown) return "was sampled without the motion of components";
   if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
   if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
   if (stored.scene_key != scene_key) return "shows another scene";

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/error.h"
 #include "frame/store.h"
 #include "render/sequence/sequence_fixture.h"
 #include "settings/options.h"
@@ -53,6 +54,35 @@ Pictures rendered(uint32_t reconstruction, const char* components, Scenario scen
     pictures.sums.push_back(std::move(sum));
   }
   return pictures;
+}
+
+// Half of a frame's samples replay those of the frame before; what their paths show is of this frame all the same.
+TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
+  const Folder folder;
+  const auto settings_with = [](int32_t frame, uint32_t pass) {
+    GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
+    settings.component_passes |= 1u << pass;
+    return settings;
+  };
+  for (const bool again : {false, true}) {  // from files alone
+    Pan pan(1.0f);
+    const auto sequence = make_sequence(0, 2, folder.path());
+    for (int32_t frame = 0; frame <= 2; ++frame) sample(sequence.get(), pan.at(frame), settings_with(frame, GRADUS_COMPONENT_FACE_INDEX));
+    const auto task = sequence->deliver(1, nullptr);
+    run(task.get());
+    const Frame& frame = *task->frame();
+    const auto& details = frame.components[size_t(find_component(frame, "Diffuse"))].details;
+    const size_t middle = size_t(kSide) * kSide / 2 + kSide / 2;
+    ASSERT_EQ(details.size(), size_t(kSide) * kSide);
+    EXPECT_EQ(details[middle].segments, float(samples_at(frame, middle)));
+    EXPECT_EQ(details[middle].segments, 8.0f);
+    std::vector<float> faces(kSide * kSide);
+    task->read_component("Diffuse", GRADUS_COMPONENT_FACE_INDEX, faces.data());
+    for (size_t i = 0; i < faces.size(); ++i) ASSERT_EQ(faces[i], details[i].face) << again;
+    EXPECT_GE(faces[middle], 0.0f);
+  }
+  Pan pan(1.0f);
+  EXPECT_THROW(sample(make_sequence(0, 2, folder.path()).get(), pan.at(0), settings_with(0, GRADUS_COMPONENT_NORMAL)), Error);
 }
 
 class SequenceComponents : public testing::TestWithParam<uint32_t> {};

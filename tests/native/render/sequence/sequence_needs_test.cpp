@@ -82,7 +82,7 @@ TEST(PlannedMemory, FlowHoldsTheFrameThatIsMadeAhead) {
   const auto planned = [&](bool with_flow) { return planned_bytes(plan, method, {}, 20, false, with_flow); };
   EXPECT_EQ(planned(true).memory, planned(false).memory) << "nobody asks for motion";
   plan.component_motion = true;
-  const uint64_t frame = frame_bytes_per_pixel(plan.components.count(), true, plan.passes, false, true, true) * 10000;
+  const uint64_t frame = frame_bytes_per_pixel(plan.components.count(), true, plan.passes, {.motion = true, .shown = true}) * 10000;
   EXPECT_GT(planned(true).memory, planned(false).memory + frame);
   EXPECT_GE(planned(true).kept, planned(false).kept + frame);
 }
