@@ -37,6 +37,17 @@ Region with_neighbours(const Region& band, const GradusSettings& settings) {
           std::min(band.y1 + 1, int32_t(settings.height))};
 }
 
+// By views. has_surfaces: the last one is view_surfaces(), whose motion is that of all that others show directly.
+std::vector<ChainMotion> track_views(const std::vector<ChainView>& views, bool has_surfaces, const ChainTracer& to, const Region& band,
+                                     const CancelTest& is_cancelled) {
+  std::vector<ChainMotion> motion(views.size());
+  if (has_surfaces) motion.back() = track_chains(views.back(), to, band, is_cancelled);
+  const KnownMotion surfaces{views.back(), motion.back()};
+  const size_t others = views.size() - (has_surfaces ? 1 : 0);
+  for (size_t k = 0; k < others; ++k) motion[k] = track_chains(views[k], to, band, is_cancelled, has_surfaces ? &surfaces : nullptr);
+  return motion;
+}
+
 // pixel: the first of the band.
 void join(const Camera& camera, const Region& band, const ChainMotion& previous, const ChainMotion& next, size_t pixel,
           ComponentMotion* joined) {
@@ -89,11 +100,13 @@ std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const Gr
     const Region band{region.x0, y, region.x1, std::min(y + kBand, region.y1)};
     const CentreView centres = view_centres(snapshot, settings.width, settings.height, with_neighbours(band, settings), is_cancelled);
     std::vector<ChainView> views = view_chains(centres, settings, components, wanted & ~residual, is_cancelled, &change);
-    if ((wanted & residual) != 0) views.push_back(view_surfaces(centres, settings, &change));
+    const bool has_surfaces = (wanted & residual) != 0;
+    if (has_surfaces) views.push_back(view_surfaces(centres, settings, &change));
+    const auto before = track_views(views, has_surfaces, previous.tracer, band, is_cancelled),
+               after = track_views(views, has_surfaces, next.tracer, band, is_cancelled);
     for (size_t k = 0; k < views.size(); ++k) {
       const size_t first = width * size_t(y - region.y0);
-      join(centres.camera, band, track_chains(views[k], previous.tracer, band, is_cancelled),
-           track_chains(views[k], next.tracer, band, is_cancelled), first, &motion[k]);
+      join(centres.camera, band, before[k], after[k], first, &motion[k]);
       tell_shown(views[k], band, &motion[k].shown[first]);
     }
     if (is_cancelled()) throw cancelled();

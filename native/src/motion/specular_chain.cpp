@@ -206,6 +206,13 @@ bool ChainTracer::follow(const Vec2& film, const ChainWay& way, SpecularChain* c
   return chain->way == way;
 }
 
+bool ChainTracer::meets(const SpecularChain& chain, float distance) const {
+  constexpr float kRounding = 1e-4f;  // of what finish() tells for hits behind transparent surfaces
+  Ray ray = chain.ray.ray;
+  ray.t_max = std::min(ray.t_max, distance * (1.0f + kRounding));
+  return snapshot_.meets(ray, chain.ray.visibility);
+}
+
 bool ChainTracer::finish(const SpecularChain& chain, Hit* hit) const {
   PathRay ray = chain.ray;
   thread_local Arrival arrival;

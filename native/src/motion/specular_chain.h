@@ -50,6 +50,8 @@ class ChainTracer {
                 std::array<SpecularChain, kMostComponents>* chains) const;
   // Goes a way from another place of the film, up to its last ray, which is not traced. False: the way breaks.
   bool follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const;
+  // Whether its last ray may meet something within about that distance, transparent or not: cheaper than to ask what.
+  bool meets(const SpecularChain& chain, float distance) const;
   // What its last ray meets; t: from where that ray begins. False: it ends in the sky.
   bool finish(const SpecularChain& chain, Hit* hit) const;
 

@@ -19,6 +19,9 @@ namespace {
 constexpr int32_t kTile = 16;
 // Of the distance: what is no nearer than this before a target may be its own surface.
 constexpr float kOwnSurface = 1e-3f;
+
+size_t pixel_of(const Region& part, int32_t x, int32_t y) { return size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0); }
+
 struct Track {
   Tracking tracking = Tracking::NoPath;
   Vec2 film{0.0f};
@@ -27,8 +30,9 @@ struct Track {
 
 class Tracker {
  public:
-  Tracker(const ChainView& from, const ChainTracer& to)
-      : from_(from), here_(from.tracer()), to_(to), motion_(here_.snapshot(), to.snapshot()) {}
+  // known: of the part.
+  Tracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known)
+      : from_(from), here_(from.tracer()), to_(to), motion_(here_.snapshot(), to.snapshot()), part_(part), known_(known) {}
 
   // before: a neighbour's, or nullptr.
   Track track(int32_t x, int32_t y, const Track* before, TrackingCounts* counts) const {
@@ -38,6 +42,12 @@ class Tracker {
     if (result.chain == nullptr) return result;
     if (result.chain->rests) {
       result.tracking = Tracking::Tracked;
+      return result;
+    }
+    if (is_known(*result.chain, x, y)) {
+      const size_t pixel = pixel_of(part_, x, y);
+      result.film = known_->motion.film[pixel];
+      result.tracking = known_->motion.tracking[pixel];
       return result;
     }
     Target target;
@@ -68,6 +78,13 @@ class Tracker {
     return {in_sky ? chain.ray.ray.direction : chain.shown, in_sky};
   }
 
+  // Seen directly, as by the view whose motion is known.
+  bool is_known(const SpecularChain& chain, int32_t x, int32_t y) const {
+    if (known_ == nullptr || chain.way.length > 0) return false;
+    const SpecularChain* other = known_->view.at(x, y);
+    return other != nullptr && other->way.length == 0 && other->end == chain.end && other->last == chain.last;
+  }
+
   // What is seen directly.
   void straight(const Target& target, Track* track) const {
     // What is at infinity looks the same all over an orthographic film: it rests.
@@ -80,11 +97,10 @@ class Tracker {
   }
 
   bool is_occluded(const Target& target, const SpecularChain& chain) const {
+    const float distance =
+        target.in_sky ? kInfinity : glm::dot(target.place - chain.ray.ray.origin, chain.ray.ray.direction) * (1.0f - kOwnSurface);
     Hit hit;
-    if (!to_.finish(chain, &hit)) return false;
-    if (target.in_sky) return true;
-    const float distance = glm::dot(target.place - chain.ray.ray.origin, chain.ray.ray.direction);
-    return hit.t < distance * (1.0f - kOwnSurface);
+    return to_.meets(chain, distance) && to_.finish(chain, &hit) && hit.t < distance;
   }
 
   // In one step of time from guesses in turn, then in smaller ones.
@@ -138,6 +154,8 @@ class Tracker {
   ChainTracer here_;
   const ChainTracer& to_;
   SnapshotMotion motion_;
+  const Region& part_;
+  const KnownMotion* known_;
 };
 
 }  // namespace
@@ -163,7 +181,7 @@ class Tile {
       Track& own = below_[size_t(x - x0_)];
       const Track guess = neighbour(x);
       own = tracker_.track(x, y, &guess, &counts_);
-      const size_t pixel = size_t(y - part_.y0) * size_t(part_.width()) + size_t(x - part_.x0);
+      const size_t pixel = pixel_of(part_, x, y);
       motion_.film[pixel] = own.film;
       motion_.tracking[pixel] = own.tracking;
       ++counts_.pixels[own.tracking == Tracking::Tracked ? 0 : size_t(-int(own.tracking))];
@@ -190,7 +208,8 @@ class Tile {
 
 }  // namespace
 
-ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled) {
+ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled,
+                         const KnownMotion* known) {
   const auto width = size_t(part.width()), pixels = size_t(part.area());
   ChainMotion motion{std::vector<Vec2>(pixels), std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
   for (size_t i = 0; i < pixels; ++i) motion.film[i] = pixel_centre(part.x0 + int32_t(i % width), part.y0 + int32_t(i / width));
@@ -199,7 +218,7 @@ ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Reg
     motion.counts.pixels[size_t(-int(Tracking::Cut))] = pixels;
     return motion;
   }
-  const Tracker tracker(from, to);
+  const Tracker tracker(from, to, part, known);
   tbb::enumerable_thread_specific<TrackingCounts> counts;
   const auto tiles = [](int32_t length) { return (length + kTile - 1) / kTile; };
   tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(part.height()), 1, 0, tiles(part.width()), 1), [&](const auto& range) {

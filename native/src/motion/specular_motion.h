@@ -25,9 +25,15 @@ struct ChainMotion {
   std::vector<Tracking> tracking;
   TrackingCounts counts;
 };
+// Of a view, from the same part of it to the same frame: what others show directly, as it does, need not be looked for again.
+struct KnownMotion {
+  const ChainView& view;
+  const ChainMotion& motion;
+};
 // Of a part of the view `from` in the frame that `to` sees, which may be at another time or by another camera. Cancelled: pixels are
-// NotConverged.
+// NotConverged. known: nullptr: none.
 ChainMotion track_chains(
-    const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled = [] { return false; });
+    const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled = [] { return false; },
+    const KnownMotion* known = nullptr);
 
 }  // namespace gradus

@@ -13,6 +13,7 @@ struct Hit {
   Vec2 barycentric = Vec2(0.0f);  // weights of the 2nd and 3rd corner
   float time = 0.0f;              // of the ray
   bool valid() const { return instance != UINT32_MAX; }
+  bool operator==(const Hit&) const = default;
 };
 
 // Geometry of a hit, in the snapshot's internal space. The position comes from barycentrics, not from origin + t·direction.
