@@ -6,12 +6,6 @@
 
 namespace gradus {
 
-const SpecularChain* ChainView::at(int32_t x, int32_t y) const {
-  if (!region().contains(x, y)) return nullptr;
-  const int32_t place = places[size_t(y - region().y0) * size_t(region().width()) + size_t(x - region().x0)];
-  return place < 0 ? nullptr : &chains[size_t(place)];
-}
-
 namespace {
 
 using Row = std::vector<SpecularChain>;

@@ -17,7 +17,11 @@ struct ChainView {
 
   const Region& region() const { return centres->region; }
   // nullptr: there is none, or the pixel is outside of the region.
-  const SpecularChain* at(int32_t x, int32_t y) const;
+  const SpecularChain* at(int32_t x, int32_t y) const {
+    if (!region().contains(x, y)) return nullptr;
+    const int32_t place = places[size_t(y - region().y0) * size_t(region().width()) + size_t(x - region().x0)];
+    return place < 0 ? nullptr : &chains[size_t(place)];
+  }
   ChainTracer tracer() const { return {*centres->snapshot, centres->camera, *settings}; }
 };
 // Of the components whose bits are set in `wanted`, in order. All that is given lives as long as the views. Cancelled: chains are missing.
