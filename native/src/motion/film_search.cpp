@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/turn.h"
 
@@ -23,6 +24,8 @@ constexpr float kRoughness = 2e-5f;  // likewise: of normals that are difference
 constexpr float kNear = 0.25f;
 // Pixels: over longer ways the Jacobian is found anew, not carried along.
 constexpr float kFar = 1.0f;
+// Pixels: steps from two places that lead so near to each other are believed to lead to the target.
+constexpr float kSame = 0.01f;
 
 bool newton_step(const glm::mat2& jacobian, const Vec2& miss, Vec2* step) {
   const float lengths = glm::length(jacobian[0]) * glm::length(jacobian[1]);
@@ -56,7 +59,8 @@ struct FilmSearch::State {
   SpecularChain chain;
   Vec2 miss;
   glm::mat2 jacobian;
-  bool fresh = false;  // the Jacobian is of this very place
+  bool fresh = false;             // the Jacobian is of this very place
+  Vec2 beyond = Vec2(kInfinity);  // where a whole step led last at which the way broke
 };
 
 Target FilmSearch::target(float time) const {
@@ -116,7 +120,10 @@ SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
     const Vec2 film = state->film + share * step;
     SpecularChain chain;
     Vec2 by, left;
-    if (!miss(state->time, aim, film, &chain, &by)) continue;
+    if (!miss(state->time, aim, film, &chain, &by)) {
+      if (i == 0 && state->fresh && glm::length(film - std::exchange(state->beyond, film)) < kSame) return SearchEnd::Ended;
+      continue;
+    }
     end = SearchEnd::Stuck;
     if (!newton_step(state->jacobian, by, &left) || !(glm::length(left) < before - 0.25f * share * length)) continue;
     // Broyden's update.

@@ -35,6 +35,7 @@ struct SearchCounts {
 enum class SearchEnd : uint8_t {
   Found,
   Broken,  // the way does not exist where it was looked for
+  Ended,   // nor does it where, by all that is known, the target would be seen: beyond an edge
   Stuck,
   Turned,  // a place was found, but between it and the start the picture may fold: it may be another image of the same thing
 };

@@ -116,17 +116,18 @@ class Tracker {
     FilmPlace start{centre, chain, chain_jacobian(from_, own, x, y)}, found;
     track->tracking = Tracking::Broken;
     if (!newton.complete(&start)) return;
+    // False: nothing else is to be tried. The first cause stays.
     const auto attempt = [&](SearchEnd end) {
-      const Tracking tracking = judge(end, target, found);
-      if (track->tracking == Tracking::Tracked || (track->tracking != Tracking::Broken && tracking != Tracking::Tracked)) return;
-      track->tracking = tracking;
-      if (tracking != Tracking::Tracked) return;
-      track->film = found.film;
+      const bool is_first = track->tracking == Tracking::Broken, is_found = end == SearchEnd::Found;
+      if (is_first || is_found) track->tracking = judge(end, target, found);
+      if (is_found) track->film = found.film;
+      return !is_found && !(is_first && end == SearchEnd::Ended);
     };
     const bool follows = before != nullptr && before->tracking == Tracking::Tracked && before->chain->way == chain.way;
-    if (follows) attempt(newton.leap(start, before->film, &found));
-    if (track->tracking != Tracking::Tracked && is_there) attempt(newton.leap(start, first, &found));
-    if (track->tracking != Tracking::Tracked) attempt(newton.march(start, &found));
+    // What a neighbour's motion leads to may be another image, whose way ends elsewhere.
+    bool is_open = !follows || attempt(newton.leap(start, before->film, &found)) || track->tracking == Tracking::Broken;
+    if (is_open && is_there) is_open = attempt(newton.leap(start, first, &found));
+    if (is_open) attempt(newton.march(start, &found));
     if (track->tracking != Tracking::Tracked) return;
     counts->search.traced += searched.traced;
     counts->search.space += searched.space;
@@ -144,7 +145,7 @@ class Tracker {
   }
 
   Tracking judge(SearchEnd end, const Target& target, const FilmPlace& place) const {
-    if (end == SearchEnd::Broken) return Tracking::Broken;
+    if (end == SearchEnd::Broken || end == SearchEnd::Ended) return Tracking::Broken;
     if (end == SearchEnd::Stuck) return Tracking::NotConverged;
     if (end == SearchEnd::Turned) return Tracking::Elsewhere;
     return is_occluded(target, place.chain) ? Tracking::Occluded : Tracking::Tracked;

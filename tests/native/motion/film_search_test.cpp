@@ -1,0 +1,45 @@
+// The search itself: how it ends, and what it costs.
+#include "motion/film_search.h"
+
+#include "motion/chain_jacobian.h"
+#include "motion/motion_scene.h"
+
+namespace gradus::test {
+namespace {
+
+class FilmSearchTest : public MotionTest {
+ protected:
+  // From where the pixel is to where what it shows has gone; the mirror rests.
+  SearchEnd leap(const MotionFrame& from, const MotionFrame& to, int32_t x, int32_t y, SearchCounts* counts) {
+    const SpecularChain* chain = from.chains.at(x, y);
+    EXPECT_NE(chain, nullptr);
+    const ChainTracer before = from.chains.tracer(), after = to.chains.tracer();
+    Target target;
+    EXPECT_TRUE(true_target(before, after, *chain, &target));
+    const Target own{chain->shown, false};
+    const FilmSearch::Problem problem{before, after, chain->way, own, target, Vec2(0.0f)};
+    FilmPlace place, start{Vec2(float(x) + 0.5f, float(y) + 0.5f), *chain, chain_jacobian(from.chains, own, x, y)};
+    return FilmSearch(problem, counts).leap(start, start.film, &place);
+  }
+};
+
+// A wall that slides sideways takes its image out of the mirror: that is seen at once, not by creeping up to the mirror's edge.
+TEST_F(FilmSearchTest, EndsWhereTheImageLeavesItsMirror) {
+  scene_.quad(Vec3(-1, -1, 2), Vec3(2, 0, 0), Vec3(0, 0, -4), mirror());
+  scene_.quad(Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 3, 0), grey());
+  scene_.camera(Vec3(0, 1.0f, 4), Vec3(0, -0.5f, 0), 1.0f);
+  const MotionFrame* a = frame("Reflection");
+  scene_.scene.move(1, translation(Vec3(0.3f, 0, 0)));
+  const MotionFrame* b = frame("Reflection");
+  constexpr int32_t kRow = 20;
+  int32_t last = kSize - 1;
+  while (last > 0 && a->chains.at(last, kRow) == nullptr) --last;
+  ASSERT_GT(last, kSize / 2);
+  SearchCounts inside, leaving;
+  EXPECT_EQ(leap(*a, *b, kSize / 2, kRow, &inside), SearchEnd::Found);
+  EXPECT_EQ(leap(*a, *b, last - 1, kRow, &leaving), SearchEnd::Ended);
+  EXPECT_LT(leaving.traced, 20u);
+}
+
+}  // namespace
+}  // namespace gradus::test
