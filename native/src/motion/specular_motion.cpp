@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -28,32 +29,33 @@ struct Track {
   const SpecularChain* chain = nullptr;  // in the first frame
 };
 
+// Of a pixel, those that were tracked before it; nullptr: not of the tile.
+struct Neighbours {
+  const Track *left, *below, *corner;
+};
+
 class Tracker {
  public:
   // known: of the part.
   Tracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known)
       : from_(from), here_(from.tracer()), to_(to), motion_(here_.snapshot(), to.snapshot()), part_(part), known_(known) {}
 
-  // before: a neighbour's, or nullptr.
-  Track track(int32_t x, int32_t y, const Track* before, TrackingCounts* counts) const {
-    Track result;
-    result.film = pixel_centre(x, y);
-    result.chain = from_.at(x, y);
-    if (result.chain == nullptr) return result;
-    if (result.chain->rests) {
-      result.tracking = Tracking::Tracked;
-      return result;
-    }
-    if (is_known(*result.chain, x, y)) {
+  // In the first frame; nullptr: there is none.
+  const SpecularChain* chain(int32_t x, int32_t y) const { return from_.at(x, y); }
+
+  Track track(int32_t x, int32_t y, const SpecularChain& chain, const Neighbours& before, TrackingCounts* counts) const {
+    Track result{Tracking::Tracked, pixel_centre(x, y), &chain};
+    if (chain.rests) return result;
+    if (is_known(chain, x, y)) {
       const size_t pixel = pixel_of(part_, x, y);
       result.film = known_->motion.film[pixel];
       result.tracking = known_->motion.tracking[pixel];
       return result;
     }
     Target target;
-    if (!find_target(*result.chain, &target)) {
+    if (!find_target(chain, &target)) {
       result.tracking = Tracking::Gone;
-    } else if (result.chain->way.length == 0) {
+    } else if (chain.way.length == 0) {
       straight(target, &result);
     } else {
       search(target, x, y, before, &result, counts);
@@ -104,7 +106,7 @@ class Tracker {
   }
 
   // In one step of time from guesses in turn, then in smaller ones.
-  void search(const Target& target, int32_t x, int32_t y, const Track* before, Track* track, TrackingCounts* counts) const {
+  void search(const Target& target, int32_t x, int32_t y, const Neighbours& before, Track* track, TrackingCounts* counts) const {
     const SpecularChain& chain = *track->chain;
     const Vec2 centre = pixel_centre(x, y);
     const Target own = own_target(chain);
@@ -123,9 +125,9 @@ class Tracker {
       if (is_found) track->film = found.film;
       return !is_found && !(is_first && end == SearchEnd::Ended);
     };
-    const bool follows = before != nullptr && before->tracking == Tracking::Tracked && before->chain->way == chain.way;
-    // What a neighbour's motion leads to may be another image, whose way ends elsewhere.
-    bool is_open = !follows || attempt(newton.leap(start, before->film, &found)) || track->tracking == Tracking::Broken;
+    const std::optional<Vec2> guess = guess_by(before, chain.way);
+    // What the neighbours' motion leads to may be another image, whose way ends elsewhere.
+    bool is_open = !guess || attempt(newton.leap(start, *guess, &found)) || track->tracking == Tracking::Broken;
     if (is_open && is_there) is_open = attempt(newton.leap(start, first, &found));
     if (is_open) attempt(newton.march(start, &found));
     if (track->tracking != Tracking::Tracked) return;
@@ -133,6 +135,18 @@ class Tracker {
     counts->search.space += searched.space;
     counts->search.time += searched.time;
     ++counts->searched;
+  }
+
+  // Where the motion of the neighbours that go the same way leads a pixel: as it changes along the film, or as that of one of them.
+  std::optional<Vec2> guess_by(const Neighbours& before, const ChainWay& way) const {
+    const auto leads = [&](const Track* track) {
+      return track != nullptr && track->tracking == Tracking::Tracked && track->chain->way == way;
+    };
+    const bool beside = leads(before.left), under = leads(before.below);
+    if (beside && under && leads(before.corner)) return before.left->film + to_.camera().way(before.corner->film, before.below->film);
+    if (beside) return before.left->film + Vec2(1, 0);
+    if (under) return before.below->film + Vec2(0, 1);
+    return std::nullopt;
   }
 
   // Where the point of the first smooth surface is in the other frame; to the bit where it was, if it rests.
@@ -178,25 +192,22 @@ class Tile {
       : tracker_(tracker), part_(part), x0_(x0), x1_(std::min(x0 + kTile, part.x1)), motion_(*motion), counts_(*counts) {}
 
   void track_row(int32_t y) {
-    for (int32_t x = x0_; x < x1_; ++x) {
-      Track& own = below_[size_t(x - x0_)];
-      const Track guess = neighbour(x);
-      own = tracker_.track(x, y, &guess, &counts_);
-      const size_t pixel = pixel_of(part_, x, y);
-      motion_.film[pixel] = own.film;
+    std::swap(row_, below_);
+    size_t pixel = pixel_of(part_, x0_, y);
+    for (int32_t x = x0_; x < x1_; ++x, ++pixel) {
+      Track& own = row_[size_t(x - x0_)];
+      const SpecularChain* chain = tracker_.chain(x, y);
+      own = chain != nullptr ? tracker_.track(x, y, *chain, neighbours(size_t(x - x0_)), &counts_) : Track{};
+      if (chain != nullptr) motion_.film[pixel] = own.film;
       motion_.tracking[pixel] = own.tracking;
       ++counts_.pixels[own.tracking == Tracking::Tracked ? 0 : size_t(-int(own.tracking))];
     }
   }
 
  private:
-  // Where the motion of the pixel to the left, or of that below, leads this one.
-  Track neighbour(int32_t x) const {
-    const size_t i = size_t(x - x0_);
-    const bool beside = i > 0 && below_[i - 1].tracking == Tracking::Tracked;
-    Track guess = below_[beside ? i - 1 : i];
-    guess.film += beside ? Vec2(1, 0) : Vec2(0, 1);
-    return guess;
+  Neighbours neighbours(size_t i) const {
+    const bool first = i == 0;
+    return {first ? nullptr : &row_[i - 1], &below_[i], first ? nullptr : &below_[i - 1]};
   }
 
   const Tracker& tracker_;
@@ -204,16 +215,18 @@ class Tile {
   int32_t x0_, x1_;
   ChainMotion& motion_;
   TrackingCounts& counts_;
-  std::array<Track, kTile> below_;
+  std::array<Track, kTile> row_, below_;
 };
 
 }  // namespace
 
 ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled,
                          const KnownMotion* known) {
-  const auto width = size_t(part.width()), pixels = size_t(part.area());
-  ChainMotion motion{std::vector<Vec2>(pixels), std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
-  for (size_t i = 0; i < pixels; ++i) motion.film[i] = pixel_centre(part.x0 + int32_t(i % width), part.y0 + int32_t(i / width));
+  const auto pixels = size_t(part.area());
+  ChainMotion motion{{}, std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
+  motion.film.reserve(pixels);
+  for (int32_t y = part.y0; y < part.y1; ++y)
+    for (int32_t x = part.x0; x < part.x1; ++x) motion.film.push_back(pixel_centre(x, y));
   if (is_cut(from.centres->snapshot->camera, to.snapshot().camera)) {
     std::fill(motion.tracking.begin(), motion.tracking.end(), Tracking::Cut);
     motion.counts.pixels[size_t(-int(Tracking::Cut))] = pixels;
