@@ -116,8 +116,8 @@ def test_more_frames_end_where_the_motion_does() -> None:
 
 
 def test_an_animation_that_is_too_short_is_left_out(capsys: pytest.CaptureFixture[str]) -> None:
-    assert [animation.frames for animation in animation_scenes.select("animated", 24)] == [(1, 24)]
-    assert not animation_scenes.select("animated", 30)
+    assert [animation.frames for animation in animation_scenes.select(animation_scenes.ANIMATIONS, "animated", 24)] == [(1, 24)]
+    assert not animation_scenes.select(animation_scenes.ANIMATIONS, "animated", 30)
     assert "SKIP animated: it has 24 frames" in capsys.readouterr().out
 
 

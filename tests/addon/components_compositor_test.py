@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
-import bpy
 import numpy as np
 import pytest
-from support import images
+from support import compositing, images
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_blends" / "components.blend"
 COMPOSITE, COMBINED = "Composite.Combined", "ViewLayer.Combined"
@@ -20,25 +20,13 @@ WARM = np.array((1.6, 0.9, 0.5), np.float32)
 @pytest.fixture(scope="module")
 def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Passes]:
     """render("Grade"): all passes of the sample and its composite, with these nodes muted."""
-    done: dict[tuple[str, ...], images.Passes] = {}
 
+    @cache
     def passes(*muted: str) -> images.Passes:
-        if muted not in done:
-            bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
-            scene = bpy.context.scene
-            assert (scene.render.engine, scene.render.use_compositing) == ("GRADUS", True)
-            scene.render.resolution_percentage = 50
-            for name in muted:
-                tree(scene).nodes[name].mute = True
-            done[muted] = images.render(scene, tmp_path_factory.mktemp("composite"), frame=12, samples=4, noise_threshold=0.0)
-        return done[muted]
+        folder = tmp_path_factory.mktemp("composite")
+        return compositing.render_muted(SAMPLE, folder, muted, percentage=50, frame=12, samples=4)
 
     return passes
-
-
-def tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
-    """Since 5.0 a group that scenes may share."""
-    return getattr(scene, "compositing_node_group", None) or scene.node_tree
 
 
 def rgb(passes: images.Passes, name: str) -> np.ndarray:

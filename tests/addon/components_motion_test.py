@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from gradus import store
-from support import images
+from support import compositing, images
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_blends"
 NAMES = ("Emission", "Diffuse", "Reflection", "Transmission", "Residual")
@@ -106,14 +106,8 @@ def test_components_tell_their_motion_under_motion_blur(sample: bpy.types.Scene,
 
 def composite(folder: Path, blurred: str) -> images.Passes:
     """The sample of the compositor with one component blurred, and none graded."""
-    bpy.ops.wm.open_mainfile(filepath=str(SAMPLES / "components.blend"))
-    scene = bpy.context.scene
-    scene.render.resolution_percentage = 50
-    tree = getattr(scene, "compositing_node_group", None) or scene.node_tree
-    tree.nodes["Grade"].mute = True
-    for name in NAMES:
-        tree.nodes[f"Blur {name}"].mute = name != blurred
-    return images.render(scene, folder, frame=18, samples=4, noise_threshold=0.0)
+    muted = ("Grade", *(f"Blur {name}" for name in NAMES if name != blurred))
+    return compositing.render_muted(SAMPLES / "components.blend", folder, muted, percentage=50, frame=18, samples=4)
 
 
 @pytest.mark.parametrize("name", ["Diffuse", "Reflection", "Transmission"])

@@ -11,6 +11,7 @@ from gradus import components, native, passes, renderer, ui
 from gradus.failure import Failure
 from gradus.options import parse
 from gradus.ui import decomposition_panels
+from support import compositing
 
 SETS = (
     "",
@@ -106,22 +107,13 @@ def test_path_passes_are_there_whenever_the_picture_is_decomposed(scene: bpy.typ
 
 
 def sockets(scene: bpy.types.Scene) -> list[str]:
-    tree = getattr(scene, "compositing_node_group", None) or scene.node_tree
-    node = next(node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers")
+    node = next(node for node in compositing.tree_of(scene).nodes if node.bl_idname == "CompositorNodeRLayers")
     return [output.name for output in node.outputs if output.enabled]
-
-
-def make_compositor(scene: bpy.types.Scene) -> None:
-    if hasattr(scene, "compositing_node_group"):
-        scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
-        scene.compositing_node_group.nodes.new("CompositorNodeRLayers")
-    else:
-        scene.use_nodes = True
 
 
 def test_sockets_come_and_go_with_the_settings(scene: bpy.types.Scene) -> None:
     """In 3.4 the compositor showed no socket until something else made it look for passes."""
-    make_compositor(scene)
+    compositing.new_tree(scene)
     assert not any(name.startswith("Path") for name in sockets(scene))
     scene.gradus.use_decomposition = True
     scene.gradus.components = "Sky=EL;Far_away=ERR.*L"
@@ -136,7 +128,7 @@ def test_sockets_come_and_go_with_the_settings(scene: bpy.types.Scene) -> None:
 
 
 def test_sockets_of_the_longest_names_are_whole(scene: bpy.types.Scene) -> None:
-    make_compositor(scene)
+    compositing.new_tree(scene)
     layer = scene.view_layers[0].gradus
     layer.use_pass_component_reflectance = layer.use_pass_component_irradiance = True
     name = "Twenty_four_letters_long"

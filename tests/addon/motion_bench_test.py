@@ -159,7 +159,7 @@ def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.M
     loaded, quiet = flicker_row("windows-l2", 1.0, loaded=True, frame=0), flicker_row("windows-l2", 2.0, frame=0)
     assert [row[5] for row in tables(tmp_path, monkeypatch, loaded, quiet)[-1].rows] == ["2.0000"]
     monkeypatch.setattr(motion, "RESULTS", tmp_path / "motion.jsonl")
-    (animation,) = motion.select("mirror_and_glass", 6)
+    (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 6)
     for row, done in ((loaded, 0), (quiet, 1)):
         motion.RESULTS.write_text(json.dumps(row) + "\n")
         assert len(motion.done_jobs(animation, variants.Variant((320, 180), 6), "new", loaded=False)) == done
@@ -204,7 +204,7 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     for module in (pictures, report):
         monkeypatch.setattr(module, "FOLDER", tmp_path)
     monkeypatch.setattr(motion, "CHECKED", 8)
-    (animation,) = motion.select("mirror_and_glass", 2)
+    (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 2)
     arguments = SimpleNamespace(
         parts=list(motion.PARTS), size=(64, 36), frames=2, blur=False, seeds=1, reference=8, light=8, samples=[2], loaded=False,
         modes=["frames-l2", "windows-l2", "windows-parts-l2"],

@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
 import bpy
+
+from support import images
+
+
+def tree_of(scene: bpy.types.Scene) -> bpy.types.NodeTree:
+    """Since 5.0 a group that scenes may share."""
+    return getattr(scene, "compositing_node_group", None) or scene.node_tree
 
 
 def new_tree(scene: bpy.types.Scene) -> tuple[bpy.types.NodeTree, bpy.types.Node, bpy.types.NodeSocket]:
@@ -17,3 +28,14 @@ def new_tree(scene: bpy.types.Scene) -> tuple[bpy.types.NodeTree, bpy.types.Node
         tree.nodes.clear()
         output = tree.nodes.new("CompositorNodeComposite")
     return tree, tree.nodes.new("CompositorNodeRLayers"), output.inputs[0]
+
+
+def render_muted(sample: Path, folder: Path, muted: Iterable[str], *, percentage: int, **settings: Any) -> images.Passes:
+    """All passes of a sample that has a compositor, and its composite, with these nodes muted."""
+    bpy.ops.wm.open_mainfile(filepath=str(sample))
+    scene = bpy.context.scene
+    assert (scene.render.engine, scene.render.use_compositing) == ("GRADUS", True)
+    scene.render.resolution_percentage = percentage
+    for name in muted:
+        tree_of(scene).nodes[name].mute = True
+    return images.render(scene, folder, noise_threshold=0.0, **settings)

@@ -21,7 +21,7 @@ import temporal_metrics
 from animation_modes import MODES, REFERENCES
 from animation_references import Reference, reference, vectors
 from animation_renderer import AnimationRenderer
-from animation_scenes import Animation, select
+from animation_scenes import ANIMATIONS, Animation, select
 from animation_variants import SHUTTER, USUAL, Variant, of_row
 from bench import append, bench_each, powers_of_two
 from results import FOLDER
@@ -144,7 +144,7 @@ def main() -> None:
     parser.add_argument("--samples", type=powers_of_two, default=[4, 16, 64])
     parser.add_argument("--modes", type=names, default=list(MODES))
     arguments = parser.parse_args()
-    bench_each(select(arguments.scenes, arguments.frames), bench_animation, arguments)
+    bench_each(select(ANIMATIONS, arguments.scenes, arguments.frames), bench_animation, arguments)
 
 
 if __name__ == "__main__":

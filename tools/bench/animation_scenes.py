@@ -67,10 +67,10 @@ ANIMATIONS = [
 ]
 
 
-def select(names: str, length: int) -> list[Animation]:
-    """Animations by name ('a,b'), all for '', of so many frames. Missing files, and those too short, are named on standard output."""
-    scenes = chosen([animation.scene for animation in ANIMATIONS], names)
-    found = [animation for animation in ANIMATIONS if animation.scene in scenes]
+def select(animations: list[Animation], names: str, length: int) -> list[Animation]:
+    """Those by name ('a,b'), all for '', of so many frames. Missing files, and those too short, are named on standard output."""
+    scenes = chosen([animation.scene for animation in animations], names)
+    found = [animation for animation in animations if animation.scene in scenes]
     for animation in found:
         if animation.until < length:
             print(f"SKIP {animation.name}: it has {animation.until} frames")

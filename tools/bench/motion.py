@@ -20,12 +20,12 @@ import motion_pictures
 import numpy as np
 from animation import several, size
 from animation_references import file_of, reference
-from animation_scenes import Animation
+from animation_scenes import Animation, select
 from animation_variants import SHUTTER, Variant, of_row
 from bench import append, bench_each, powers_of_two
 from motion_modes import FLICKER, MODES
 from motion_renderer import MotionRenderer
-from motion_scenes import select
+from motion_scenes import ANIMATIONS
 from results import FOLDER
 from version import cpu_name
 
@@ -180,7 +180,7 @@ def main() -> None:
     parser.add_argument("--samples", type=powers_of_two, default=[4, 16])
     parser.add_argument("--modes", type=lambda text: _chosen(FLICKER, text), default=list(FLICKER))
     arguments = parser.parse_args()
-    bench_each(select(arguments.scenes, arguments.frames), bench_motion, arguments)
+    bench_each(select(ANIMATIONS, arguments.scenes, arguments.frames), bench_motion, arguments)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from animation_scenes import Animation
-from scenes import MADE, REAL, SAMPLES, Scene, chosen
+from scenes import MADE, REAL, SAMPLES, Scene
 
 MAKER = "parting_ways.py"
 ANIMATIONS = [
@@ -41,8 +41,3 @@ ANIMATIONS = [
         "a dancing robot and its reflections in mirror and floor; the camera",
     ),
 ]
-
-
-def select(names: str, length: int) -> list[Animation]:
-    scenes = chosen([animation.scene for animation in ANIMATIONS], names)
-    return [animation.lasting(length) for animation in ANIMATIONS if animation.scene in scenes]

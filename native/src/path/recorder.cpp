@@ -219,27 +219,22 @@ void PassRecorder::mist(const Rgb& weight, const Vec3& position, float time) {
   add(GRADUS_PASS_MIST, 1.0f - mean_component(weight) * (1.0f - value));
 }
 
-void PassRecorder::motion(const Vertex& vertex) {
-  const Camera& camera = context_.camera;
-  Vec2 now;
-  Vec2 previous;
-  Vec2 next;
-  if (camera.project(context_.scene.position_at(vertex.point.hit, Moment::Now), Moment::Now, &now) &&
-      camera.project(context_.scene.position_at(vertex.point.hit, Moment::Previous), Moment::Previous, &previous) &&
-      camera.project(context_.scene.position_at(vertex.point.hit, Moment::Next), Moment::Next, &next)) {
-    add(GRADUS_PASS_VECTOR, Vec4(camera.way(now, previous), camera.way(next, now)));
+template <class Project>
+void PassRecorder::add_motion(const Project& project) {
+  Vec2 now, previous, next;
+  if (project(Moment::Now, &now) && project(Moment::Previous, &previous) && project(Moment::Next, &next)) {
+    add(GRADUS_PASS_VECTOR, Vec4(context_.camera.way(now, previous), context_.camera.way(next, now)));
   }
 }
 
+void PassRecorder::motion(const Vertex& vertex) {
+  add_motion([&](Moment moment, Vec2* film) {
+    return context_.camera.project(context_.scene.position_at(vertex.point.hit, moment), moment, film);
+  });
+}
+
 void PassRecorder::background_motion(const Vec3& direction) {
-  const Camera& camera = context_.camera;
-  Vec2 now;
-  Vec2 previous;
-  Vec2 next;
-  if (camera.project_direction(direction, Moment::Now, &now) && camera.project_direction(direction, Moment::Previous, &previous) &&
-      camera.project_direction(direction, Moment::Next, &next)) {
-    add(GRADUS_PASS_VECTOR, Vec4(camera.way(now, previous), camera.way(next, now)));
-  }
+  add_motion([&](Moment moment, Vec2* film) { return context_.camera.project_direction(direction, moment, film); });
 }
 
 // Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles, where what shines counts as an

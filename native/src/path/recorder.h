@@ -54,6 +54,9 @@ class PassRecorder {
   void colors(const Rgb& weight, const Vertex& vertex);
   void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
   void mist(const Rgb& weight, const Vec3& position, float time);
+  // project(moment, film): false where it is not on the film.
+  template <class Project>
+  void add_motion(const Project& project);
   void motion(const Vertex& vertex);
   void background_motion(const Vec3& direction);
   void features(const PathState& state, const Vertex& vertex);

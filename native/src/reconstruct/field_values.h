@@ -29,6 +29,25 @@ inline float mean_of_squares(const Field& field, int x, int y) {
   return sum / static_cast<float>(field.channels());
 }
 
+// Colours by a factor; alpha, the fourth channel, is a share, whatever the light.
+inline void scale_light(float factor, Field* image) {
+  for_values(image, [factor](float& value, int, int, int c) { value *= c < 3 ? factor : 1.0f; });
+}
+
+inline Field channels_of(const Field& field, int first, int count) {
+  Field part(field.width(), field.height(), count);
+  for_values(&part, [&](float& value, int x, int y, int c) { value = field.row(y, first + c)[x]; });
+  return part;
+}
+
+// Those of one field, then those of the other.
+inline Field join_channels(const Field& first, const Field& other) {
+  const int before = first.channels();
+  Field joined(first.width(), first.height(), before + other.channels());
+  for_values(&joined, [&](float& value, int x, int y, int c) { value = c < before ? first.row(y, c)[x] : other.row(y, c - before)[x]; });
+  return joined;
+}
+
 // One channel from function(x, y).
 template <class Function>
 Field make_field(int width, int height, const Function& function) {

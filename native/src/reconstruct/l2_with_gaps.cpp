@@ -32,9 +32,7 @@ std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha,
   Field x = start_from_l2(interleaved, w, h, channels, alpha);
   const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kGoal, kMostSteps, cancel, &x);
   add_solve(solve, report);
-  std::vector<float> result(images.primal.size());
-  for (int c = 0; c < channels; ++c) store_channel(x, c, size_t(channels), result.data() + c);
-  return result;
+  return interleave(x);
 }
 
 }  // namespace gradus

@@ -26,10 +26,6 @@ bool is_anywhere(const Field& field, bool (*is_such)(float)) {
 bool is_not_zero(float value) { return value != 0.0f; }
 bool is_negative(float value) { return value < 0.0f; }
 
-void multiply(float factor, Field* field) {
-  for_values(field, [factor](float& value, int, int, int) { value *= factor; });
-}
-
 // What was sampled there errs by no more, and where nothing of a part was met there is nothing to be wrong.
 void limit_by_noise(const Field& half_difference, Field* error) {
   const int w = error->width(), h = error->height();
@@ -90,7 +86,7 @@ PartPicture regress_part(const Features& guides, HalvedImage sampled, const Canc
   part.image = regression.image();
   part.error = regression.error();
   limit_by_noise(sampled.half_difference, &part.error);
-  multiply(scale, &part.image);
+  scale_light(scale, &part.image);
   scale_error(scale, &part.error);
   if (!part.may_be_negative) for_values(&part.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
   return part;

@@ -31,11 +31,6 @@ float typical_noise(const HalvedImage& image) {
   return float(sums[0] / (double(w) * h));
 }
 
-// Of colours; alpha is a share, whatever the light.
-void multiply(float factor, Field* field) {
-  for_values(field, [factor](float& value, int, int, int c) { value *= c < 3 ? factor : 1.0f; });
-}
-
 // All channels as they were sampled, in units of the scale; what is not finite is 0.
 Field read_sampled(const Frame& frame, int component, float scale) {
   const auto channels = size_t(frame.channels);
@@ -57,18 +52,6 @@ Field read_sampled(const Frame& frame, int component, float scale) {
   return sampled;
 }
 
-Field channels_of(const Field& field, int first, int count) {
-  Field part(field.width(), field.height(), count);
-  for_values(&part, [&](float& value, int x, int y, int c) { value = field.row(y, first + c)[x]; });
-  return part;
-}
-
-Field join(const Field& colours, const Field& alpha) {
-  Field joined(colours.width(), colours.height(), 4);
-  for_values(&joined, [&](float& value, int x, int y, int c) { value = c < 3 ? colours.row(y, c)[x] : alpha.row(y)[x]; });
-  return joined;
-}
-
 // What becomes of a frame's light. Linear in it once it is made.
 class Operator {
  public:
@@ -80,7 +63,7 @@ class Operator {
     regression_.emplace(features, image, cancel);
     solution_ = regression_->image();
     if (frame.channels == 4) {
-      solution_ = join(solution_, regression_->apply(channels_of(read_sampled(frame, 0, scale_), 3, 1), cancel));
+      solution_ = join_channels(solution_, regression_->apply(channels_of(read_sampled(frame, 0, scale_), 3, 1), cancel));
     }
     if (!frame.gradients) return;
     GradientImages images = read_images(frame, 0);
@@ -98,7 +81,7 @@ class Operator {
     Field regressed = regression_->apply(channels_of(sampled, 0, 3), cancel_);
     if (frame.channels == 4) {
       const Field alpha = channels_of(sampled, 3, 1);
-      regressed = join(regressed, is_black(alpha) ? alpha : regression_->apply(alpha, cancel_));
+      regressed = join_channels(regressed, is_black(alpha) ? alpha : regression_->apply(alpha, cancel_));
     }
     return fusion_ ? fusion_->apply(read_images(frame, component), regressed, cancel_, report_) : regressed;
   }
@@ -112,13 +95,10 @@ class Operator {
   Field solution_;
 };
 
-// In units of the picture, channels interleaved.
-std::vector<float> interleave(Field field, float scale) {
-  multiply(scale, &field);
-  const size_t pixels = size_t(field.width()) * size_t(field.height()), channels = size_t(field.channels());
-  std::vector<float> image(pixels * channels);
-  for (size_t c = 0; c < channels; ++c) store_channel(field, int(c), channels, image.data() + c);
-  return image;
+// In units of the picture.
+std::vector<float> to_image(Field field, float scale) {
+  scale_light(scale, &field);
+  return interleave(field);
 }
 
 }  // namespace
@@ -135,13 +115,13 @@ Reconstructed regularize(const Frame& frame, const Features& features, bool by_c
   const float scale = op.scale();
   Field error = op.error();
   for_values(&error, [scale](float& value, int, int, int) { value *= scale * scale; });
-  Reconstructed result{interleave(op.solution(), scale), interleave(std::move(error), 1.0f)};
+  Reconstructed result{to_image(op.solution(), scale), interleave(error)};
   if (!by_components) return result;
   std::vector<Field> parts;
   for (size_t k = 0; k < components; ++k) parts.push_back(read_sampled(frame, int(k), scale));
   apply_to_parts(
       op.solution(), [&](size_t k, const Field& part) { return op.apply(frame, int(k), part); }, &parts);
-  for (Field& part : parts) result.components.push_back(interleave(std::move(part), scale));
+  for (Field& part : parts) result.components.push_back(to_image(std::move(part), scale));
   return result;
 }
 

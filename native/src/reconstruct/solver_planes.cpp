@@ -60,4 +60,10 @@ void store_channel(const Field& from, int channel, size_t stride, float* out) {
   });
 }
 
+std::vector<float> interleave(const Field& field, int channels) {
+  std::vector<float> image(size_t(field.width()) * size_t(field.height()) * size_t(channels));
+  for (int c = 0; c < channels; ++c) store_channel(field, c, size_t(channels), image.data() + c);
+  return image;
+}
+
 }  // namespace gradus

@@ -27,5 +27,8 @@ inline bool is_complete(const float* value, int channels) {
 }
 // Writes one channel of a field as every `stride`-th value of `out`.
 void store_channel(const Field& from, int channel, size_t stride, float* out);
+// An image of the first channels, interleaved.
+std::vector<float> interleave(const Field& field, int channels);
+inline std::vector<float> interleave(const Field& field) { return interleave(field, field.channels()); }
 
 }  // namespace gradus

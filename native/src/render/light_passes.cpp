@@ -144,9 +144,7 @@ LightPasses::LightPasses(const Frame& frame, const Region& region, const std::ve
   add_up(whole, &parts);
   for (size_t k = 0; k < planes.size(); ++k) {
     if (colors[k].width() > 0) divide(colors[k], &parts[k].image);
-    std::vector<float>& pixels = passes_[planes[k]->pass];
-    pixels.resize(3 * size_t(region.area()));
-    for (int c = 0; c < 3; ++c) store_channel(parts[k].image, c, 3, pixels.data() + c);
+    passes_[planes[k]->pass] = interleave(parts[k].image);
   }
 }
 

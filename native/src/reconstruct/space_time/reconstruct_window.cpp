@@ -21,13 +21,6 @@ class HalfDifferences final : public WindowSource {
   const HalvedWindowSource& source_;
 };
 
-std::vector<float> interleaved(const Field& field) {
-  const auto channels = size_t(field.channels());
-  std::vector<float> image(size_t(field.width()) * size_t(field.height()) * channels);
-  for (size_t c = 0; c < channels; ++c) store_channel(field, int(c), channels, image.data() + c);
-  return image;
-}
-
 // Of the first three channels, by frames.
 class WindowErrors {
  public:
@@ -37,10 +30,10 @@ class WindowErrors {
   }
 
   std::vector<float> of(int t, const Field& picture) const {
-    ErrorTerms terms{interleaved(noise_[size_t(t)]), {}};
+    ErrorTerms terms{interleave(noise_[size_t(t)]), {}};
     if (l2_) {
-      terms.apart = interleaved(picture);
-      const std::vector<float> other = interleaved((*l2_)[size_t(t)]);
+      terms.apart = interleave(picture);
+      const std::vector<float> other = interleave((*l2_)[size_t(t)]);
       for (size_t i = 0; i < other.size(); ++i) terms.apart[i] -= other[i];
     }
     return error_of_pixels(terms, size_.width, size_.height, 3);

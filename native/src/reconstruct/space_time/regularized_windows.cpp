@@ -81,33 +81,18 @@ void check_size(const std::vector<Field>& pictures, const ComponentSources& sour
   }
 }
 
-std::vector<float> interleave(const Field& field, int channels) {
-  const size_t pixels = size_t(field.width()) * size_t(field.height()), n = size_t(channels);
-  std::vector<float> image(pixels * n);
-  for (size_t c = 0; c < n; ++c) store_channel(field, int(c), n, image.data() + c);
-  return image;
-}
-
 // Of components, each with the error in one more channel.
 Reconstructed to_picture(std::vector<Field> components, size_t brightest) {
   const int channels = components[0].channels() - 1;
   Reconstructed picture;
   for (const Field& component : components) picture.components.push_back(interleave(component, channels));
-  Field error(components[0].width(), components[0].height(), 1);
-  for_values(&error, [&](float& value, int x, int y, int) { value = components[brightest].row(y, channels)[x]; });
-  picture.error = interleave(error, 1);
+  picture.error = interleave(channels_of(components[brightest], channels, 1));
   picture.image = picture.components[0];
   for (size_t k = 1; k < picture.components.size(); ++k) {
     for (size_t i = 0; i < picture.image.size(); ++i) picture.image[i] += picture.components[k][i];
   }
   if (picture.components.size() == 1) picture.components.clear();
   return picture;
-}
-
-Field with_error(const Field& picture, const Field& error) {
-  Field joined(picture.width(), picture.height(), picture.channels() + 1);
-  for_values(&joined, [&](float& value, int x, int y, int c) { value = c < picture.channels() ? picture.row(y, c)[x] : error.row(y)[x]; });
-  return joined;
 }
 
 }  // namespace
@@ -132,7 +117,7 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelTest&
     }
     std::vector<Field> pictures, weights;
     for (const Estimate* estimate : window) {
-      pictures.push_back(with_error(estimate->pictures[k], estimate->error));
+      pictures.push_back(join_channels(estimate->pictures[k], estimate->error));
       weights.push_back(estimate->weight);
     }
     solve_tracks(steps, &pictures, &weights);
