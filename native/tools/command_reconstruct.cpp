@@ -75,18 +75,9 @@ int run(const ReconstructArguments& args) {
 }  // namespace
 
 uint64_t held_passes(const Frame& frame, uint64_t asked) {
-  uint64_t held = 0;
-  std::string names, missing;
-  for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (holds(frame, pass)) {
-      held |= uint64_t{1} << pass;
-      names += (names.empty() ? "" : ", ") + typed_name(pass);
-    } else if ((asked >> pass & 1) != 0) {
-      missing += (missing.empty() ? "" : ", ") + typed_name(pass);
-    }
-  }
-  if (asked == kAllPasses || missing.empty()) return asked & held;
-  throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without " + missing + "; it holds " + names);
+  const HeldPasses held = find_held(pass_names(), asked, [&](uint32_t pass) { return holds(frame, pass); });
+  if (asked == kAllPasses || held.missing.empty()) return asked & held.mask;
+  throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without " + held.missing + "; it holds " + held.names);
 }
 
 void add_reconstruct(CLI::App* app, int* exit_code) {

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "base/text_list.h"
 #include "component_layers.h"
 #include "settings/options.h"
 
@@ -101,20 +100,11 @@ void OptionFlags::apply(GradusSettings* settings) const {
   if (!component_passes_.empty()) settings->component_passes = parse_component_passes(component_passes_);
 }
 
-uint64_t parse_passes(const std::string& text) {
-  if (canonical(text) == "all") return kAllPasses;
-  uint64_t mask = 1;
-  for (const std::string& part : split(text)) {
-    std::string all;
-    uint32_t pass = 0;
-    for (; pass < GRADUS_PASS_COUNT && typed_name(pass) != canonical(part); ++pass) add_item(&all, typed_name(pass));
-    if (pass == GRADUS_PASS_COUNT) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "there is no pass " + part + "; there are " + all);
-    mask |= uint64_t{1} << pass;
-  }
-  return mask;
+PassNames pass_names() {
+  return {GRADUS_PASS_COUNT, [](uint32_t pass) { return canonical(client::pass_name(pass)); }, "there is no pass ", "; there are "};
 }
 
-std::string typed_name(uint32_t pass) { return canonical(client::pass_name(pass)); }
+uint64_t parse_passes(const std::string& text) { return 1 | parse_names(pass_names(), text); }
 
 std::string exr_only(const std::string& path) {
   const std::string ending = canonical(std::filesystem::path(path).extension().string());

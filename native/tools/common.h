@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gradus/gradus.hpp"
+#include "pass_names.h"
 
 namespace gradus::tool {
 
@@ -52,11 +53,9 @@ std::string refusal(const Parse& parse) {
 }
 
 inline constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
-// Bit mask from names separated by commas ("depth, diffuse_direct", any case, '_', '-' and ' ' alike; "all"); throws with the names there
-// are.
+PassNames pass_names();
+// As parse_names(); Combined is always among them.
 uint64_t parse_passes(const std::string& text);
-// As it is typed: in lower case and with '_'.
-std::string typed_name(uint32_t pass);
 // For CLI::Option::check: what is wrong with a file name that does not end in .exr, the only format that the tool reads and writes.
 std::string exr_only(const std::string& path);
 // The same of values for the library's options, and of names of passes.

@@ -1,6 +1,5 @@
 #include "component_layers.h"
 
-#include "base/text_list.h"
 #include "common.h"
 #include "path/components.h"
 #include "settings/options.h"
@@ -9,7 +8,10 @@
 namespace gradus::tool {
 namespace {
 
-std::string name_of(uint32_t pass) { return canonical(component_pass_info(pass).name); }
+PassNames component_pass_names() {
+  return {GRADUS_COMPONENT_PASS_COUNT, [](uint32_t pass) { return canonical(component_pass_info(pass).name); }, "components have no pass ",
+          "; they have "};
+}
 
 bool is_held(const FrameHeader& frame, uint32_t pass) {
   if (frame.settings.use_decomposition == 0) return false;
@@ -24,41 +26,20 @@ std::string layer_name(const std::string& component, uint32_t pass) {
 
 }  // namespace
 
-uint32_t parse_component_passes(const std::string& text) {
-  if (canonical(text) == "all") return kAllComponentPasses;
-  uint32_t mask = 0;
-  for (const std::string& part : split(text)) {
-    std::string all;
-    uint32_t pass = 0;
-    for (; pass < GRADUS_COMPONENT_PASS_COUNT && name_of(pass) != canonical(part); ++pass) add_item(&all, name_of(pass));
-    if (pass == GRADUS_COMPONENT_PASS_COUNT) {
-      throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "components have no pass " + part + "; they have " + all);
-    }
-    mask |= uint32_t{1} << pass;
-  }
-  return mask;
-}
+uint32_t parse_component_passes(const std::string& text) { return uint32_t(parse_names(component_pass_names(), text)); }
 
 std::string bad_component_passes(const std::string& text) {
   return refusal([&] { parse_component_passes(text); });
 }
 
 uint32_t held_component_passes(const FrameHeader& frame, uint32_t asked) {
-  uint32_t held = 0;
-  std::string names, missing;
-  for (uint32_t pass = 0; pass < GRADUS_COMPONENT_PASS_COUNT; ++pass) {
-    if (is_held(frame, pass)) {
-      held |= uint32_t{1} << pass;
-      add_item(&names, name_of(pass));
-    } else if (wants(asked, pass)) {
-      add_item(&missing, name_of(pass));
-    }
-  }
-  if (held == 0 && asked != 0) {
+  const HeldPasses held = find_held(component_pass_names(), asked, [&](uint32_t pass) { return is_held(frame, pass); });
+  if (held.mask == 0 && asked != 0) {
     throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without components: --use-decomposition 1 samples them");
   }
-  if (asked == kAllComponentPasses || missing.empty()) return asked & held;
-  throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame's components were rendered without " + missing + "; there are " + names);
+  if (asked == kAllComponentPasses || held.missing.empty()) return asked & uint32_t(held.mask);
+  throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
+                      "the frame's components were rendered without " + held.missing + "; there are " + held.names);
 }
 
 bool take_two_frames(uint32_t passes) { return wants_any(passes, is_motion); }
