@@ -3,18 +3,22 @@
 
 #include <string>
 
-#include "gradus/gradus.h"
+#include "api/test_scene.h"
 
 namespace {
 
+class ComponentsApi : public testing::Test {
+ protected:
+  // The error that a test before has left: the first one stays.
+  ComponentsApi() { gradus_error(nullptr); }
+};
+
 std::string refusal(GradusError code) {
   EXPECT_EQ(code, GRADUS_ERROR_INVALID_ARGUMENT);
-  const char* text = "";
-  gradus_error(&text);
-  return text;
+  return gradus::test::error_text();
 }
 
-TEST(ComponentsApi, TellsNamesExpressionsAndExamples) {
+TEST_F(ComponentsApi, TellsNamesExpressionsAndExamples) {
   uint32_t count = 0;
   ASSERT_EQ(gradus_components_check("", &count), GRADUS_OK);
   ASSERT_EQ(count, 5u);
@@ -28,7 +32,7 @@ TEST(ComponentsApi, TellsNamesExpressionsAndExamples) {
   EXPECT_STREQ(expression, "");
 }
 
-TEST(ComponentsApi, ClassifiesAPath) {
+TEST_F(ComponentsApi, ClassifiesAPath) {
   uint32_t index = 9;
   ASSERT_EQ(gradus_components_classify("Vase=ETTTTD.*L", "ETTTTDRL", &index), GRADUS_OK);
   EXPECT_EQ(index, 0u);
@@ -36,8 +40,7 @@ TEST(ComponentsApi, ClassifiesAPath) {
   EXPECT_EQ(index, 1u);
 }
 
-TEST(ComponentsApi, RefusesWithATextForTheUser) {
-  gradus_error(nullptr);  // that a test before has left: the first one stays
+TEST_F(ComponentsApi, RefusesWithATextForTheUser) {
   uint32_t count = 0;
   EXPECT_NE(refusal(gradus_components_check("A=ED.*L;B=EDDL", &count)).find("overlap"), std::string::npos);
   EXPECT_NE(refusal(gradus_components_check(nullptr, &count)).find("components is NULL"), std::string::npos);
@@ -46,7 +49,7 @@ TEST(ComponentsApi, RefusesWithATextForTheUser) {
   EXPECT_NE(refusal(gradus_components_classify("", "EX", &count)).find("no path"), std::string::npos);
 }
 
-TEST(ComponentsApi, NamesThePassesOfComponents) {
+TEST_F(ComponentsApi, NamesThePassesOfComponents) {
   const char* name = nullptr;
   uint32_t channels = 0;
   ASSERT_EQ(gradus_component_pass_info(GRADUS_COMPONENT_MOTION, &name, &channels), GRADUS_OK);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "api/test_scene.h"
 #include "base/error.h"
 #include "frame/pass_planes.h"
 #include "gradus/gradus.h"
@@ -79,9 +80,7 @@ GradusSettings defaults() {
 std::string refused(const char* name, const char* value) {
   GradusSettings s = defaults();
   EXPECT_EQ(gradus_settings_parse(&s, name, value), GRADUS_ERROR_INVALID_ARGUMENT) << name << " " << value;
-  const char* text = "";
-  gradus_error(&text);
-  return text;
+  return test::error_text();
 }
 
 TEST(G9_Options, AreParsed) {

@@ -13,8 +13,8 @@ class ComponentMotionTest : public MotionTest {
  protected:
   static constexpr Region kRegion{0, 0, kSize, kSize};
 
-  std::vector<ComponentMotion> find(const IntegratorContext& context, const char* component) const {
-    return component_motion(*context.snapshot, context.settings, components_, 1u << components_.find(component), kRegion);
+  ComponentMotion find(const IntegratorContext& context, const char* component) const {
+    return component_motion(*context.snapshot, context.settings, components_, 1u << components_.find(component), kRegion).at(0);
   }
   // Moves instance 3 of the scene.
   void key(const Mat4& before, const Mat4& now, const Mat4& after) {
@@ -24,6 +24,24 @@ class ComponentMotionTest : public MotionTest {
     scene_.scene.matrices_after = scene_.scene.matrices_before;
     scene_.scene.matrices_before[3] = before;
     scene_.scene.matrices_after[3] = after;
+  }
+
+  // From a frame to those around it, each by itself.
+  struct Around {
+    ChainMotion before, after;
+    bool tracks(size_t i) const { return before.tracking[i] == Tracking::Tracked && after.tracking[i] == Tracking::Tracked; }
+    Vec4 vector(size_t i) const {
+      const Vec2 centre(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
+      return Vec4(before.film[i] - centre, centre - after.film[i]);
+    }
+  };
+  // go: to the frame before, or to the later one.
+  Around find_around(const MotionFrame* middle, const std::function<void(bool later)>& go) {
+    const auto found_at = [&](bool later) {
+      go(later);
+      return motion(middle, frame("Reflection"));
+    };
+    return {found_at(false), found_at(true)};
   }
 };
 
@@ -38,32 +56,23 @@ TEST_F(ComponentMotionTest, IsThatOfTheComponentsThatThereAre) {
 
 // The keys of one snapshot say what three snapshots do.
 TEST_F(ComponentMotionTest, IsThatOfTheFramesAround) {
-  add_room();
-  scene_.ball(Vec3(0, 0, 0), 0.8f, mirror(), 32, true);
-  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  add_ball(mirror());
   const Mat4 before = translation(Vec3(-0.05f, 0.01f, 0.02f)), now(1.0f),
              after = glm::rotate(translation(Vec3(0.03f, 0, 0)), 0.1f, Vec3(0, 1, 0));
   key(before, now, after);
   const MotionFrame* middle = frame("Reflection");
-  const ComponentMotion found = find(middle->context, "Reflection").at(0);
-  std::array<ChainMotion, 2> around;
-  for (const int i : {0, 1}) {
-    scene_.scene.move(3, i == 0 ? before : after);
-    around[size_t(i)] = motion(middle, frame("Reflection"));
-  }
+  const ComponentMotion found = find(middle->context, "Reflection");
+  const Around around = find_around(middle, [&](bool later) { scene_.scene.move(3, later ? after : before); });
   size_t tracked = 0;
   for (size_t i = 0; i < found.vectors.size(); ++i) {
-    const bool both = around[0].tracking[i] == Tracking::Tracked && around[1].tracking[i] == Tracking::Tracked;
-    EXPECT_EQ(found.tracked[i] == 1.0f, both);
-    if (!both) {
+    EXPECT_EQ(found.tracked[i] == 1.0f, around.tracks(i));
+    if (!around.tracks(i)) {
       EXPECT_EQ(found.vectors[i], Vec4(0.0f));
       EXPECT_LT(found.tracked[i], 0.0f);
       continue;
     }
     ++tracked;
-    const Vec2 centre(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
-    const Vec4 expected(around[0].film[i] - centre, centre - around[1].film[i]);
-    EXPECT_LT(glm::length(found.vectors[i] - expected), 5e-3f);
+    EXPECT_LT(glm::length(found.vectors[i] - around.vector(i)), 5e-3f);
   }
   EXPECT_GT(tracked, 500u);
 }
@@ -76,20 +85,14 @@ TEST_F(ComponentMotionTest, OfAMeshThatDeforms) {
   scene_.scene.instance(900, Mat4(1.0f), GRADUS_VISIBLE_ALL, material);
   scene_.camera(Vec3(0.5f, 0.5f, 4), Vec3(0, 0, 0), 0.6f);
   const MotionFrame* middle = frame("Reflection");
-  const ComponentMotion found = find(middle->context, "Reflection").at(0);
-  std::array<ChainMotion, 2> around;
-  for (const int i : {0, 1}) {
-    set_sheet(&scene_, 900, i == 0 ? before : after);
-    around[size_t(i)] = motion(middle, frame("Reflection"));
-  }
+  const ComponentMotion found = find(middle->context, "Reflection");
+  const Around around = find_around(middle, [&](bool later) { set_sheet(&scene_, 900, later ? after : before); });
   size_t tracked = 0, lost = 0;
   for (size_t i = 0; i < found.vectors.size(); ++i) {
-    const bool both = around[0].tracking[i] == Tracking::Tracked && around[1].tracking[i] == Tracking::Tracked;
-    lost += both && found.tracked[i] != 1.0f;
-    if (found.tracked[i] != 1.0f || around[0].tracking[i] != Tracking::Tracked || around[1].tracking[i] != Tracking::Tracked) continue;
+    lost += around.tracks(i) && found.tracked[i] != 1.0f;
+    if (found.tracked[i] != 1.0f || !around.tracks(i)) continue;
     ++tracked;
-    const Vec2 centre(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
-    EXPECT_LT(glm::length(found.vectors[i] - Vec4(around[0].film[i] - centre, centre - around[1].film[i])), 0.02f);
+    EXPECT_LT(glm::length(found.vectors[i] - around.vector(i)), 0.02f);
   }
   EXPECT_GT(float(tracked), 0.75f * float(middle->chains.chains.size()));
   EXPECT_LT(float(lost), 0.01f * float(tracked));
@@ -103,7 +106,7 @@ TEST_F(ComponentMotionTest, OfWhatIsRoughIsSurfaceMotion) {
   const float pixel = 4.0f / float(kSize);
   key(translation(Vec3(-2 * pixel, 0, 0)), Mat4(1.0f), translation(Vec3(0, 3 * pixel, 0)));
   const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  const ComponentMotion found = find(context, "Diffuse").at(0);
+  const ComponentMotion found = find(context, "Diffuse");
   const size_t middle = size_t(kSize) * (kSize / 2) + kSize / 2, above = size_t(kSize) * (kSize - 4) + kSize / 2;
   EXPECT_LT(glm::length(found.vectors[middle] - Vec4(-2, 0, 0, -3)), 1e-3f);
   EXPECT_EQ(found.tracked[middle], 1.0f);
@@ -123,12 +126,10 @@ TEST_F(ComponentMotionTest, OnlyWhatIsAskedForIsFound) {
 
 // A part of the film is the same as cut out of all of it.
 TEST_F(ComponentMotionTest, OfARegionIsThatOfTheWholeFilm) {
-  add_room();
-  scene_.ball(Vec3(0, 0, 0), 0.8f, mirror(), 32, true);
-  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  add_ball(mirror());
   key(translation(Vec3(-0.02f, 0, 0)), Mat4(1.0f), translation(Vec3(0.02f, 0.01f, 0)));
   const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  const ComponentMotion whole = find(context, "Reflection").at(0);
+  const ComponentMotion whole = find(context, "Reflection");
   const Region part{10, 12, 38, 36};
   const ComponentMotion cut =
       component_motion(*context.snapshot, context.settings, components_, 1u << components_.find("Reflection"), part).at(0);
@@ -147,7 +148,7 @@ TEST_F(ComponentMotionTest, WhatNothingMovesInIsNotTraced) {
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 1.0f);
   key(translation(Vec3(-0.02f, 0, 0)), Mat4(1.0f), translation(Vec3(0.02f, 0.01f, 0)));
   const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  const TrackingCounts seen_through = find(context, "Transmission").at(0).counts, mirrored = find(context, "Reflection").at(0).counts;
+  const TrackingCounts seen_through = find(context, "Transmission").counts, mirrored = find(context, "Reflection").counts;
   EXPECT_GT(seen_through.pixels[0], 100u);
   EXPECT_LT(float(seen_through.searched), 0.5f * float(seen_through.pixels[0]));
   EXPECT_GT(mirrored.searched, 20u);

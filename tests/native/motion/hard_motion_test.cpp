@@ -27,11 +27,6 @@ class HardMotion : public MotionTest {
     EXPECT_EQ(wrong_ends(found, *from, *to), 0u);
     return found;
   }
-  void add_ball(uint64_t material, int rings = 32, bool smooth = true) {
-    add_room();
-    scene_.ball(Vec3(0, 0, 0), 0.8f, material, rings, smooth);
-    scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
-  }
 };
 
 TEST_F(HardMotion, AFlatShadedBallIsAMirrorInEachFacet) {

@@ -117,12 +117,17 @@ TEST(IrradianceMotion, NoiseOfAFinishedFrameDoesNotMatter) {
   }
 }
 
-// Noise alone drew vectors of several pixels out of flat light.
-TEST(IrradianceMotion, NoiseAloneDoesNotMove) {
+FlowScene flat_light() {
   FlowScene scene;
-  scene.noise = 0.04f;
   scene.surface = [](const Vec2&, int32_t) { return kSurface; };
   scene.sample = [](const Vec2&, int) { return FlowSample{}; };
+  return scene;
+}
+
+// Noise alone drew vectors of several pixels out of flat light.
+TEST(IrradianceMotion, NoiseAloneDoesNotMove) {
+  FlowScene scene = flat_light();
+  scene.noise = 0.04f;
   const auto motion = motion_of(scene);
   EXPECT_GT(tracked_share(scene, motion[0]), 0.95f);
   EXPECT_LT(quantile(errors(scene, motion[0], [](const Vec2&) { return kSurface; }), 0.95f), 0.15f);
@@ -146,9 +151,7 @@ TEST(IrradianceMotion, BlotchesOfAReconstructionDoNotMove) {
 }
 
 TEST(IrradianceMotion, FlatLightGoesWithItsSurface) {
-  FlowScene scene;
-  scene.surface = [](const Vec2&, int32_t) { return kSurface; };
-  scene.sample = [](const Vec2&, int) { return FlowSample{}; };
+  const FlowScene scene = flat_light();
   const auto motion = motion_of(scene);
   EXPECT_EQ(tracked_share(scene, motion[0]), 1.0f);
   EXPECT_EQ(quantile(errors(scene, motion[0], [](const Vec2&) { return kSurface; }), 1.0f), 0.0f);

@@ -31,17 +31,7 @@ class Nodes {
     return int32_t(nodes_.size()) - 1;
   }
   int32_t mirror(int32_t normal) { return add(GRADUS_OP_GLOSSY, 0, {value(0.8f), value(0.0f), value(0.0f), value(0.0f), of(normal)}); }
-  uint64_t material(PathScene* scene, int32_t surface) const {
-    GradusMaterial d{};
-    d.struct_size = sizeof(d);
-    d.node_count = uint32_t(nodes_.size());
-    d.nodes = nodes_.data();
-    d.inputs = inputs_.data();
-    d.input_count = inputs_.size();
-    d.surface = surface;
-    d.name = "nodes";
-    return scene->material(d);
-  }
+  uint64_t material(PathScene* scene, int32_t surface) const { return scene->material(material_of(nodes_, inputs_, surface, "nodes")); }
 
  private:
   std::vector<GradusNode> nodes_;
@@ -112,6 +102,12 @@ void MotionTest::add_room() {
   scene_.quad(Vec3(-6, -1, 6), Vec3(12, 0, 0), Vec3(0, 0, -10), matter);
   scene_.quad(Vec3(-6, -1, -4), Vec3(12, 0, 0), Vec3(0, 8, 0), matter);
   scene_.quad(Vec3(-6, -1, 6), Vec3(0, 8, 0), Vec3(12, 0, 0), matter);
+}
+
+void MotionTest::add_ball(uint64_t material, int rings, bool smooth) {
+  add_room();
+  scene_.ball(Vec3(0, 0, 0), 0.8f, material, rings, smooth);
+  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
 }
 
 const MotionFrame* MotionTest::frame(const char* component) {

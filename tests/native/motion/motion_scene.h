@@ -106,6 +106,8 @@ class MotionTest : public testing::Test {
   uint64_t clear() { return scene_.material(glass(0.0f)); }
   // A floor at y = -1 and walls before and behind.
   void add_room();
+  // The room with a ball in its middle, instance 3, and the camera before it.
+  void add_ball(uint64_t material, int rings = 32, bool smooth = true);
   // What was built up to now, as a frame.
   const MotionFrame* frame(const char* component);
   static ChainMotion motion(const MotionFrame* from, const MotionFrame* to) {

@@ -84,9 +84,7 @@ TEST_F(SpecularMotion, TheFlatMirrorIsRightOfFlatMirrors) {
 }
 
 TEST_F(SpecularMotion, AMovingMirrorBall) {
-  add_room();
-  scene_.ball(Vec3(0, 0, 0), 0.8f, mirror(), 48, true);
-  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  add_ball(mirror(), 48);
   expect_motion("Reflection", [&](float s) { scene_.scene.move(3, translation(s * Vec3(0.06f, 0.02f, 0.05f))); });
 }
 
@@ -158,9 +156,7 @@ TEST_F(SpecularMotion, ThreeMirrorsOneAfterTheOther) {
 }
 
 TEST_F(SpecularMotion, AMovingGlassBall) {
-  add_room();
-  scene_.ball(Vec3(0, 0, 0), 0.8f, clear(), 64, true);
-  scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
+  add_ball(clear(), 64);
   expect_motion("Transmission", [&](float s) { scene_.scene.move(3, translation(s * Vec3(0.03f, 0.02f, 0.02f))); });
 }
 

@@ -5,7 +5,7 @@
 
 #include <regex>
 
-#include "base/error.h"
+#include "support/refusal.h"
 
 namespace gradus {
 namespace {
@@ -48,12 +48,7 @@ void expect_like_regex(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    ComponentSet::parse(text);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::refusal_of([&] { ComponentSet::parse(text); });
 }
 
 TEST(Components, MatchesWordsAsRegularExpressionsDo) {

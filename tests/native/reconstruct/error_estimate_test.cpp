@@ -11,9 +11,13 @@
 #include "frame/pass_planes.h"
 #include "reconstruct/reconstruct_frame.h"
 #include "settings/pass_table.h"
+#include "support/refusal.h"
+#include "support/statistics.h"
 
 namespace gradus {
 namespace {
+
+using test::mean;
 
 const CancelTest kNever = [] { return false; };
 
@@ -45,8 +49,6 @@ std::vector<float> error_of(const Frame& frame, uint32_t reconstruction) {
   SolveReport report;
   return reconstruct_frame(frame, reconstruction, 0.0f, {.error = true}, kNever, &report).error;
 }
-
-double mean(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size()); }
 
 constexpr uint32_t kAll[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED,
                              GRADUS_RECONSTRUCTION_L1};
@@ -142,14 +144,7 @@ TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
 // A frame of what may have been rendered with other settings.
 TEST(ErrorEstimate, AndReconstructionRefuseFramesWithoutWhatTheyRead) {
   Frame frame = make_frame(8, 8, 2, 2, false);
-  const auto message = [&](uint32_t reconstruction) -> std::string {
-    try {
-      error_of(frame, reconstruction);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto message = [&](uint32_t reconstruction) { return test::refusal_of([&] { error_of(frame, reconstruction); }); };
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_L2).find("no gradients"), std::string::npos);
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
   frame.passes = make_pass_planes(feature_passes(), 64);

@@ -50,8 +50,7 @@ TEST(B2_Solver, L1ReportsItsResidual) {
 
 std::vector<float> minimise(const GradientImages& images) {
   SolveReport report;
-  const Field x = minimise_l1(images, 0.2f, never, &report).solution;
-  return make_image(x.width(), x.height(), x.channels(), [&](int px, int py, int c) { return x.row(py, c)[px]; });
+  return interleave(minimise_l1(images, 0.2f, never, &report).solution);
 }
 
 TEST(B2_Solver, L1LowersItsObjective) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reconstruct/field_values.h"
 #include "reconstruct/test_images.h"
 #include "support/threads.h"
 
@@ -50,10 +51,6 @@ double largest_difference(const Field& a, const Field& b) {
   return worst;
 }
 
-Field channel_of(const Field& field, int channel) {
-  return make_field(field.width(), field.height(), 1, [&](int x, int y, int) { return field.row(y, channel)[x]; });
-}
-
 // Sizes below a window, at the borders of tiles, and one row or column.
 constexpr int kRegressionSizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {3, 2}, {80, 128}, {81, 129}, {200, 150}};
 
@@ -76,11 +73,11 @@ TEST(B2_Regression, IsTheFrozenOperatorThatItApplies) {
   LocalRegression regression(predictors(features(w, h), ones(w, h)), ones(w, h), kSettings);
   const RegressionResult result = regression.estimate(image, half, never);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_LT(largest_difference(regression.apply(channel_of(image, c), never), channel_of(result.mean, c)), 1e-4);
-    EXPECT_LT(largest_difference(regression.apply(channel_of(half, c), never), channel_of(result.noise, c)), 1e-4);
+    EXPECT_LT(largest_difference(regression.apply(channels_of(image, c, 1), never), channels_of(result.mean, c, 1)), 1e-4);
+    EXPECT_LT(largest_difference(regression.apply(channels_of(half, c, 1), never), channels_of(result.noise, c, 1)), 1e-4);
   }
   const Field sum = make_field(w, h, 1, [&](int x, int y, int) { return image.row(y, 0)[x] - 3.0f * other.row(y, 0)[x]; });
-  const Field a = regression.apply(channel_of(image, 0), never), b = regression.apply(channel_of(other, 0), never);
+  const Field a = regression.apply(channels_of(image, 0, 1), never), b = regression.apply(channels_of(other, 0, 1), never);
   const Field expected = make_field(w, h, 1, [&](int x, int y, int) { return a.row(y)[x] - 3.0f * b.row(y)[x]; });
   EXPECT_LT(largest_difference(regression.apply(sum, never), expected), 1e-4);
 }
@@ -127,8 +124,6 @@ struct KnownError {
   float picture, chequered_noise, common_noise;
   double error() const { return picture * picture - chequered_noise * chequered_noise + common_noise * common_noise; }
 };
-
-float chequer(int x, int y) { return (x + y) % 2 ? 1.0f : -1.0f; }
 
 LocalRegression regress(const KnownError& known, float own, RegressionResult* result) {
   const int w = 96, h = 80;
@@ -220,7 +215,7 @@ TEST(B1_Regression, PassesOverWhatIsBlack) {
   EXPECT_LT(largest_difference(a.noise, b.noise), 1e-5);
   EXPECT_LT(largest_difference(a.bias, b.bias), 1e-5);
   // Weights are kept there, too.
-  const Field other = channel_of(noise(w, h, 1.0f, 3), 0);
+  const Field other = channels_of(noise(w, h, 1.0f, 3), 0, 1);
   EXPECT_LT(largest_difference(passing.apply(other, never), working.apply(other, never)), 1e-4);
 }
 

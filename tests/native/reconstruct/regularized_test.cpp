@@ -40,8 +40,6 @@ float hashed(int x, int y, int channel, int half) {
   return float(s - std::floor(s));
 }
 
-float chequer(int x, int y) { return (x + y) % 2 ? 1.0f : -1.0f; }
-
 // A chequer that no feature knows: for windows it is bias.
 FeatureFrame chequered(float level, float amplitude) {
   FeatureFrame frame{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};

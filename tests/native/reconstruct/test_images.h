@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reconstruct/solver.h"
+#include "support/statistics.h"
 
 namespace gradus::test {
 
@@ -87,11 +88,7 @@ inline GradientImages noisy_images(int w, int h, int channels = 3) {
       w, h, channels, smooth_image(w, h, channels), [](size_t) { return 0.4f; }, [](size_t) { return 0.05f; });
 }
 
-inline double mean(const std::vector<float>& image) {
-  double sum = 0.0;
-  for (const float v : image) sum += v;
-  return image.empty() ? 0.0 : sum / double(image.size());
-}
+inline float chequer(int x, int y) { return (x + y) % 2 ? 1.0f : -1.0f; }
 
 inline double max_difference(const std::vector<float>& a, const std::vector<float>& b) {
   double worst = 0.0;

@@ -13,17 +13,19 @@
 #include "frame/store.h"
 #include "motion/component_motion.h"
 #include "reconstruct/reconstruct_frame.h"
-#include "render/render.h"
 #include "render/resume.h"
+#include "render/scene_render.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
-#include "support/path_scene.h"
+#include "support/refusal.h"
 
 namespace gradus {
 namespace {
 
 using test::PathScene;
+using test::rendered;
 using test::Scenario;
+using test::started;
 
 constexpr uint32_t kSide = 40;
 constexpr uint32_t kAllPasses = (1u << GRADUS_COMPONENT_PASS_COUNT) - 1;
@@ -39,24 +41,6 @@ GradusSettings settings_with(const std::string& components, uint32_t reconstruct
   settings.component_passes = kAllPasses;
   set_text(&settings, *find_option("components"), components);
   return settings;
-}
-
-std::unique_ptr<Render> started(PathScene* scene, const GradusSettings& settings) {
-  return std::make_unique<Render>(test::test_device(), scene->context(settings).snapshot, settings);
-}
-
-std::unique_ptr<Render> rendered(PathScene* scene, const GradusSettings& settings) {
-  auto render = started(scene, settings);
-  render->wait(-1.0);
-  std::string text;
-  EXPECT_EQ(render->outcome(&text), GRADUS_OK) << text;
-  return render;
-}
-
-std::unique_ptr<Render> rendered(Scenario scenario, const GradusSettings& settings) {
-  PathScene scene;
-  test::build(scenario, &scene);
-  return rendered(&scene, settings);
 }
 
 std::vector<float> combined(const Render& render) {
@@ -405,21 +389,11 @@ TEST(Components, OfDifferentSetsAreNotMerged) {
   a.components[0].name = "Diffuse";
   b.components[0].name = "Direct";
   b.samples.add({0, 1});
-  try {
-    merge_frames(&a, b);
-    ADD_FAILURE();
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("Direct"), std::string::npos) << e.what();
-  }
+  const std::string refusal = test::refusal_of([&] { merge_frames(&a, b); });
+  EXPECT_NE(refusal.find("Direct"), std::string::npos) << refusal;
 }
 
 constexpr uint32_t kMotionPasses = 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_TRACKED;
-
-std::vector<float> read(const Render& render, const std::string& name, uint32_t pass) {
-  std::vector<float> values(component_pass_info(pass).channels * kSide * kSide);
-  render.read_component(name, pass, values.data(), values.size());
-  return values;
-}
 
 // A camera that turns from frame to frame.
 void turn_camera(Snapshot* snapshot) {
@@ -443,8 +417,8 @@ TEST(Components, TellTheirMotion) {
   float farthest = 0.0f;
   for (int c = 0; c < set.count(); ++c) {
     if (find_component(*render.frame(), set[c].name) < 0) continue;
-    const std::vector<float> vectors = read(render, set[c].name, GRADUS_COMPONENT_MOTION);
-    const std::vector<float> tracked = read(render, set[c].name, GRADUS_COMPONENT_TRACKED);
+    const std::vector<float> vectors = component(render, set[c].name, GRADUS_COMPONENT_MOTION);
+    const std::vector<float> tracked = component(render, set[c].name, GRADUS_COMPONENT_TRACKED);
     for (size_t i = 0; i < tracked.size(); ++i) {
       const float found = expected[size_t(c)].tracked[i];
       const bool by_flow = set[c].name == kResidual && found == kTracked;  // of two frames
@@ -461,8 +435,8 @@ TEST(Components, WhatIsNotThereIsNotTracked) {
   settings.component_passes = kMotionPasses;
   const auto render = rendered(Scenario::DiffuseArea, settings);
   ASSERT_EQ(find_component(*render->frame(), "Nothing"), -1);
-  for (const float value : read(*render, "Nothing", GRADUS_COMPONENT_TRACKED)) ASSERT_EQ(value, kNothingToTrack);
-  for (const float value : read(*render, "Nothing", GRADUS_COMPONENT_MOTION)) ASSERT_EQ(value, 0.0f);
+  for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_TRACKED)) ASSERT_EQ(value, kNothingToTrack);
+  for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_MOTION)) ASSERT_EQ(value, 0.0f);
 }
 
 TEST(Components, MotionThatWasNotAskedForIsRefused) {

@@ -4,6 +4,7 @@
 #include "plan/plan.h"
 #include "render/combine.h"
 #include "render/fake_integrator.h"
+#include "support/statistics.h"
 
 namespace gradus {
 namespace {
@@ -32,12 +33,6 @@ double true_error(const std::vector<float>& rgba) {
     }
   }
   return sum / (kSide * kSide);
-}
-
-double mean(const std::vector<float>& values) {
-  double sum = 0.0;
-  for (const float v : values) sum += v;
-  return sum / double(values.size());
 }
 
 TEST(ErrorPass, IsThatOfCombined) {

@@ -7,15 +7,15 @@
 
 #include "base/device.h"
 #include "base/error.h"
-#include "render/render.h"
+#include "render/scene_render.h"
 #include "settings/pass_table.h"
 #include "support/light_sum.h"
-#include "support/path_scene.h"
 
 namespace gradus {
 namespace {
 
 using test::PathScene;
+using test::rendered;
 using test::Scenario;
 
 constexpr int kSide = 40;
@@ -29,20 +29,6 @@ GradusSettings settings_for(uint32_t reconstruction, uint64_t passes = light_pas
   settings.reconstruction = reconstruction;
   if (reconstruction != GRADUS_RECONSTRUCTION_NONE) settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
   return settings;
-}
-
-std::unique_ptr<Render> rendered(PathScene* scene, const GradusSettings& settings) {
-  auto render = std::make_unique<Render>(test::test_device(), scene->context(settings).snapshot, settings);
-  render->wait(-1.0);
-  std::string text;
-  EXPECT_EQ(render->outcome(&text), GRADUS_OK) << text;
-  return render;
-}
-
-std::unique_ptr<Render> rendered(Scenario scenario, const GradusSettings& settings) {
-  PathScene scene;
-  test::build(scenario, &scene);
-  return rendered(&scene, settings);
 }
 
 std::vector<float> read(const Render& render, uint32_t pass) {

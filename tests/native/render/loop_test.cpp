@@ -7,6 +7,7 @@
 #include "render/batches.h"
 #include "render/fake_integrator.h"
 #include "render/resume.h"
+#include "support/refusal.h"
 
 namespace gradus {
 namespace {
@@ -16,12 +17,7 @@ using namespace test;
 constexpr uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 
 std::string failure_of(const GradusSettings& settings, const std::shared_ptr<const Frame>& resumed = nullptr) {
-  try {
-    start(settings, fake_factory(), resumed);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return refusal_of([&] { start(settings, fake_factory(), resumed); });
 }
 
 TEST(Batches, GrowThenStayAndMeetAgainAfterResume) {

@@ -77,6 +77,22 @@ inline Mat4 scaling(const Vec3& s) {
   return m;
 }
 
+// Its program lives as long as it.
+inline GradusMaterial material_of(const std::vector<GradusNode>& nodes, const std::vector<GradusInput>& inputs, int32_t surface,
+                                  const char* name) {
+  GradusMaterial d{};
+  d.struct_size = sizeof(d);
+  d.node_count = uint32_t(nodes.size());
+  d.nodes = nodes.data();
+  d.inputs = inputs.data();
+  d.input_count = inputs.size();
+  d.surface = surface;
+  d.sample_as_light = 1;
+  d.transparent_shadow = 1;
+  d.name = name;
+  return d;
+}
+
 // A program of at most two nodes: a value and a closure.
 class MaterialDesc {
  public:
@@ -93,19 +109,7 @@ class MaterialDesc {
     m.inputs_[0].node = 0;
     return m;
   }
-  GradusMaterial desc() const {
-    GradusMaterial d{};
-    d.struct_size = sizeof(d);
-    d.node_count = uint32_t(nodes_.size());
-    d.nodes = nodes_.data();
-    d.inputs = inputs_.data();
-    d.input_count = inputs_.size();
-    d.surface = int32_t(nodes_.size()) - 1;
-    d.sample_as_light = 1;
-    d.transparent_shadow = 1;
-    d.name = "material";
-    return d;
-  }
+  GradusMaterial desc() const { return material_of(nodes_, inputs_, int32_t(nodes_.size()) - 1, "material"); }
 
  private:
   // DIFFUSE has color, roughness, normal; a normal of 0 is the shading normal.

@@ -37,17 +37,8 @@ class Program {
   }
   int32_t add(int32_t a, int32_t b) { return a < 0 ? b : combine(GRADUS_OP_ADD_SHADER, a, b, 0.0f); }
   GradusMaterial desc(int32_t surface, const char* name, int32_t index) const {
-    GradusMaterial d{};
-    d.struct_size = sizeof(d);
-    d.node_count = static_cast<uint32_t>(nodes_.size());
-    d.nodes = nodes_.data();
-    d.inputs = inputs_.data();
-    d.input_count = inputs_.size();
-    d.surface = surface;
-    d.sample_as_light = 1;
-    d.transparent_shadow = 1;
+    GradusMaterial d = material_of(nodes_, inputs_, surface, name);
     d.pass_index = index;
-    d.name = name;
     return d;
   }
 

@@ -2,12 +2,18 @@
 #pragma once
 
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace gradus::test {
 
 // Whether the long counts are asked for (make test-full); otherwise a tenth.
 bool full_run();
+
+// 0 of none.
+inline double mean(const std::vector<float>& values) {
+  return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
 
 // Mean and variance of every value of images that are added.
 class Moments {

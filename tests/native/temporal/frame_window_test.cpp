@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "support/refusal.h"
 #include "temporal/spooled_frames.h"
 #include "temporal/streamed_frames.h"
 
@@ -254,14 +255,7 @@ TEST_F(FiveFrames, LinksAreThoseThatTheNextFrameHasFollowed) {
 }
 
 TEST_F(FiveFrames, OneOfAnotherSizeOrWithoutGradientsIsNamed) {
-  const auto refusal = [&] {
-    try {
-      spooled();
-      return std::string();
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-  };
+  const auto refusal = [&] { return test::refusal_of([&] { spooled(); }); };
   replay_[4] = std::make_shared<Frame>(sampled(4, 1, 21));
   EXPECT_EQ(refusal(), "stored frame 4 has another size or other planes than those beside it");
   base_[1] = std::make_shared<Frame>(sampled(1, 1, 21));

@@ -1,6 +1,7 @@
 // Sequences of images, and windows that measure them with noise.
 #pragma once
 
+#include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/system.h"
 #include "reconstruct/space_time/window.h"
 #include "reconstruct/test_images.h"
@@ -56,15 +57,11 @@ inline GradientImages frame_of(const Window& window, int t) {
   return images;
 }
 
-inline std::vector<float> interleaved(const Field& field) {
-  return make_image(field.width(), field.height(), field.channels(), [&](int x, int y, int c) { return field.row(y, c)[x]; });
-}
-
 // All frames, one after another.
 inline std::vector<float> joined(const Frames& frames) {
   std::vector<float> all;
   for (const Field& field : frames) {
-    const std::vector<float> image = interleaved(field);
+    const std::vector<float> image = interleave(field);
     all.insert(all.end(), image.begin(), image.end());
   }
   return all;

@@ -65,7 +65,7 @@ TEST(B2_SpaceTime, WithoutLinksL2IsThatOfSingleFrames) {
   const Frames x = solver_of(window, kL2).take_solution();
   for (int t = 0; t < 3; ++t) {
     SolveReport report;
-    EXPECT_LT(max_difference(interleaved(x[size_t(t)]), reconstruct(frame_of(window, t), kL2, 0.0f, never, &report)), 5e-5);
+    EXPECT_LT(max_difference(interleave(x[size_t(t)]), reconstruct(frame_of(window, t), kL2, 0.0f, never, &report)), 5e-5);
   }
 }
 
@@ -78,7 +78,7 @@ TEST(B2_SpaceTime, WithoutLinksWeightsAreThoseOfSingleFrames) {
       SolveReport report;
       const std::vector<float> still = reconstruct(frame_of(window, t), reconstruction, 0.0f, never, &report);
       const std::vector<float> l2 = reconstruct(frame_of(window, t), kL2, 0.0f, never, &report);
-      const double apart = rms_difference(interleaved(x[size_t(t)]), still);
+      const double apart = rms_difference(interleave(x[size_t(t)]), still);
       EXPECT_LT(apart, 0.02 * rms_difference(l2, still)) << reconstruction;
     }
   }

@@ -38,8 +38,7 @@ Pictures rendered(uint32_t reconstruction, const char* components, Scenario scen
   for (int32_t frame = 0; frame <= kLast; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, reconstruction, components));
   Pictures pictures;
   for (int32_t frame = 0; frame <= kLast; ++frame) {
-    const auto task = sequence->deliver(frame, nullptr);
-    run(task.get());
+    const auto task = delivered(sequence.get(), frame);
     pictures.combined.push_back(read(*task, GRADUS_PASS_COMBINED, 4));
     if (components == nullptr) continue;
     std::vector<float> sum(3 * kSide * kSide), part(sum);
@@ -68,8 +67,7 @@ TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
     Pan pan(1.0f);
     const auto sequence = make_sequence(0, 2, folder.path());
     for (int32_t frame = 0; frame <= 2; ++frame) sample(sequence.get(), pan.at(frame), settings_with(frame, GRADUS_COMPONENT_FACE_INDEX));
-    const auto task = sequence->deliver(1, nullptr);
-    run(task.get());
+    const auto task = delivered(sequence.get(), 1);
     const Frame& frame = *task->frame();
     const auto& details = frame.components[size_t(find_component(frame, "Diffuse"))].details;
     const size_t middle = size_t(kSide) * kSide / 2 + kSide / 2;

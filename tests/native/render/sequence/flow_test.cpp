@@ -100,12 +100,6 @@ void sample_all(Sequence* sequence, int32_t first, int32_t last, uint32_t passes
   }
 }
 
-std::unique_ptr<RenderTask> delivered(Sequence* sequence, int32_t frame) {
-  auto task = sequence->deliver(frame, nullptr);
-  test::run(task.get());
-  return task;
-}
-
 // What is known of the shadow's edge: along it nobody sees any motion.
 struct Edge {
   size_t pixels = 0, tracked = 0, right = 0;

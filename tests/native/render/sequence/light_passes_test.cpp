@@ -24,8 +24,7 @@ TEST_P(SequenceLightPasses, AddUpInEveryFrame) {
   const auto sequence = make_sequence(0, kLast);
   for (int32_t frame = 0; frame <= kLast; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, GetParam()));
   for (int32_t frame = 0; frame <= kLast; ++frame) {
-    const auto task = sequence->deliver(frame, nullptr);
-    run(task.get());
+    const auto task = delivered(sequence.get(), frame);
     expect_light_to_add_up([&](uint32_t pass) { return read(*task, pass, 3); }, read(*task, GRADUS_PASS_COMBINED, 4));
   }
 }

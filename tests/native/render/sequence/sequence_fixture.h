@@ -84,9 +84,15 @@ inline std::vector<float> read(const RenderTask& task, uint32_t pass, size_t cha
   return pixels;
 }
 
-inline Delivered deliver(Sequence* sequence, int32_t frame) {
-  const auto task = sequence->deliver(frame, nullptr);
+// The task that has delivered it.
+inline std::unique_ptr<RenderTask> delivered(Sequence* sequence, int32_t frame) {
+  auto task = sequence->deliver(frame, nullptr);
   run(task.get());
+  return task;
+}
+
+inline Delivered deliver(Sequence* sequence, int32_t frame) {
+  const auto task = delivered(sequence, frame);
   return {read(*task, GRADUS_PASS_COMBINED, 4), read(*task, GRADUS_PASS_NOISY_IMAGE, 4), read(*task, GRADUS_PASS_GRADIENT_T, 3),
           read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3), nlohmann::json::parse(task->stats())};
 }

@@ -13,6 +13,7 @@
 #include "sequence_fixture.h"
 #include "support/failing_disk.h"
 #include "support/file_calls.h"
+#include "support/refusal.h"
 
 namespace gradus::test {
 namespace {
@@ -283,14 +284,8 @@ TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   Pan pan(1.3f);
   const Folder folder;
   render(&pan, make_sequence(1, 2, folder.path()).get(), 1, 2);
-  const auto text_of = [&](const std::shared_ptr<const Snapshot>& snapshot, GradusSettings settings) -> std::string {
-    try {
-      const auto sequence = make_sequence(1, 2, folder.path());
-      sequence->sample(snapshot, settings);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+  const auto text_of = [&](const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
+    return refusal_of([&] { make_sequence(1, 2, folder.path())->sample(snapshot, settings); });
   };
   GradusSettings settings = with_passes(settings_of(1));
   EXPECT_EQ(text_of(pan.at(1), settings), "");
