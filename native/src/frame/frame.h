@@ -44,7 +44,8 @@ using Radiance = Vec4;
 struct RoughVertices {
   Rgb reflectance = Rgb(0.0f);
   Vec3 normal = Vec3(0.0f);  // in the world, as shaded
-  float depth = 0.0f;        // length of the path
+  // 1/length of the path, which is linear over a plane in the picture; 0: infinitely far.
+  float inverse_depth = 0.0f;
   float samples = 0.0f;
 };
 

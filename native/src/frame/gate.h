@@ -37,9 +37,9 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
 
 // A vertex of one sample.
 inline void add_rough(const RoughVertices& vertex, RoughVertices* sum, Counters* counters) {
-  const RoughVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal, sum->depth + vertex.depth,
-                           sum->samples + vertex.samples};
-  if (fits(Radiance(next.reflectance, next.depth)) && fits(Radiance(next.normal, next.samples))) {
+  const RoughVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal,
+                           sum->inverse_depth + vertex.inverse_depth, sum->samples + vertex.samples};
+  if (fits(Radiance(next.reflectance, next.inverse_depth)) && fits(Radiance(next.normal, next.samples))) {
     *sum = next;
   } else {
     ++counters->nonfinite_feature;

@@ -27,7 +27,7 @@ class PlaneList {
     if (plane->empty()) return;
     for (int c = 0; c < 3; ++c) add(layer + ".reflectance." + kColorNames[c], false, &(*plane)[0].reflectance[c], sizeof(RoughVertices));
     for (int c = 0; c < 3; ++c) add(layer + ".normal." + kVectorNames[c], false, &(*plane)[0].normal[c], sizeof(RoughVertices));
-    add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(RoughVertices));
+    add(layer + ".inverse_depth.V", false, &(*plane)[0].inverse_depth, sizeof(RoughVertices));
     add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(RoughVertices));
   }
   void details(const std::string& layer, std::vector<RoughDetails>* plane) {

@@ -68,7 +68,7 @@ ChainView view_surfaces(const CentreView& centres, const GradusSettings& setting
     chain.last = hit;
     chain.length = is_surface ? hit.t : 0.0f;
     chain.shown = chain.ray.ray.origin + chain.length * chain.ray.ray.direction;
-    chain.rests = change != nullptr && !change->of_camera() && change->rests(chain.ray.ray, hit, hit.t);
+    chain.rests = change != nullptr && !change->of_all() && change->rests(chain.ray.ray, hit, hit.t);
   });
   return view;
 }

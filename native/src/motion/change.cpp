@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "motion/snapshot_motion.h"
 #include "scene/mesh.h"
 
 namespace gradus {
@@ -12,19 +13,33 @@ bool same_view(const GradusCamera& a, const GradusCamera& b) {
   return std::equal(a.matrix, a.matrix + 16, b.matrix) && std::equal(a.window, a.window + 4, b.window);
 }
 
+// moved: the same one, perhaps in the other frame's place.
+bool rests(const InstanceData& a, const InstanceData& moved) {
+  const auto kind = [](const InstanceData& instance) { return instance.visibility | GRADUS_MAY_MOVE; };
+  return a.mesh == moved.mesh && a.to_world == moved.to_world && !a.moves() && a.materials == moved.materials && kind(a) == kind(moved);
+}
+
 }  // namespace
 
 // A camera or an object that moves within the frame is elsewhere at each of its moments.
-Change::Change(const Snapshot& now) : now_(now), camera_(now.camera.shutter_key_count > 0), instances_(now.instances.size()) {}
+Change::Change(const Snapshot& now) : now_(now), all_(now.camera.shutter_key_count > 0), instances_(now.instances.size()) {}
 
 void Change::add(const Snapshot& other) {
-  camera_ |= !same_view(now_.camera, other.camera);
+  all_ |= !same_view(now_.camera, other.camera) || now_.origin != other.origin || now_.materials != other.materials;
+  const std::vector<uint32_t> there = matching_instances(now_, other);
+  std::vector<bool> is_new(other.instances.size(), true);
   for (size_t i = 0; i < instances_.size(); ++i) {
-    const InstanceData &a = now_.instances[i], &b = other.instances[i];
-    if (a.mesh == b.mesh && a.to_world == b.to_world && !a.moves()) continue;
+    const InstanceData &a = now_.instances[i], *b = there[i] != kNoInstance ? &other.instances[there[i]] : nullptr;
+    if (b != nullptr) is_new[there[i]] = false;
+    if (b != nullptr && gradus::rests(a, *b)) continue;
     instances_[i] = any_ = true;
     add_box(a);
-    add_box(b);
+    if (b != nullptr) add_box(*b);
+  }
+  for (size_t i = 0; i < is_new.size(); ++i) {
+    if (!is_new[i]) continue;
+    any_ = true;
+    add_box(other.instances[i]);
   }
   box_.widen();
 }

@@ -11,10 +11,10 @@ namespace gradus {
 class Change {
  public:
   explicit Change(const Snapshot& now);
-  // other: moved_snapshot() of it.
   void add(const Snapshot& other);
 
-  bool of_camera() const { return camera_; }
+  // The camera, or what surfaces are made of.
+  bool of_all() const { return all_; }
   bool of_instance(uint32_t index) const { return instances_[index]; }
   // Whether something that moves may be on that part of the ray, at any of these moments.
   bool may_meet(const Ray& ray, float distance) const { return any_ && box_.may_meet(ray.origin, ray.direction, 0.0f, distance); }
@@ -28,7 +28,7 @@ class Change {
   void add_box(const InstanceData& instance);
 
   const Snapshot& now_;
-  bool camera_ = false, any_ = false;
+  bool all_ = false, any_ = false;
   std::vector<bool> instances_;
   RayBox box_;  // around all that moves
 };

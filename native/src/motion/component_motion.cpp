@@ -87,8 +87,8 @@ void tell_shown(const ChainView& view, const Region& band, ShownPoint* shown) {
 std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const GradusSettings& settings, const ComponentSet& components,
                                               uint32_t wanted, const Region& region, const CancelTest& is_cancelled) {
   const auto pixels = size_t(region.area()), width = size_t(region.width());
-  const uint32_t residual = uint32_t{1} << (components.count() - 1);
-  wanted &= 2 * residual - 1;
+  const uint32_t residual = components.residual();
+  wanted &= components.all();
   std::vector<ComponentMotion> motion(
       size_t(std::popcount(wanted)),
       {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), std::vector<ShownPoint>(pixels), {}});

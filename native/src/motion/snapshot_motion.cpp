@@ -6,14 +6,22 @@
 
 namespace gradus {
 
-SnapshotMotion::SnapshotMotion(const Snapshot& from, const Snapshot& to) : to_(to), instance_(from.instances.size(), UINT32_MAX) {
+std::vector<uint32_t> matching_instances(const Snapshot& from, const Snapshot& to) {
   std::unordered_map<uint64_t, uint32_t> by_id;
   for (uint32_t i = 0; i < to.instances.size(); ++i) by_id.emplace(to.instances[i].id, i);
-  for (size_t i = 0; i < from.instances.size(); ++i) {
-    const auto found = by_id.find(from.instances[i].id);
-    if (found == by_id.end()) continue;
-    const MeshData &a = *from.instances[i].mesh, &b = *to.instances[found->second].mesh;
-    if (a.topology_hash == b.topology_hash) instance_[i] = found->second;
+  std::vector<uint32_t> matches;
+  matches.reserve(from.instances.size());
+  for (const InstanceData& instance : from.instances) {
+    const auto found = by_id.find(instance.id);
+    matches.push_back(found != by_id.end() ? found->second : kNoInstance);
+  }
+  return matches;
+}
+
+SnapshotMotion::SnapshotMotion(const Snapshot& from, const Snapshot& to) : to_(to), instance_(matching_instances(from, to)) {
+  for (size_t i = 0; i < instance_.size(); ++i) {
+    if (instance_[i] == kNoInstance) continue;
+    if (from.instances[i].mesh->topology_hash != to.instances[instance_[i]].mesh->topology_hash) instance_[i] = kNoInstance;
   }
 }
 

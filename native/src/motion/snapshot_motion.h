@@ -7,6 +7,10 @@
 
 namespace gradus {
 
+inline constexpr uint32_t kNoInstance = UINT32_MAX;
+// For each instance of `from` the one of `to` that has its identity.
+std::vector<uint32_t> matching_instances(const Snapshot& from, const Snapshot& to);
+
 class SnapshotMotion {
  public:
   // Both live as long as it.
@@ -20,7 +24,7 @@ class SnapshotMotion {
 
  private:
   const Snapshot& to_;
-  std::vector<uint32_t> instance_;  // in `to`, for each of `from`; UINT32_MAX: none
+  std::vector<uint32_t> instance_;  // in `to`, for each of `from`; kNoInstance: none, or of another topology
 };
 
 }  // namespace gradus

@@ -182,7 +182,7 @@ uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSe
     SpecularChain& chain = (*chains)[size_t(c)];
     chain = {};
     chain.ray = start;
-    chain.rests = change != nullptr && !change->of_camera() && search.rests(ray, arrival.hit);
+    chain.rests = change != nullptr && !change->of_all() && search.rests(ray, arrival.hit);
     if (is_surface) chain.length = ray.state.length;
     const bool is_found = is_surface ? go_on(&search, arrival, ray, PathWord{0}, &chain) : is_seen(search, PathWord{0}, &chain);
     found |= is_found ? 1u << c : 0u;

@@ -167,10 +167,12 @@ ComponentSet ComponentSet::with(uint32_t kept, uint8_t rest) const {
   return set;
 }
 
-ComponentSet ComponentSet::merged(uint32_t kept) const {
-  const int residual = count() - 1;
-  kept |= 1u << residual;
-  return with(kept, uint8_t(__builtin_popcount(kept & ((1u << count()) - 1)) - 1));
+ComponentSet ComponentSet::merged(uint32_t small) const {
+  if (small == 0) return *this;
+  ComponentSet set = *this;
+  if (residual() == 0) set.components_.push_back({std::string(kResidual), ""});
+  const uint32_t kept = (set.all() & ~small) | set.residual();
+  return set.with(kept, uint8_t(__builtin_popcount(kept) - 1));
 }
 
 ComponentSet ComponentSet::without_empty(uint32_t kept) const { return with(kept != 0 ? kept : 1u << (count() - 1), 0); }

@@ -40,8 +40,8 @@ class ComponentSet {
   // one of D R T, `*` `+` `?` `|` and parentheses. Throws invalid_argument, saying to a user what is wrong: an expression that is none,
   // that matches no path, or that matches a path of another.
   static ComponentSet parse(std::string_view text);
-  // The same with those alone whose bit is set; the others' paths belong to Residual, which stays.
-  ComponentSet merged(uint32_t kept) const;
+  // Without those whose bit is set: their paths belong to Residual, which is there then.
+  ComponentSet merged(uint32_t small) const;
   // Without those that no path comes to: there is nothing to keep for them. kept: bits of some that do.
   ComponentSet without_empty(uint32_t kept) const;
 
@@ -49,6 +49,9 @@ class ComponentSet {
   const Component& operator[](int i) const { return components_[size_t(i)]; }
   // -1: there is none of that name.
   int find(std::string_view name) const;
+  // Bits of all, and of Residual: none where no path is left for it. It is the last.
+  uint32_t all() const { return (uint32_t{1} << count()) - 1; }
+  uint32_t residual() const { return components_.back().name == kResidual ? uint32_t{1} << (count() - 1) : 0; }
 
   PathWord next(PathWord word, ScatterClass letter) const { return states_[word].next[size_t(letter)]; }
   // Of a path that finds light here.

@@ -42,6 +42,9 @@ Vec3 uv_of(const MeshData& mesh, const Hit& hit) {
   return Vec3(uv.x, uv.y, 1.0f);
 }
 
+// Of a length.
+float inverse_of(float length) { return 1.0f / std::max(length, 1e-10f); }
+
 Vec3 shown_normal(const Vertex& vertex) {
   if (!vertex.shade.closures.empty()) {
     return vertex.shade.closures.average_normal();
@@ -77,7 +80,7 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ag
   again_ = again;
   features_done_ = !features_ || again;
   looks_for_rough_ = components_ != nullptr && !again;
-  told_ = 0;
+  told_ = told_rough_ = 0;
   path_length_ = 0.0f;
   albedo_ = Rgb(0.0f);
 }
@@ -113,7 +116,7 @@ void PassRecorder::light(const PathState& state, const Vertex& vertex, ScatterCl
 
 void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
   looks_for_rough_ = looks_for_rough_ && event.scatter_class != ScatterClass::Diffuse;
-  told_ = 0;
+  told_ = told_rough_ = 0;
   if (depth > 0 || !lights_) {
     return;
   }
@@ -267,13 +270,7 @@ void PassRecorder::rough_vertex(const PathState& state, const Vertex& vertex) {
   if (ahead == 0) {
     return;
   }
-  const Rgb albedo = glm::clamp(vertex.shade.closures.albedo(vertex.wo), Rgb(0.0f), Rgb(1.0f));
-  const RoughVertices here{albedo, shown_normal(vertex), path_length_, 1.0f};
-  for (size_t c = 0; c < components_->size(); ++c) {
-    if ((ahead >> c & 1) != 0) {
-      add_rough(here, &(*components_)[c].rough[half_][pixel_], counters_);
-    }
-  }
+  tell(ahead, RoughVertices{vertex.shade.closures.albedo(vertex.wo), shown_normal(vertex), inverse_of(path_length_), 1.0f});
 }
 
 // Of a surface that is rough, or that shines.
@@ -300,11 +297,26 @@ void PassRecorder::tell(uint32_t components, const RoughDetails& here) {
   told_ |= components;
 }
 
-void PassRecorder::shines(int component, const Rgb& light) {
-  if (looks_for_rough_ && keeps_rough_ && !is_black(light)) {
-    const RoughVertices here{glm::clamp(light, Rgb(0.0f), Rgb(1.0f)), Vec3(0.0f), path_length_, 1.0f};
-    add_rough(here, &(*components_)[size_t(component)].rough[half_][pixel_], counters_);
+// Likewise: it is as far as the first of these, and reflects no more than all light.
+void PassRecorder::tell(uint32_t components, const RoughVertices& here) {
+  for (size_t c = 0; c < components_->size(); ++c) {
+    if ((components >> c & 1) == 0) continue;
+    const bool is_first = (told_rough_ >> c & 1) == 0;
+    const Rgb before = is_first ? Rgb(0.0f) : told_reflectance_[c];
+    told_reflectance_[c] = glm::clamp(before + here.reflectance, Rgb(0.0f), Rgb(1.0f));
+    RoughVertices once = here;
+    once.reflectance = told_reflectance_[c] - before;
+    if (!is_first) once.inverse_depth = once.samples = 0.0f;
+    add_rough(once, &(*components_)[c].rough[half_][pixel_], counters_);
   }
+  told_rough_ |= components;
+}
+
+void PassRecorder::shines(int component, const Rgb& light, float further) {
+  if (!looks_for_rough_ || !keeps_rough_ || is_black(light)) {
+    return;
+  }
+  tell(uint32_t{1} << component, RoughVertices{light, Vec3(0.0f), inverse_of(path_length_ + further), 1.0f});
 }
 
 // A sample's albedo stays in [0, 1], as denoisers expect it.

@@ -28,14 +28,15 @@ class PassRecorder {
   void no_ray() {
     if (!again_) add(GRADUS_PASS_MIST, 1.0f);
   }
-  // A lamp or the world on the path's last segment, with the whole of the light that comes from there.
-  void sighting(const Rgb& throughput, int component, const Rgb& light) {
+  // A lamp or the world on the path's last segment, at a distance from where that begins, with the whole of the light that comes from there.
+  void sighting(const Rgb& throughput, int component, const Rgb& light, float distance) {
     if (!features_done_) add_albedo(throughput * light);
-    shines(component, light);
+    shines(component, light, distance);
     if (looks_for_rough_ && keeps_details_ && !is_black(light)) tell(uint32_t{1} << component, {.emission = light});
   }
   // Light that a ray found, before any weight. Seen in a mirror or behind glass it is a feature of its component, as the albedo is.
-  void shines(int component, const Rgb& light);
+  // further: than the path is long.
+  void shines(int component, const Rgb& light, float further = 0.0f);
   // Light that was scattered `scatterings` times; 0: seen by the camera.
   void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
   void environment(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT); }
@@ -65,6 +66,7 @@ class PassRecorder {
   void rough_vertex(const PathState& state, const Vertex& vertex);
   void details(const PathState& state, const Vertex& vertex);
   void tell(uint32_t components, const RoughDetails& here);
+  void tell(uint32_t components, const RoughVertices& here);
 
   const PathContext& context_;
   Counters* counters_;
@@ -78,6 +80,8 @@ class PassRecorder {
   bool keeps_details_ = false;
   bool looks_for_rough_ = false;  // the path has met none so far
   uint32_t told_ = 0;             // bits of components that know details of this segment
+  uint32_t told_rough_ = 0;       // … its vertex, and of what reflectance
+  std::array<Rgb, kMostComponents> told_reflectance_{};
   uint32_t number_ = 0;           // of the sample
   bool first_sample_ = false;
   bool again_ = false;

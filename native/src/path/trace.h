@@ -226,7 +226,7 @@ class PathTracer {
   void add_lamps(const RaySource& source) {
     for (const LampSighting& lamp : segment_->lamps) {
       const Contribution c = lamp_contribution(context_, source, state_, lamp);
-      if (recorder_ != nullptr) recorder_->sighting(state_.throughput * lamp.weight, c.component, c.light);
+      if (recorder_ != nullptr) recorder_->sighting(state_.throughput * lamp.weight, c.component, c.light, lamp.distance);
       if (!is_black(c.clamped)) {
         add(c);
         if (records(c)) recorder_->emission(state_.depth, c.clamped);
@@ -239,7 +239,7 @@ class PathTracer {
     if (recorder_ != nullptr) recorder_->escaped(state_);
     if (state_.depth == 0 && context_.settings.film_transparent != 0) add_transparent(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
-    if (recorder_ != nullptr) recorder_->sighting(state_.throughput, c.component, c.light);
+    if (recorder_ != nullptr) recorder_->sighting(state_.throughput, c.component, c.light, kInfinity);
     if (!is_black(c.clamped)) {
       add(c);
       if (records(c)) recorder_->environment(state_.depth, c.clamped);

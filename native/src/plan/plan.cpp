@@ -159,6 +159,8 @@ void choose_components(const GradusSettings& settings, const SceneFeatures& feat
   plan->component_motion = wants_any(settings.component_passes, is_motion);
   const uint32_t kept = all.reached(letters_of(settings, features)) | seen;
   plan->components = all.without_empty(kept);
+  // Data of what has no light may be wanted all the same.
+  plan->merges_components = text.empty() && !plan->rough_vertices && !plan->rough_details && !plan->component_motion;
   std::string names, absent;
   for (int i = 0; i < all.count(); ++i) add_item(plan->components.find(all[i].name) >= 0 ? &names : &absent, all[i].name);
   plan->chosen.emplace_back("components " + names, text.empty() ? "automatic: the default set" : "set by the user");

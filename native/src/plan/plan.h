@@ -33,12 +33,13 @@ struct Plan {
   bool unbiased = true;              // what is sampled; see delivers_unbiased()
   bool adaptive = false;             // tiles take samples by their noise, and may stop early
   int channels = 3;
-  ComponentSet components;        // that are sampled
-  bool component_motion = false;  // of which passes tell where they were, and go
-  bool rough_vertices = false;    // of which passes look at where paths become rough
-  bool rough_details = false;     // and more closely
-  uint64_t passes = 0;            // that the frame keeps: those asked for, and what the reconstruction reads
-  uint32_t first_check = 0;       // samples before a tile may stop
+  ComponentSet components;         // that are sampled
+  bool merges_components = false;  // those that a pilot finds small everywhere belong to Residual
+  bool component_motion = false;   // of which passes tell where they were, and go
+  bool rough_vertices = false;     // of which passes look at where paths become rough
+  bool rough_details = false;      // and more closely
+  uint64_t passes = 0;             // that the frame keeps: those asked for, and what the reconstruction reads
+  uint32_t first_check = 0;        // samples before a tile may stop
   Region delivered;
   Region sampled;  // with the guard ring
   Reasons chosen, skipped;

@@ -18,11 +18,11 @@ constexpr float kLeastReflectance = 1e-3f;
 RoughVertices mean_at(const ComponentPlanes& planes, size_t i) {
   const RoughVertices &a = planes.rough[0][i], &b = planes.rough[1][i];
   const float samples = a.samples + b.samples, factor = samples > 0.0f ? 1.0f / samples : 0.0f;
-  return {factor * (a.reflectance + b.reflectance), factor * (a.normal + b.normal), factor * (a.depth + b.depth), samples};
+  return {factor * (a.reflectance + b.reflectance), factor * (a.normal + b.normal), factor * (a.inverse_depth + b.inverse_depth), samples};
 }
 
 Vec3 value_of(uint32_t pass, const RoughVertices& mean, const Vec3& color) {
-  if (pass == GRADUS_COMPONENT_DEPTH) return Vec3(mean.samples > 0.0f ? mean.depth : kFarDepth);
+  if (pass == GRADUS_COMPONENT_DEPTH) return Vec3(1.0f / std::max(mean.inverse_depth, 1.0f / kFarDepth));
   if (pass == GRADUS_COMPONENT_REFLECTANCE) return mean.reflectance;
   if (pass == GRADUS_COMPONENT_NORMAL) return mean.normal;
   Vec3 irradiance = color;

@@ -15,6 +15,7 @@
 #include "render/require_memory.h"
 #include "render/resume.h"
 #include "render/show_combined.h"
+#include "render/small_components.h"
 #include "render/tiles.h"
 #include "settings/pass_table.h"
 
@@ -40,6 +41,15 @@ void name_planes(const ComponentSet& set, Frame* frame) {
   }
 }
 
+// What is small in one frame of an animation may not be in the next.
+Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
+  Plan plan = make_plan(input.planned_settings(), *input.snapshot, denoiser);
+  if (!plan.merges_components || !input.samples_only) return plan;
+  plan.merges_components = false;
+  plan.skipped.emplace_back("merging of small components", "what is small in one frame of an animation may not be in the next");
+  return plan;
+}
+
 // From here on every pixel has samples of both halves: there is something to reconstruct.
 constexpr uint32_t kBothHalves = 2;
 
@@ -58,7 +68,7 @@ std::unique_ptr<Integrator> LoopInput::make_integrator(const GradusSettings& its
 RenderLoop::RenderLoop(LoopInput input)
     : input_(std::move(input)),
       denoiser_(choose_denoiser(input_.settings.denoiser, input_.device.get(), &why_no_denoiser_)),
-      plan_(make_plan(input_.planned_settings(), *input_.snapshot, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
+      plan_(planned(input_, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
       arena_(arena_size(input_.threads)),
       picture_(plan_.delivered),
       live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {
@@ -107,9 +117,24 @@ GradientMap RenderLoop::choose_gradients() {
   return map;
 }
 
+ComponentSet RenderLoop::choose_components() {
+  if (!plan_.merges_components) return plan_.components;
+  if (input_.resumed) return resumed_components(*input_.resumed, plan_);
+  const uint64_t cpu = process_cpu_nanoseconds();
+  const GradusSettings settings = pilot_settings(input_.settings);
+  const auto integrator = input_.make_integrator(settings, GRADUS_INTEGRATOR_PATH, plan_.components);
+  SmallComponents small;
+  arena_.execute([&] { small = find_small_components(*integrator, settings, plan_.components, plan_.channels, stop_); });
+  stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  stop_if_asked();
+  explain(small, plan_.components, &stats_.skipped);
+  return plan_.components.merged(small.bits);
+}
+
 void RenderLoop::prepare() {
   const GradusSettings& settings = input_.settings;
   gradients_ = choose_gradients();
+  components_ = choose_components();
   const uint32_t integrator = gradients_.none() ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
   if (plan_.pilot) explain(gradients_, &stats_.chosen, &stats_.skipped);
   std::shared_ptr<Frame> frame;
@@ -117,9 +142,9 @@ void RenderLoop::prepare() {
     check_gradients(*input_.resumed, !gradients_.none());
     frame = std::make_shared<Frame>(*input_.resumed);
   } else {
-    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, plan_.components.count(),
+    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, components_.count(),
                                     !gradients_.none());
-    name_planes(plan_.components, frame.get());
+    name_planes(components_, frame.get());
     const bool motion = plan_.component_motion && !input_.replay;
     keep_of_components({plan_.rough_vertices, plan_.rough_details, motion, motion && input_.samples_only}, frame.get());
     frame->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
@@ -137,7 +162,7 @@ void RenderLoop::prepare() {
   if (input_.replay) frame->replayed = input_.replay->sources;
   stats_.warnings = input_.snapshot->warnings;
 
-  integrator_ = input_.make_integrator(frame->settings, integrator, plan_.components);
+  integrator_ = input_.make_integrator(frame->settings, integrator, components_);
   picture_.expect_tiles();
   if (input_.resumed) picture_.show_tile(*frame, plan_.delivered);
   const std::lock_guard lock(mutex_);
@@ -264,7 +289,7 @@ void RenderLoop::find_motion() {
   const CancelTest cancel = [this] { return is_stopped(); };
   std::vector<ComponentMotion> motion;
   arena_.execute(
-      [&] { motion = component_motion(*input_.snapshot, input_.settings, plan_.components, kEveryComponent, plan_.sampled, cancel); });
+      [&] { motion = component_motion(*input_.snapshot, input_.settings, components_, kEveryComponent, plan_.sampled, cancel); });
   stop_if_asked();
   for (size_t c = 0; c < motion.size(); ++c) {
     frame_->components[c].motion = std::move(motion[c].vectors);
@@ -334,7 +359,7 @@ void RenderLoop::read_component(const std::string& name, uint32_t pass, float* p
     if (is_sampling()) throw invalid_operation("component " + name + " comes when sampling has ended");
     frame = frame_;
   }
-  const int component = plan_.components.find(name);
+  const int component = components_.find(name);
   if (!frame || component < 0) return read_absent_component(pass, plan_.delivered, pixels);
   if (!wants(settings.component_passes, pass))
     throw invalid_operation("pass " + std::string(component_pass_info(pass).name) + " of components was not asked for");

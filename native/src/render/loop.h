@@ -47,6 +47,8 @@ class RenderLoop final : public RenderTask {
   void prepare();
   // Whether gradients pay, and where; all of the picture if that is not asked.
   GradientMap choose_gradients();
+  // Those of the plan, but for the small ones.
+  ComponentSet choose_components();
   void sample();
   void reconstruct_frame();
   // Of components, from what the scene knows of the frames around.
@@ -80,6 +82,7 @@ class RenderLoop final : public RenderTask {
   std::shared_ptr<Frame> frame_;
   std::unique_ptr<Integrator> integrator_;
   GradientMap gradients_;
+  ComponentSet components_;
   std::unique_ptr<AdaptiveSampling> adaptive_;  // where the plan is
 
   std::unique_ptr<TileSampler> sampler_;

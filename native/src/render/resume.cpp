@@ -68,6 +68,13 @@ uint32_t resumed_samples(const Frame& frame, bool adaptively) {
   return frame.region.area() > 0 ? samples_at(frame, 0) : 0;
 }
 
+ComponentSet resumed_components(const Frame& frame, const Plan& plan) {
+  if (!plan.merges_components) return plan.components;
+  uint32_t absent = 0;
+  for (int c = 0; c < plan.components.count(); ++c) absent |= find_component(frame, plan.components[c].name) < 0 ? 1u << c : 0u;
+  return plan.components.merged(absent);
+}
+
 void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
   if (frame.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
   if (key_of(frame.settings, plan.integrator) != key_of(settings, plan.integrator) || !may_hold(plan, frame.settings.integrator)) {
@@ -79,8 +86,9 @@ void check_resumable(const Frame& frame, const GradusSettings& settings, const P
   if (frame.region != plan.sampled || frame.settings.first_sample != settings.first_sample) {
     throw invalid_argument("the frame has another region or first sample");
   }
+  const ComponentSet set = resumed_components(frame, plan);
   std::string wanted;
-  for (int c = 0; c < plan.components.count(); ++c) add_item(&wanted, plan.components[c].name);
+  for (int c = 0; c < set.count(); ++c) add_item(&wanted, set[c].name);
   if (component_names(frame) != wanted)
     throw invalid_argument("the frame holds the components " + component_names(frame) + ", and the render has " + wanted);
   const std::string gap = frame.samples.first_gap(settings.first_sample);

@@ -11,6 +11,8 @@ namespace gradus {
 // Samples that every pixel of the frame has; to go on adaptively, their mean over the pixels that go on. Throws invalid_argument if pixels
 // differ otherwise (a frame that was cancelled, or added up from adaptive ones).
 uint32_t resumed_samples(const Frame& frame, bool adaptively);
+// Those with which a render goes on from the frame: where small ones of the plan were merged into Residual, as in the frame.
+ComponentSet resumed_components(const Frame& frame, const Plan& plan);
 // Throws invalid_argument with the reason if a render with these settings cannot go on from the frame.
 void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key);
 // Throws invalid_argument if the frame has gradients and none are wanted, or the other way round.

@@ -1,33 +1,16 @@
 #include "temporal/component_links.h"
 
-#include <algorithm>
-
 #include "temporal/pixel_links.h"
 
 namespace gradus {
 
-namespace {
-
-// Behind smooth surfaces. A chain without any is the surface itself.
-bool is_seen_through(const ChainView& view, size_t pixel) {
-  const int32_t place = view.places[pixel];
-  return place >= 0 && view.chains[size_t(place)].way.length > 0;
-}
-
-}  // namespace
-
-bool shows_through(const ChainView& view) {
-  return std::any_of(view.chains.begin(), view.chains.end(), [](const SpecularChain& chain) { return chain.way.length > 0; });
-}
-
-PixelLinks link_component(const PixelLinks& surface, const ChainView& from, const ChainMotion& motion) {
-  const Region& region = from.region();
+PixelLinks link_component(const PixelLinks& surface, const Region& region, const ChainMotion& motion) {
   const size_t pixels = surface.pixel.size();
   PixelLinks links{std::vector<int32_t>(pixels, kNoLink), std::vector<Vec2>(pixels, Vec2(0.0f))};
   std::vector<int32_t> owner(pixels, kNoLink);
   std::vector<float> distances(pixels, kInfinity);
   for (size_t i = 0; i < pixels; ++i) {
-    if (!is_seen_through(from, i) || motion.tracking[i] != Tracking::Tracked) continue;
+    if (motion.tracking[i] != Tracking::Tracked) continue;
     const Vec2 film = motion.film[i];
     const int32_t there = pixel_at(region, film);
     if (there == kNoLink) continue;

@@ -7,10 +7,9 @@
 
 namespace gradus {
 
-// Whether the component is seen through smooth surfaces anywhere.
-bool shows_through(const ChainView& view);
-// surface: link_pixels() of the two frames. from, motion: the component's chains in the first, and where the second shows what they show.
-// One-to-one: of several chains that lead to one pixel the one that comes nearest to its centre has it, and a chain before a surface.
-PixelLinks link_component(const PixelLinks& surface, const ChainView& from, const ChainMotion& motion);
+// surface: link_pixels() of the two frames, of this region. motion: where the second shows what the component shows through smooth surfaces
+// (temporal/component_ways.h). One-to-one: of several chains that lead to one pixel the one that comes nearest to its centre has it, and a
+// chain before a surface.
+PixelLinks link_component(const PixelLinks& surface, const Region& region, const ChainMotion& motion);
 
 }  // namespace gradus

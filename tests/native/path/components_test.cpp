@@ -51,6 +51,17 @@ std::string refusal(const std::string& text) {
   return test::refusal_of([&] { ComponentSet::parse(text); });
 }
 
+TEST(Components, HaveAResidualOnceSomeAreMerged) {
+  const ComponentSet set = ComponentSet::parse(""), without = set.without_empty(3u);
+  ASSERT_EQ(without.residual(), 0u);
+  const ComponentSet merged = without.merged(1u << without.find("Diffuse"));
+  EXPECT_EQ(merged.residual(), 2u);
+  EXPECT_EQ(merged[merged.classify("EDDL")].name, kResidual);
+  EXPECT_EQ(merged[merged.classify("EL")].name, "Emission");
+  EXPECT_EQ(set.merged(0).count(), set.count());
+  EXPECT_EQ(set.merged(set.all()).count(), 1);
+}
+
 TEST(Components, MatchesWordsAsRegularExpressionsDo) {
   expect_like_regex(std::string(kDefaultComponents));
   expect_like_regex("A=ETTTTD.*L");
@@ -120,10 +131,10 @@ TEST(Components, TakesAsManyAsThereIsRoomFor) {
   EXPECT_NE(refusal(text + "X=ERL").find("more than 15"), std::string::npos);
 }
 
-TEST(Components, MergesIntoResidualWhatIsNotKept) {
+TEST(Components, GiveTheirPathsToResidualWhereTheyAreMerged) {
   const ComponentSet all = ComponentSet::parse("");
-  const uint32_t kept = 1u << all.find("Diffuse") | 1u << all.find("Transmission");
-  const ComponentSet some = all.merged(kept);
+  const uint32_t small = 1u << all.find("Emission") | 1u << all.find("Reflection");
+  const ComponentSet some = all.merged(small);
   ASSERT_EQ(some.count(), 3);
   EXPECT_EQ(some[2].name, "Residual");
   for (const std::string& word : words(5)) {

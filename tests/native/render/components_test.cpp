@@ -117,6 +117,79 @@ TEST(Components, ThatNoSurfaceCanMakeAreNotSampled) {
             "Rare, Residual");
 }
 
+// A room with a mirror that shows its ceiling, or lies behind a wall.
+void build_room_with_mirror(PathScene* scene, float size, float z) {
+  test::add_box(scene, test::matte(Rgb(0.6f)));
+  test::add_ceiling_light(scene, 20.0f, 0.5f);
+  scene->quad(Vec3(-0.5f * size, -0.5f * size, z), Vec3(size, 0, 0), Vec3(0, size, -0.5f * size), scene->material(test::glossy(0.0f)));
+}
+
+GradusSettings light_alone(const std::string& components) {
+  GradusSettings settings = settings_with(components, GRADUS_RECONSTRUCTION_REGULARIZED);
+  settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
+  return settings;
+}
+
+TEST(Components, ThatAreSmallEverywhereBelongToResidual) {
+  PathScene hidden;
+  build_room_with_mirror(&hidden, 0.5f, -1.5f);  // behind the box's wall
+  const auto render = rendered(&hidden, light_alone(""));
+  EXPECT_EQ(sampled_components(*render), "Emission, Diffuse, Residual");
+  EXPECT_NE(render->stats_json().find("\"components Reflection\":\"automatic: "), std::string::npos) << render->stats_json();
+  EXPECT_EQ(sum_of(component(*render, "Reflection")), 0.0);
+  const std::vector<float> rgba = combined(*render), diffuse = component(*render, "Diffuse"), emission = component(*render, "Emission"),
+                           residual = component(*render, "Residual");
+  for (size_t i = 0; i < diffuse.size(); ++i) {
+    ASSERT_NEAR(diffuse[i] + emission[i] + residual[i], rgba[i / 3 * 4 + i % 3], 2e-6f * (rgba[i / 3 * 4 + i % 3] + 1.0f));
+  }
+}
+
+TEST(Components, ThatAreSmallAreKeptWhereSomebodyMayWantThem) {
+  PathScene hidden, seen;
+  build_room_with_mirror(&hidden, 0.5f, -1.5f);
+  build_room_with_mirror(&seen, 0.1f, 0.0f);  // a few pixels
+  const char* const kAll = "Emission, Diffuse, Reflection, Residual";
+  EXPECT_EQ(sampled_components(*rendered(&seen, light_alone(""))), kAll);
+  EXPECT_EQ(sampled_components(*rendered(&hidden, light_alone(std::string(kDefaultComponents)))), kAll) << "a user's own set";
+  GradusSettings with_normals = light_alone("");
+  with_normals.component_passes |= 1u << GRADUS_COMPONENT_NORMAL;
+  EXPECT_EQ(sampled_components(*rendered(&hidden, with_normals)), kAll);
+}
+
+// Frames of farms are merged, borders are compared with the whole, and renders go on.
+TEST(Components, ThatAreSmallAreSoForAnyPartOfTheWork) {
+  PathScene hidden;
+  build_room_with_mirror(&hidden, 0.5f, -1.5f);
+  GradusSettings settings = light_alone("");
+  const auto whole = rendered(&hidden, settings);
+  settings.samples = 4;
+  settings.threads = 1;
+  const auto early = rendered(&hidden, settings);
+  settings.first_sample = 4;
+  settings.seed = 3;
+  EXPECT_EQ(sampled_components(*rendered(&hidden, settings)), sampled_components(*whole));
+  settings.seed = 0;
+  settings.first_sample = 0;
+  settings.samples = 8;
+  Render more(test::test_device(), hidden.context(settings).snapshot, settings, early->frame());
+  ASSERT_TRUE(more.wait(-1.0));
+  EXPECT_EQ(combined(more), combined(*whole));
+  EXPECT_EQ(component(more, "Residual"), component(*whole, "Residual"));
+  const uint32_t part[] = {0, 0, 8, 8};
+  std::copy_n(part, 4, settings.region);
+  EXPECT_EQ(component_names(*rendered(&hidden, settings)->frame()), sampled_components(*whole));
+}
+
+// All of it is small then, and what is left is Residual alone.
+TEST(Components, OfADarkSceneAreResidual) {
+  PathScene scene;
+  scene.quad(Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), scene.material(test::matte(Rgb(0.5f))));
+  scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
+  const auto render = rendered(&scene, light_alone(""));
+  EXPECT_EQ(sampled_components(*render), "Residual");
+  for (const char* const name : kDefaultNames) EXPECT_EQ(sum_of(component(*render, name)), 0.0) << name;
+}
+
 TEST(Components, CostNothingWhereNobodyAsks) {
   GradusSettings settings = settings_with("");
   settings.use_decomposition = 0;
@@ -281,9 +354,62 @@ TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
   const auto render = rendered(&scene, settings);
   const std::vector<float> color = component(*render, "Emission"), emit = component(*render, "Emission", GRADUS_COMPONENT_EMIT);
   for (size_t i = 0; i < color.size(); ++i) ASSERT_NEAR(emit[i], color[i], 1e-5f * color[i]) << i;
-  const float lit = color[3 * (20 * kSide + 20)], world = color[0];
+  const size_t middle = 20 * kSide + 20;
+  const float lit = color[3 * middle], world = color[0];
   EXPECT_NEAR(world, 0.375f, 1e-5f);
   EXPECT_GT(lit, 2.0f * world);
+}
+
+// Lamps and the sky were as near as the mirror that showed them, or the camera.
+TEST(Components, WhatShinesIsAsFarAsItIs) {
+  PathScene scene;
+  scene.world(Rgb(0.25f, 0.5f, 0.1f));
+  scene.light(test::make_light(GRADUS_LIGHT_RECTANGLE, test::translation(Vec3(0, 0, -1)) * test::scaling(Vec3(1, -1, -1)), Rgb(3.0f)));
+  scene.quad(Vec3(-0.5f, -0.5f, 0.0f), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), scene.material(test::glossy(0.0f)));  // on the left
+  scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
+  GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_NONE);
+  const auto render = rendered(&scene, settings);
+  const std::vector<float> seen = component(*render, "Emission", GRADUS_COMPONENT_DEPTH),
+                           mirrored = component(*render, "Reflection", GRADUS_COMPONENT_DEPTH);
+  const size_t left = 20 * kSide + 10, right = 20 * kSide + 21;
+  EXPECT_NEAR(seen[right], 4.0f, 0.1f) << "the lamp";
+  EXPECT_EQ(seen[left], 1e10f) << "hidden by the mirror";
+  EXPECT_EQ(mirrored[left], 1e10f) << "the sky";
+  EXPECT_GT(sum_of(component(*render, "Reflection")), 1.0);
+}
+
+// A surface that is lit and shines was counted twice: its normal had half its length, its reflectance was a mean of albedo and light.
+TEST(Components, ASurfaceThatShinesIsMetOnce) {
+  PathScene scene;
+  test::Surface screen = test::matte(Rgb(0.3f));
+  screen.emission = Rgb(0.25f, 0.5f, 8.0f);
+  scene.quad(Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), scene.material(screen));
+  scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
+  const auto render = rendered(&scene, settings_with("All=E.*L", GRADUS_RECONSTRUCTION_NONE));
+  const size_t middle = 20 * kSide + 20;
+  const std::vector<float> normal = component(*render, "All", GRADUS_COMPONENT_NORMAL),
+                           reflectance = component(*render, "All", GRADUS_COMPONENT_REFLECTANCE);
+  EXPECT_NEAR(normal[3 * middle + 2], 1.0f, 1e-5f);
+  EXPECT_NEAR(reflectance[3 * middle], 0.55f, 1e-5f);
+  EXPECT_NEAR(reflectance[3 * middle + 2], 1.0f, 1e-5f);
+  EXPECT_NEAR(component(*render, "All", GRADUS_COMPONENT_DEPTH)[middle], 3.0f, 0.05f);
+}
+
+// What lamps below 0 take away is kept without a reconstruction, and components were cut off at 0.
+TEST(Components, AddUpBelowZero) {
+  PathScene scene;
+  test::add_box(&scene, test::matte(Rgb(0.6f)));
+  scene.light(test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 0, 0.5f)), Rgb(-2.0f)));
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+    const auto render = rendered(&scene, settings_with("Direct=EDL;Indirect=EDD+L", reconstruction));
+    const std::vector<float> rgba = combined(*render), direct = component(*render, "Direct"), indirect = component(*render, "Indirect");
+    const bool keeps = reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
+    EXPECT_EQ(*std::min_element(rgba.begin(), rgba.end()) < -0.01f, keeps) << reconstruction;
+    for (size_t i = 0; i < direct.size(); ++i) {
+      const float whole = rgba[i / 3 * 4 + i % 3];
+      ASSERT_NEAR(direct[i] + indirect[i], whole, 1e-5f * (1.0f + std::fabs(whole))) << reconstruction;
+    }
+  }
 }
 
 // Glass reflects few of a pixel's samples, and the first of them is seldom the first of all.
@@ -428,6 +554,37 @@ TEST(Components, TellTheirMotion) {
     }
   }
   EXPECT_GT(farthest, 0.2f);
+}
+
+// The last component of a set was taken for Residual where no path is left for that: it had the motion of the mirror, and as tracked.
+TEST(Components, OfSetsWithoutResidualTellTheMotionOfWhatTheyShow) {
+  PathScene scene;
+  test::build(Scenario::Mirror, &scene);
+  const auto motion_of = [&](const std::string& set, const std::string& name, uint32_t pass) {
+    GradusSettings settings = settings_with(set);
+    settings.component_passes = kMotionPasses;
+    auto moved = std::make_shared<Snapshot>(*scene.context(settings).snapshot);
+    turn_camera(moved.get());
+    Render render(test::test_device(), moved, settings);
+    render.wait(-1.0);
+    EXPECT_EQ(find_component(*render.frame(), std::string(kResidual)) >= 0, set.empty());
+    return component(render, name, pass);
+  };
+  const std::string set = "Matte=E(D.*)?L;Shiny=E(R|T).*L";
+  const std::vector<float> tracked = motion_of(set, "Shiny", GRADUS_COMPONENT_TRACKED),
+                           expected_tracked = motion_of("", "Reflection", GRADUS_COMPONENT_TRACKED),
+                           vectors = motion_of(set, "Shiny", GRADUS_COMPONENT_MOTION),
+                           expected = motion_of("", "Reflection", GRADUS_COMPONENT_MOTION);
+  size_t both = 0;
+  for (size_t i = 0; i < tracked.size(); ++i) {
+    if (expected_tracked[i] == kNothingToTrack) {
+      ASSERT_NE(tracked[i], kTracked) << "nothing is mirrored there";
+    }
+    if (tracked[i] != kTracked || expected_tracked[i] != kTracked) continue;
+    ++both;
+    for (size_t k = 0; k < 4; ++k) ASSERT_NEAR(vectors[4 * i + k], expected[4 * i + k], 1e-3f);
+  }
+  EXPECT_GT(both, 100u);
 }
 
 TEST(Components, WhatIsNotThereIsNotTracked) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "render/component_replay.h"
+#include "temporal/component_ways.h"
 
 namespace gradus {
 namespace {
@@ -12,23 +13,16 @@ namespace {
 class ComponentLinks : public testing::Test {
  protected:
   ComponentLinks() {
-    centres_.region = {0, 0, 6, 1};
-    chains_.centres = &centres_;
-    chains_.places.assign(6, -1);
     motion_.film.assign(6, Vec2(0.0f));
     motion_.tracking.assign(6, Tracking::NoPath);
   }
   void chain(int pixel, float x, Tracking tracking = Tracking::Tracked) {
-    chains_.places[size_t(pixel)] = int32_t(chains_.chains.size());
-    chains_.chains.emplace_back();
-    chains_.chains.back().way.length = 1;
     motion_.film[size_t(pixel)] = Vec2(x, 0.5f);
     motion_.tracking[size_t(pixel)] = tracking;
   }
-  std::vector<int32_t> links(const std::vector<int32_t>& surface) const { return link_component({surface}, chains_, motion_).pixel; }
+  std::vector<int32_t> links(const std::vector<int32_t>& surface) const { return link_component({surface}, kRow, motion_).pixel; }
 
-  CentreView centres_;
-  ChainView chains_;
+  const Region kRow{0, 0, 6, 1};
   ChainMotion motion_;
   const std::vector<int32_t> rest_{0, 1, 2, 3, 4, 5};
 };
@@ -47,11 +41,12 @@ TEST_F(ComponentLinks, GoWithTheSurfaceWhereAChainWasLost) {
   EXPECT_EQ(links(rest_), rest_);
 }
 
-TEST_F(ComponentLinks, AChainWithoutSmoothSurfacesGoesWithTheSurface) {
-  chain(1, 4.5f);
-  chains_.chains.back().way.length = 0;
+TEST_F(ComponentLinks, WhatHasNoChainGoesWithTheSurface) {
+  EXPECT_FALSE(shows_through(motion_));
   EXPECT_EQ(links(rest_), rest_);
-  EXPECT_FALSE(shows_through(chains_));
+  chain(1, 4.5f, Tracking::Gone);
+  EXPECT_TRUE(shows_through(motion_));
+  EXPECT_EQ(links(rest_), rest_);
 }
 
 TEST_F(ComponentLinks, GoWithTheSurfaceWhereAChainLeavesTheFilm) {
@@ -70,7 +65,7 @@ TEST_F(ComponentLinks, OfTwoChainsTheNearerToTheCentreHasThePixel) {
 TEST_F(ComponentLinks, KeepWhereTheirWaysEnd) {
   chain(1, 2.375f);
   chain(4, 4.5f);
-  const std::vector<Vec2> off = link_component({rest_, std::vector<Vec2>(6, Vec2(0.25f, 0.0f))}, chains_, motion_).off_centre;
+  const std::vector<Vec2> off = link_component({rest_, std::vector<Vec2>(6, Vec2(0.25f, 0.0f))}, kRow, motion_).off_centre;
   EXPECT_EQ(off[1], Vec2(-0.125f, 0.0f));
   EXPECT_EQ(off[4], Vec2(0.0f)) << "a chain that rests does so exactly";
   EXPECT_EQ(off[5], Vec2(0.25f, 0.0f)) << "the surface's way";
@@ -102,6 +97,16 @@ TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
   limit_own_ways(&limited);
   EXPECT_EQ(limited.of_component, (std::vector<PixelLinks>{sources.of_component[0], sources.of_component[1], {}}));
   EXPECT_LE(replays_of_components(limited).pixels, 4u);
+}
+
+// Whatever came after a component that was too much was left out with it.
+TEST(ComponentReplays, AComponentThatIsTooMuchTakesNoOtherOnesPlace) {
+  SampleSources sources;
+  sources.links.pixel = {0, 1, 2, 3};
+  sources.of_component = {{Row{1, 0, 3, 3}}, {Row{1, 0, 3, 2}}, {Row{0, 1, 3, 3}}};
+  SampleSources limited = sources;
+  limit_own_ways(&limited);
+  EXPECT_EQ(limited.of_component, (std::vector<PixelLinks>{sources.of_component[0], {}, sources.of_component[2]}));
 }
 
 TEST(ComponentReplays, AreNoneWhereAllGoWithTheSurface) {

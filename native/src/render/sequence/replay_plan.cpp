@@ -7,6 +7,7 @@
 #include "integrator/pixel_loop.h"
 #include "render/component_replay.h"
 #include "temporal/component_links.h"
+#include "temporal/component_ways.h"
 #include "temporal/pixel_links.h"
 
 namespace gradus {
@@ -38,16 +39,15 @@ Sources sources_of_components(const CentreView& from, const CentreView& to, cons
   if (components.count() == 1 || settings.component_replays == 0) return {};
   Sources sources(static_cast<size_t>(components.count()));
   const ChainTracer tracer{*to.snapshot, to.camera, settings};
-  const auto residual = size_t(components.count() - 1);
-  const std::vector<ChainView> views = view_chains(from, settings, components, (uint32_t{1} << residual) - 1, cancel);
+  const std::vector<ChainMotion> ways = follow_components(from, tracer, components, components.all() & ~components.residual(), cancel);
   bool any = false;
-  for (size_t c = 0; c < views.size(); ++c) {
-    if (!shows_through(views[c])) continue;
-    sources[c] = inverse_links(link_component(links, views[c], track_chains(views[c], tracer, from.region, cancel)));
+  for (size_t c = 0; c < ways.size(); ++c) {
+    if (!shows_through(ways[c])) continue;
+    sources[c] = inverse_links(link_component(links, from.region, ways[c]));
     any = true;
   }
   if (!any) return {};
-  sources.back() = sources_of_residual(surface, sources);
+  if (components.residual() != 0) sources.back() = sources_of_residual(surface, sources);
   return sources;
 }
 

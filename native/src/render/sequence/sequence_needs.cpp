@@ -113,7 +113,9 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
 
   const uint64_t delivered = sizes.frame + 11 * kFloat, apart = sizes.components > 1 ? sizes.components : 0,
                  pictures = in_window * ((1 + apart) * channels + 1) * kFloat;
-  const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * kLink;
+  // Where components go by themselves: their ways, links, and what is sampled along them.
+  const uint64_t own = plan.components.count() > 1 ? uint64_t(plan.components.count()) * (3 * kLink + sizeof(Vec2)) : 0;
+  const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * kLink + own;
   PlannedBytes needs;
   needs.memory = area * std::max(sampling, delivered + pictures + delivery_bytes(sizes, method, in_window));
   needs.kept = area * (pictures + (regularized ? temporal_frame_bytes(sizes) + in_window * estimate_bytes(sizes) : 0));
