@@ -35,8 +35,12 @@ bool is_black(const ComponentPlanes& planes) {
 
 }  // namespace
 
+bool keeps_negative(uint32_t reconstruction) {
+  return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE;
+}
+
 void clamp_components(uint32_t reconstruction, int channels, std::vector<std::vector<float>>* images) {
-  if (reconstruction == GRADUS_RECONSTRUCTION_L2 || images->empty()) return;
+  if (keeps_negative(reconstruction) || images->empty()) return;
   const size_t pixels = images->front().size() / size_t(channels);
   for_rows(int(pixels), [&](int pixel) {
     for (size_t i = size_t(pixel) * size_t(channels); i < size_t(pixel) * size_t(channels) + 3; ++i) {

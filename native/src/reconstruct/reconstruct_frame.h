@@ -20,7 +20,10 @@ Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, flo
 std::vector<float> reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                          SolveReport* report);
 
-// Where pictures are clamped (contract 5.5) components become such that none is negative and that they add up to the picture as clamped.
+// Of light that lamps below 0 take away (contract 5.5): linear reconstructions keep it, others cut it off.
+bool keeps_negative(uint32_t reconstruction);
+
+// Where pictures are clamped components become such that none is negative and that they add up to the picture as clamped.
 // images: of the frame's channels; alpha stays what it is.
 void clamp_components(uint32_t reconstruction, int channels, std::vector<std::vector<float>>* images);
 

@@ -112,6 +112,7 @@ Reconstructed regularize(const Frame& frame, const Features& features, bool by_c
   std::optional<Frame> sum;
   if (components > 1) sum = sum_components(frame);
   Operator op(sum ? *sum : frame, features, cancel, report);
+  sum.reset();
   const float scale = op.scale();
   Field error = op.error();
   for_values(&error, [scale](float& value, int, int, int) { value *= scale * scale; });

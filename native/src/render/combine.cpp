@@ -70,12 +70,11 @@ void follow_picture(const std::vector<float>& before, const std::vector<float>& 
 std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
   const float exposure = frame.settings.film_exposure;
-  const bool keeps_negative = reconstruction == GRADUS_RECONSTRUCTION_L2;
   float* p = rgba.data();
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x, p += 4) {
       const float* from = image.data() + frame.index(x, y) * size_t(frame.channels);
-      for (int c = 0; c < 3; ++c) p[c] = exposure * (keeps_negative ? from[c] : std::max(from[c], 0.0f));
+      for (int c = 0; c < 3; ++c) p[c] = exposure * (keeps_negative(reconstruction) ? from[c] : std::max(from[c], 0.0f));
       p[3] = frame.channels == 4 ? std::clamp(from[3], 0.0f, 1.0f) : 1.0f;
     }
   }

@@ -23,8 +23,12 @@ size_t parting_pixels(const PixelLinks& own, const PixelLinks& surface) {
 void limit_own_ways(SampleSources* sources) {
   size_t pixels = 0;
   for (PixelLinks& own : sources->of_component) {
-    pixels += parting_pixels(own, sources->links);
-    if (pixels > sources->links.pixel.size()) own = {};
+    const size_t parting = parting_pixels(own, sources->links);
+    if (pixels + parting > sources->links.pixel.size()) {
+      own = {};
+    } else {
+      pixels += parting;
+    }
   }
   const auto& all = sources->of_component;
   if (std::all_of(all.begin(), all.end(), [](const auto& own) { return own.empty(); })) sources->of_component.clear();

@@ -21,7 +21,7 @@ struct ComponentReplays {
   uint64_t pixels = 0;           // that are sampled once more, for one component or another
 };
 
-// As long as a pixel is sampled more than once again on average, the last component that goes its own way goes with the surface after all.
+// Pixels are sampled no more than once again on average: a component beyond that goes with the surface after all.
 void limit_own_ways(SampleSources* sources);
 // By sources.of_component. A component without a way stays with the surface, whose samples are as good as others.
 ComponentReplays replays_of_components(const SampleSources& sources);

@@ -129,8 +129,9 @@ void FrameMaker::reconstruct(MadeFrame* made) {
   const bool with_error = wants(settings.passes, GRADUS_PASS_ERROR), with_flow = sequence_.settings_.with_flow && wants_flow(settings);
   const Region& region = made->delivered();
   Reconstructed picture;
+  const std::vector<std::vector<std::string>> groups = reconstructed_together(frame, settings.reconstruction);
   try {
-    for (const std::vector<std::string>& together : reconstructed_together(frame, settings.reconstruction)) {
+    for (const std::vector<std::string>& together : groups) {
       const SequenceMethod method{settings.reconstruction, settings.reconstruction_alpha, with_error};
       SequencePictures* pictures = sequence_.pictures(together, method, number_);
       Reconstructed part = pictures->take(sequence_.place_of(number_), is_cancelled_, &stats.solve);
@@ -144,6 +145,7 @@ void FrameMaker::reconstruct(MadeFrame* made) {
     sequence_.pictures_.clear();  // a window that was not solved has left no share in its frames
     throw;
   }
+  sequence_.keep_pictures(groups);
   made->combined = crop_picture(frame, settings.reconstruction, picture.image, region);
   if (with_error) made->error = crop_error(frame, picture.error, region);
   if (with_flow || wants_pictures(settings)) {

@@ -219,6 +219,10 @@ SequencePictures* Sequence::pictures(const std::vector<std::string>& components,
   return pictures.get();
 }
 
+void Sequence::keep_pictures(const std::vector<std::vector<std::string>>& groups) {
+  std::erase_if(pictures_, [&](const auto& entry) { return std::find(groups.begin(), groups.end(), entry.first) == groups.end(); });
+}
+
 Tracking Sequence::flows_to(int place, uint32_t reconstruction) {
   if (!settings_.with_flow || settings_.step != 1) return Tracking::NoNeighbour;  // the surfaces' motion is that from frame to frame
   const int32_t frame = frame_at(place);

@@ -82,6 +82,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // Of components that are reconstructed together, that have the picture of `frame`: begun anew where it was taken before, or by another
   // method.
   SequencePictures* pictures(const std::vector<std::string>& components, const SequenceMethod& method, int32_t frame);
+  // Of these groups of components alone: others are of a set that has changed.
+  void keep_pictures(const std::vector<std::vector<std::string>>& groups);
   // Whether flow leads from the frame before to the one at `place`; if not, why. reconstruction: of their pictures.
   Tracking flows_to(int place, uint32_t reconstruction);
   // nullptr: there is none, which is told once.
