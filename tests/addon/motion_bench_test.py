@@ -112,11 +112,20 @@ def test_an_error_that_goes_along_does_not_flicker() -> None:
 
 
 @pytest.mark.parametrize("mode", motion_modes.FLICKER)
-def test_every_mode_is_compared_with_windows_without_components(mode: str) -> None:
-    settings, other = motion_modes.MODES[mode].settings, motion_modes.MODES[motion_modes.compared_with(mode)].settings
-    assert (other["use_temporal"], other["use_decomposition"]) == (True, False)
-    assert settings["reconstruction"] == other["reconstruction"]
+def test_every_mode_is_compared_with_windows_along_surfaces(mode: str) -> None:
+    """Without components, and of components."""
+    settings = motion_modes.MODES[mode].settings
+    whole, parts = (motion_modes.MODES[of(mode)].settings for of in (motion_modes.compared_with, motion_modes.along_surfaces))
+    assert (whole["use_temporal"], whole["use_decomposition"]) == (True, False)
+    assert (parts["use_temporal"], parts["use_decomposition"], parts["component_replays"]) == (True, True, False)
+    assert {other["reconstruction"] for other in (whole, parts)} == {settings["reconstruction"]}
+    assert {other["integrator"] for other in (whole, parts)} == {settings["integrator"]}
     assert "use_temporal" in settings and "use_decomposition" in settings, "modes follow one another in one scene"  # noqa: PT018
+
+
+def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
+    assert motion_modes.DELIVERED in motion_modes.USUAL
+    assert set(motion_modes.USUAL) < set(motion_modes.FLICKER)
 
 
 def flicker_row(mode: str, flicker: float, seed: int = 0, **more: Any) -> dict:

@@ -23,7 +23,7 @@ from animation_references import file_of, reference
 from animation_scenes import Animation, select
 from animation_variants import SHUTTER, Variant, of_row
 from bench import append, bench_each, powers_of_two
-from motion_modes import FLICKER, MODES
+from motion_modes import FLICKER, MODES, USUAL
 from motion_renderer import MotionRenderer
 from motion_scenes import ANIMATIONS
 from results import FOLDER
@@ -178,7 +178,7 @@ def main() -> None:
     parser.add_argument("--loaded", action="store_true", help="the machine has other work: times are stored, but not shown")
     parser.add_argument("--light", type=int, default=LIGHT, help="samples per pixel of pictures that are predicted")
     parser.add_argument("--samples", type=powers_of_two, default=[4, 16])
-    parser.add_argument("--modes", type=lambda text: _chosen(FLICKER, text), default=list(FLICKER))
+    parser.add_argument("--modes", type=lambda text: _chosen(FLICKER, text), default=list(USUAL))
     arguments = parser.parse_args()
     bench_each(select(ANIMATIONS, arguments.scenes, arguments.frames), bench_motion, arguments)
 
