@@ -111,6 +111,29 @@ def test_an_error_that_goes_along_does_not_flicker() -> None:
     assert still[1] > 1e-5
 
 
+def test_pixels_that_are_not_finite_are_named() -> None:
+    """A mean over the others hid them."""
+    images = np.ones((2, HEIGHT, WIDTH, 3))
+    metrics.check_finite(images, "windows-l2")
+    images[1, 3, 4] = np.nan
+    images[0, 3, 4, 0] = np.inf
+    with pytest.raises(RuntimeError, match=f"windows-l2: 2 of {2 * HEIGHT * WIDTH} pixels are not finite"):
+        metrics.check_finite(images, "windows-l2")
+
+
+def test_flicker_of_a_picture_that_is_not_finite_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With its mode, scene and samples."""
+    import motion
+
+    images = np.ones((2, HEIGHT, WIDTH, 3))
+    converged = SimpleNamespace(mean=images, variance=0.0 * images, samples=8)
+    monkeypatch.setattr(motion, "reference", lambda *_: converged)
+    bench = SimpleNamespace(animation=SimpleNamespace(name="box"), samples=8, _own_ways=lambda: np.zeros((2, HEIGHT, WIDTH, 4)))
+    bench.renderer = SimpleNamespace(render=lambda *_: (images * np.where(np.arange(WIDTH) == 0, np.nan, 1.0)[:, None], {}))
+    with pytest.raises(RuntimeError, match=f"windows-l2 in box, 4 samples, seed 1: {2 * HEIGHT} of"):
+        next(motion.MotionBench._flicker(bench, motion.Job("flicker", "windows-l2", 4, 1)))
+
+
 @pytest.mark.parametrize("mode", motion_modes.FLICKER)
 def test_every_mode_is_compared_with_windows_along_surfaces(mode: str) -> None:
     """Without components, and of components."""

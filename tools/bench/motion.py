@@ -118,6 +118,8 @@ class MotionBench:
     def _flicker(self, job: Job) -> Iterator[dict]:
         converged, ways = reference(self.renderer, "path", self.samples), self._own_ways()
         images, answer = self.renderer.render(job.mode, job.samples, job.seed)
+        motion_metrics.check_finite(images, f"{job.mode} in {self.animation.name}, {job.samples} samples, seed {job.seed}")
+        motion_metrics.check_finite(converged.mean, f"converged frames of {self.animation.name}")
         measures = motion_metrics.flicker_measures(images, converged.mean, converged.variance, ways)
         yield {"cpu": answer["cpu"], "wall": answer["wall"], **measures, "reference_samples": converged.samples}
 

@@ -118,8 +118,14 @@ def own_ways(passes: Passes) -> np.ndarray:
     return ways
 
 
+def check_finite(images: np.ndarray, what: str) -> None:
+    """Of pixels (…, channels). Means over those that are finite would hide the others."""
+    if wrong := int((~np.isfinite(images).all(axis=-1)).sum()):
+        raise RuntimeError(f"{what}: {wrong} of {images[..., 0].size} pixels are not finite")
+
+
 def flicker_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, ways: np.ndarray) -> dict[str, float | int]:
-    """By their names in motion.jsonl, of the pixels that have a way alone; without the worst 0.1 %."""
+    """By their names in motion.jsonl, of the pixels that have a way alone; without the worst 0.1 %. All must be finite."""
     smooth = ways[..., 0] < NOWHERE
     along = temporal_metrics.warped_flicker_map(images, reference, variance, ways)
     errors = temporal_metrics.error_map(images, reference, variance)
