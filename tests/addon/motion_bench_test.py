@@ -220,6 +220,35 @@ def test_the_wheel_has_the_colours_of_the_maps() -> None:
     assert np.abs(shown[0, 0] - wheel[pictures.WHEEL // 2, 0]).max() > 0.5
 
 
+def arguments_of(**more: Any) -> SimpleNamespace:
+    import motion
+
+    usual = {
+        "parts": list(motion.PARTS), "size": None, "frames": 6, "blur": False, "seeds": 1, "repeats": 3, "samples": [4, 16],
+        "modes": list(motion_modes.USUAL), "light": 256, "loaded": False, "reference": 512,
+    }  # fmt: skip
+    return SimpleNamespace(**usual | more)
+
+
+def test_flicker_is_of_small_pictures_and_the_others_of_large_ones(capsys: pytest.CaptureFixture[str]) -> None:
+    import motion
+
+    sizes = {variant.size: parts for variant, parts in motion.parts_of(arguments_of()).items()}
+    assert sizes == {(160, 90): ["flicker"], (320, 180): ["truth", "prediction", "cost"]}
+    assert list(motion.parts_of(arguments_of(size=(64, 36))).values()) == [list(motion.PARTS)]
+    assert not capsys.readouterr().out
+
+
+def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    """A pixel has more than one vector then."""
+    import motion
+
+    ((variant, parts),) = motion.parts_of(arguments_of(blur=True)).items()
+    assert variant.shutter == 0.5
+    assert parts == ["truth", "cost"]
+    assert [line.split(":")[0] for line in capsys.readouterr().out.splitlines()] == ["SKIP prediction", "SKIP flicker"]
+
+
 @pytest.mark.module
 def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the sample with the mirror ball; what is done is not done again."""
@@ -238,10 +267,8 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
         monkeypatch.setattr(module, "FOLDER", tmp_path)
     monkeypatch.setattr(motion, "CHECKED", 8)
     (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 2)
-    arguments = SimpleNamespace(
-        parts=list(motion.PARTS), size=(64, 36), frames=2, blur=False, seeds=1, reference=8, light=8, samples=[2], loaded=False,
-        modes=["frames-l2", "windows-l2", "windows-parts-l2"],
-    )  # fmt: skip
+    modes = ["frames-l2", "windows-l2", "windows-parts-auto"]
+    arguments = arguments_of(size=(64, 36), frames=2, repeats=1, reference=8, light=8, samples=[2], modes=modes)
     for _ in range(2):
         motion.bench_motion(animation, arguments, "version", float("inf"))
     rows = [json.loads(line) for line in results.read_text().splitlines()]
