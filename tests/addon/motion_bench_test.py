@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import bpy
 import numpy as np
 import pytest
 
@@ -37,63 +38,104 @@ def forward(right: float, up: float) -> np.ndarray:
     return np.broadcast_to(np.array((-right, -up)), (HEIGHT, WIDTH, 2))
 
 
-def parts_of(now: np.ndarray, following: np.ndarray, own: np.ndarray, deviation: float = 0.0, count: int = 4) -> list[metrics.Passes]:
-    """Renderings of two frames whose reflection goes its own way while surfaces rest."""
+def motion_of(own: np.ndarray, frames: int = 2) -> metrics.Passes:
+    """A reflection that goes its own way while surfaces rest, and light on what it shows that rests with them; of all frames the same."""
+    motion = np.broadcast_to(np.concatenate([own, own], axis=-1), (frames, HEIGHT, WIDTH, 4)).copy()
+    passes = {"Vector": np.zeros_like(motion), "Path Reflection Motion": motion}
+    passes["Path Reflection Irradiance Motion"] = np.zeros_like(motion)
+    for what in ("", "Irradiance "):
+        passes[f"Path Reflection {what}Tracked"] = np.ones((frames, HEIGHT, WIDTH, 1))
+    return passes
+
+
+def parts_of(now: np.ndarray, following: np.ndarray, deviation: float = 0.0, count: int = 4) -> list[metrics.Passes]:
+    """Renderings of two frames of a reflection."""
     random = np.random.default_rng(1)
     both = np.stack([now, following])[..., None] * np.ones(3)
-    motion = np.zeros((2, HEIGHT, WIDTH, 4))
-    motion[0, ..., 2:] = own
-    passes = {"Vector": np.zeros((2, HEIGHT, WIDTH, 4)), "Path Reflection Motion": motion}
-    passes["Path Reflection Tracked"] = np.ones((2, HEIGHT, WIDTH, 1))
-    passes["Path Reflection Reflectance"] = 0.5 * both
+    passes = {"Path Reflection Reflectance": 0.5 * both, "Path Reflection Irradiance": np.ones_like(both)}
     noise = [deviation * random.normal(size=(2, HEIGHT, WIDTH, 1)) for _ in range(count)]
     return [passes | {"Path Reflection": both + n, "Combined": both + n} for n in noise]
 
 
+def predicted(own: np.ndarray, following: np.ndarray, deviation: float = 0.0, kind: str = "") -> dict[str, Any]:
+    motion = metrics.of_frame(motion_of(own), 0)
+    return metrics.predict(motion, parts_of(waves(), following, deviation), "Reflection")[kind].row()
+
+
 def test_the_right_vectors_predict_the_next_frame_and_the_surface_does_not() -> None:
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT)), "Reflection")[0].row()
+    found = predicted(forward(*SHIFT), waves(*SHIFT))
     assert found["all"]["own"] > 0.99
     assert found["all"]["surface"] < 0.2
     assert found["moving"]["pixels"] == found["all"]["pixels"] > 0.8 * HEIGHT * WIDTH, "what leaves the picture does not count"
+    assert found["lit"] == HEIGHT * WIDTH
 
 
 def test_vectors_of_the_wrong_sign_predict_nothing() -> None:
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), -forward(*SHIFT)), "Reflection")[0].row()
-    assert found["all"]["own"] < 0.2
+    assert predicted(-forward(*SHIFT), waves(*SHIFT))["all"]["own"] < 0.2
 
 
 def test_noise_of_independent_parts_is_no_error_of_prediction() -> None:
     """Each part is off by 4 %, their mean by 2 %."""
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.04), "Reflection")[0].row()
+    found = predicted(forward(*SHIFT), waves(*SHIFT), deviation=0.04)
     assert found["all"]["own"] > 0.9
     assert found["all"]["noise"] > 0.9
-    loud = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.4), "Reflection")[0].row()
+    loud = predicted(forward(*SHIFT), waves(*SHIFT), deviation=0.4)
     assert loud["all"]["noise"] < 0.8, "too much noise must be seen in what is told of it"
 
 
 def test_light_that_changes_is_an_error_of_prediction() -> None:
-    found = metrics.predict(parts_of(waves(), 1.05 * waves(*SHIFT), forward(*SHIFT), deviation=0.02), "Reflection")[0].row()
-    assert found["all"]["own"] < 0.1
+    assert predicted(forward(*SHIFT), 1.05 * waves(*SHIFT), deviation=0.02)["all"]["own"] < 0.1
 
 
 def test_light_that_changes_is_none_of_what_is_shown() -> None:
     """Reflectance goes along while the light changes."""
-    parts = parts_of(waves(), waves(*SHIFT), forward(*SHIFT))
+    parts = parts_of(waves(), waves(*SHIFT))
     for part in parts:
         part["Path Reflection"] = part["Path Reflection"] * np.array((1.0, 1.2))[:, None, None, None]
-    light, shown = metrics.predict(parts, "Reflection")
-    assert light.row()["all"]["own"] < 0.1
-    assert shown.row()["all"]["own"] > 0.99
+    found = metrics.predict(metrics.of_frame(motion_of(forward(*SHIFT)), 0), parts, "Reflection")
+    assert found[""].row()["all"]["own"] < 0.1
+    assert found["reflectance"].row()["all"]["own"] > 0.99
+
+
+def test_irradiance_is_predicted_by_its_own_motion_beside_that_of_what_it_falls_on() -> None:
+    """A shadow goes to the left over what is seen to go to the right."""
+    parts, passes = parts_of(waves(), waves(*SHIFT)), motion_of(forward(*SHIFT))
+    for part in parts:
+        part["Path Reflection Irradiance"] = np.stack([waves(), waves(-4.0, 2.0)])[..., None] * np.ones(3)
+    passes["Path Reflection Irradiance Motion"][..., 2:] = forward(-4.0, 2.0)
+    passes["Path Reflection Irradiance Tracked"][:, :10] = -9.0
+    found = metrics.predict(metrics.of_frame(passes, 0), parts, "Reflection")["irradiance"]
+    shares = found.row()
+    assert shares["all"]["own"] > 0.99
+    assert shares["all"]["surface"] < 0.2
+    assert not found.counts[:10].any(), "flow did not find it"
+    assert shares["moving"]["pixels"] == shares["all"]["pixels"] < 0.8 * shares["lit"]
 
 
 def test_pixels_without_a_track_do_not_count() -> None:
-    parts = parts_of(waves(), waves(*SHIFT), forward(*SHIFT))
-    parts[0]["Path Reflection Tracked"][0, :, : WIDTH // 2] = -4.0
-    assert metrics.predict(parts, "Reflection")[0].counts[:, : WIDTH // 2].sum() == 0
+    passes = motion_of(forward(*SHIFT))
+    passes["Path Reflection Tracked"][0, :, : WIDTH // 2] = -4.0
+    found = metrics.predict(metrics.of_frame(passes, 0), parts_of(waves(), waves(*SHIFT)), "Reflection")
+    assert found[""].counts[:, : WIDTH // 2].sum() == 0
+
+
+def test_pixels_count_where_both_ways_lead_into_the_picture() -> None:
+    """What the surface's vector had lead out of it was an error of 100 %, and spread about."""
+    passes = motion_of(forward(0.0, 0.0))
+    passes["Vector"][0, :, WIDTH // 2 :, 2] = -WIDTH
+    found = metrics.predict(metrics.of_frame(passes, 0), parts_of(waves(), waves()), "Reflection")[""]
+    assert not found.counts[:, WIDTH // 2 :].any()
+    assert found.row()["all"]["surface"] == 1.0
+    assert found.row()["all"]["pixels"] == HEIGHT * WIDTH // 2
+
+
+def test_components_are_those_that_tell_whether_they_are_tracked() -> None:
+    """Irradiance has a motion of its own, and is no component."""
+    assert metrics.components(motion_of(forward(0.0, 0.0))) == ["Reflection"]
 
 
 def test_own_ways_are_those_of_what_a_pixel_mostly_shows() -> None:
-    passes = parts_of(waves(), waves(), forward(*SHIFT))[0]
+    passes = motion_of(forward(*SHIFT)) | parts_of(waves(), waves())[0]
     passes["Combined"] = passes["Path Reflection"] * np.where(np.arange(WIDTH) < 20, 4.0, 1.0)[:, None]
     ways = metrics.own_ways(passes)
     assert (ways[:, :, :20] == metrics.NOWHERE).all()
@@ -146,11 +188,6 @@ def test_every_mode_is_compared_with_windows_along_surfaces(mode: str) -> None:
     assert "use_temporal" in settings and "use_decomposition" in settings, "modes follow one another in one scene"  # noqa: PT018
 
 
-def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
-    assert motion_modes.DELIVERED in motion_modes.USUAL
-    assert set(motion_modes.USUAL) < set(motion_modes.FLICKER)
-
-
 def flicker_row(mode: str, flicker: float, seed: int = 0, **more: Any) -> dict:
     row = {"part": "flicker", "scene": "mirror_and_glass", "frames": [10, 15], "width": 320, "height": 180, "shutter": 0.0}
     row |= {"mode": mode, "samples": 16, "seed": seed, "version": "new", "cpu": 6.0}
@@ -162,6 +199,11 @@ def tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *rows: dict) -> list
     file.write_text("".join(json.dumps(row) + "\n" for row in rows))
     monkeypatch.setattr(report, "RESULTS", file)
     return [block for block in report.blocks() if isinstance(block, document.Table)]
+
+
+def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
+    assert motion_modes.DELIVERED in motion_modes.USUAL
+    assert set(motion_modes.USUAL) < set(motion_modes.FLICKER)
 
 
 def test_flicker_is_told_over_that_of_windows_of_the_same_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -212,7 +254,7 @@ def test_costs_are_ratios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_the_wheel_has_the_colours_of_the_maps() -> None:
     """What moves to the right has the colour at the right of the wheel."""
-    passes = {name: images[0] for name, images in parts_of(waves(), waves(), forward(*SHIFT))[0].items()}
+    passes = metrics.of_frame(motion_of(forward(*SHIFT)), 0)
     passes["Path Reflection Motion"] = np.broadcast_to(np.array((-4.0, 0.0, -4.0, 0.0)), (HEIGHT, WIDTH, 4))
     shown = pictures.component_sheet.motion(passes, "Reflection")
     wheel = np.asarray(pictures.wheel(4.0)) / 255.0
@@ -249,6 +291,37 @@ def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[s
     assert [line.split(":")[0] for line in capsys.readouterr().out.splitlines()] == ["SKIP prediction", "SKIP flicker"]
 
 
+def test_what_is_measured_of_cost_is_asked_for() -> None:
+    """Without a pass of theirs no component is made, and all were as cheap as none."""
+    import motion
+
+    asked = {mode: set(passes) for mode, (_, passes) in motion.COST_MODES.items()}
+    assert not asked["whole"]
+    assert all("components" in passes for mode, passes in asked.items() if mode != "whole")
+    assert asked["parts-motion"] - asked["parts"] == {"component_motion"}
+    assert asked["parts-surfaces"] - asked["parts"] == {"component_reflectance", "component_normal"}
+    (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 6)
+    jobs = motion.jobs_of(animation, arguments_of(repeats=2), ["cost"])
+    assert [(job.mode, job.seed) for job in jobs] == [(mode, seed) for seed in range(2) for mode in asked]
+
+
+@pytest.mark.module
+def test_passes_that_are_not_wanted_are_off(scene: bpy.types.Scene) -> None:
+    import motion_worker
+
+    layer = scene.view_layers[0]
+    known = {switch.identifier for switch in layer.gradus.bl_rna.properties if switch.identifier.startswith("use_pass_component")}
+    assert {f"use_pass_{name}" for name in motion_worker.OF_COMPONENTS} == known
+    motion_worker.set_passes(layer, motion_worker.SWITCHES)
+    assert layer.use_pass_vector
+    assert all(getattr(layer.gradus, name) for name in known)
+    motion_worker.set_passes(layer, ["components"])
+    assert not layer.use_pass_vector
+    assert [name for name in known if getattr(layer.gradus, name)] == ["use_pass_components"]
+    with pytest.raises(ValueError, match="component_color"):
+        motion_worker.set_passes(layer, ["component_color"])
+
+
 @pytest.mark.module
 def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the sample with the mirror ball; what is done is not done again."""
@@ -273,10 +346,15 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
         motion.bench_motion(animation, arguments, "version", float("inf"))
     rows = [json.loads(line) for line in results.read_text().splitlines()]
     counts = {part: sum(row["part"] == part for row in rows) for part in motion.PARTS}
-    assert counts["flicker"] == counts["cost"] == 3
+    assert (counts["flicker"], counts["cost"]) == (3, 4)
+    seconds = {row["mode"]: row["seconds"] for row in rows if row["part"] == "cost"}
+    assert [mode for mode, found in seconds.items() if found["links"] > 0.0] == ["parts-motion"]
     assert counts["truth"] >= 3 and counts["prediction"] >= 3  # noqa: PT018
     reflected = next(row for row in rows if (row["part"], row["component"]) == ("truth", "Reflection"))
     assert reflected["check"]["error"]["quantile_95"] < 0.5
+    predictions = {row["component"]: row for row in rows if row["part"] == "prediction"}
+    assert predictions["Residual"]["all"]["pixels"] > 0, "its motion is by flow, which needs the frames beside"
+    assert predictions["Diffuse"]["irradiance_all"]["pixels"] > 0
     assert (tmp_path / pictures.file_name(animation.name)).exists()
     assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 7
     assert variants.of_row(rows[0]).size == (64, 36)

@@ -25,7 +25,7 @@ from animation_references import file_of, reference
 from animation_scenes import Animation, select
 from animation_variants import SHUTTER, Variant, of_row
 from bench import append, bench_each, powers_of_two
-from motion_modes import FLICKER, MODES, USUAL
+from motion_modes import DELIVERED, FLICKER, MODES, USUAL
 from motion_renderer import MotionRenderer
 from motion_scenes import ANIMATIONS
 from results import FOLDER
@@ -39,7 +39,16 @@ SIZES = {TRUTH: (320, 180), PREDICTION: (320, 180), FLICKERS: (160, 90), COST: (
 CHECKED = 400  # pixels of each component that are held against the truth
 LIGHT, LIGHT_PARTS = 256, 4  # samples of the pictures whose change is predicted, and renderings that share them
 COST_SAMPLES = 16
-COST_MODES = ("whole", "parts", "parts-motion")  # the last one with the passes of motion
+PICTURES = ("components", "component_reflectance", "component_irradiance")
+WAYS = ("vector", "components", "component_motion", "component_irradiance_motion")
+OWN_WAYS = ("components", "component_motion")
+COST_MODES: dict[str, tuple[str, tuple[str, ...]]] = {
+    "whole": ("whole", ()),
+    "parts": ("parts", ("components",)),
+    "parts-surfaces": ("parts", ("components", "component_reflectance", "component_normal")),
+    "parts-motion": ("parts", ("components", "component_motion")),
+}
+"""Modes and the passes that are asked for: of components that nobody asks for no picture is made."""
 
 
 @dataclass(frozen=True)
@@ -120,15 +129,21 @@ class MotionBench:
                 yield {"component": name, **{key: value for key, value in part.items() if not key.endswith("_cpu")}}
 
     def _prediction(self, job: Job) -> Iterator[dict]:
+        """Pictures of frames by themselves, where windows would have made the next one like what their vectors lead to. Vectors as an
+        animation has them: flow needs the frame before and the next one."""
+        first, samples = min(self.animation.frames[0], job.frame - 1), job.samples // LIGHT_PARTS
+        animation = self.renderer.passes(DELIVERED, samples, 1000 + LIGHT_PARTS, (first, self.animation.frames[1]), WAYS)
+        motion = motion_metrics.of_frame(animation, job.frame - first)
         frames = (job.frame, job.frame + 1)
-        parts = [self.renderer.passes(job.mode, job.samples // LIGHT_PARTS, 1000 + part, frames) for part in range(LIGHT_PARTS)]
-        found = {name: motion_metrics.predict(parts, name) for name in motion_metrics.components(parts[0])}
+        parts = [self.renderer.passes(job.mode, samples, 1000 + part, frames, PICTURES) for part in range(LIGHT_PARTS)]
+        found = {name: motion_metrics.predict(motion, parts, name) for name in motion_metrics.components(motion)}
         if self.animation.scene.own:
-            motion_pictures.store(self.animation.name, self.variant, parts[0], {name: light for name, (light, _) in found.items()})
-        for name, (light, shown) in found.items():
-            if light.counts.any():
-                again = {f"reflectance_{name}": shares for name, shares in shown.row().items()}
-                yield {"component": name, **light.row(), **again}
+            now = motion | motion_metrics.of_frame(parts[0], 0)
+            motion_pictures.store(self.animation.name, now, {name: kinds[""] for name, kinds in found.items()})
+        for name, kinds in found.items():
+            if kinds[""].counts.any():
+                rows = {kind: prediction.row() for kind, prediction in kinds.items()}
+                yield {"component": name, **{f"{kind}_{key}".strip("_"): value for kind, row in rows.items() for key, value in row.items()}}
 
     def _flicker(self, job: Job) -> Iterator[dict]:
         converged, ways = reference(self.renderer, "path", self.samples), self._own_ways()
@@ -139,10 +154,9 @@ class MotionBench:
         yield {"cpu": answer["cpu"], "wall": answer["wall"], **measures, "reference_samples": converged.samples}
 
     def _cost(self, job: Job) -> Iterator[dict]:
-        mode = job.mode.removesuffix("-motion")
-        out = self.renderer.folder / "cost.npz"
-        more = {"frames": (job.frame, job.frame), "passes": job.mode.endswith("-motion")}
-        answer = self.renderer.render_to(out if more["passes"] else out.with_suffix(".npy"), mode, job.samples, job.seed, **more)
+        mode, passes = COST_MODES[job.mode]
+        out = self.renderer.folder / ("cost.npz" if passes else "cost.npy")
+        answer = self.renderer.render_to(out, mode, job.samples, job.seed, frames=(job.frame, job.frame), passes=passes)
         yield {"cpu": answer["cpu"], "seconds": answer["seconds"][0]}
 
     def _own_ways(self) -> np.ndarray:
@@ -150,7 +164,7 @@ class MotionBench:
         if self._ways is None:
             file = file_of(self.renderer, f"own-ways-{self.version}")
             if not file.exists():
-                passes = self.renderer.passes("parts", 32, 1000, self.animation.frames)
+                passes = self.renderer.passes("parts", 32, 1000, self.animation.frames, OWN_WAYS)
                 file.parent.mkdir(parents=True, exist_ok=True)
                 np.savez_compressed(file, ways=motion_metrics.own_ways(passes).astype(np.float32))
             self._ways = np.load(file)["ways"].astype(np.float64)

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 import maps
+import motion_metrics
 import numpy as np
-from animation_variants import Variant
 from motion_metrics import Passes, Prediction
 from PIL import Image, ImageDraw
 from results import FOLDER
@@ -26,35 +26,45 @@ def file_name(scene: str) -> str:
     return f"{FOLDER_NAME}/motion-{scene}.webp"
 
 
-def store(scene: str, variant: Variant, passes: Passes, found: dict[str, Prediction]) -> None:
-    """Of the usual variant alone."""
-    if variant.shutter == 0.0:
-        (FOLDER / FOLDER_NAME).mkdir(parents=True, exist_ok=True)
-        sheet(passes, found).save(FOLDER / file_name(scene), quality=QUALITY, method=6)
+def store(scene: str, passes: Passes, found: dict[str, Prediction]) -> None:
+    _save(sheet(passes, found), file_name(scene))
+
+
+def _save(picture: Image.Image, file: str) -> None:
+    (FOLDER / FOLDER_NAME).mkdir(parents=True, exist_ok=True)
+    picture.save(FOLDER / file, quality=QUALITY, method=6)
 
 
 def sheet(passes: Passes, found: dict[str, Prediction]) -> Image.Image:
-    """Of the components that anything is told of; the wheel of colours in a corner of the first one's motion."""
-    first = {name: frames[0] for name, frames in passes.items()}
+    """Of the components that anything is told of, of one frame; the wheel of colours in a corner of the first one's motion."""
     names = [name for name, prediction in found.items() if prediction.counts.any()]
-    longest = component_sheet.longest_motion(first)
-    white = max(float(np.percentile(first["Combined"][..., :3], component_sheet.BRIGHTEST)), 1e-6)
+    longest = max(longest_motion(passes, name) for name in names)
+    white = max(float(np.percentile(passes["Combined"][..., :3], component_sheet.BRIGHTEST)), 1e-6)
     rows = {
-        "": lambda name: component_sheet.light(first[f"Path {name}"], white),
-        "motion": lambda name: component_sheet.motion(first, name, longest),
+        "": lambda name: component_sheet.light(passes[f"Path {name}"], white),
+        "motion": lambda name: component_sheet.motion(passes, name, longest),
         "error of its prediction": lambda name: errors(found[name].own, found[name].counts),
         "by the surface's motion": lambda name: errors(found[name].surface, found[name].counts),
     }
-    height, width = first["Combined"].shape[:2]
+    height, width = passes["Combined"].shape[:2]
     made = Image.new("RGB", (len(names) * (width + GAP) - GAP, len(rows) * (height + HEADER) - GAP), "white")
     text = ImageDraw.Draw(made)
     for row, (about, show) in enumerate(rows.items()):
         for column, name in enumerate(names):
             place = column * (width + GAP), row * (height + HEADER)
             text.text((place[0] + 2, place[1]), f"{name} {about}", fill="black")
-            made.paste(Image.fromarray(np.uint8(np.rint(255.0 * show(name)))), (place[0], place[1] + HEADER - GAP))
+            made.paste(_image(show(name)), (place[0], place[1] + HEADER - GAP))
     made.paste(wheel(longest), (GAP, height + 2 * HEADER))
     return made
+
+
+def _image(shown: np.ndarray) -> Image.Image:
+    return Image.fromarray(np.uint8(np.rint(255.0 * shown)))
+
+
+def longest_motion(passes: Passes, name: str) -> float:
+    """Of one component, from the frame before, in pixels."""
+    return float(np.abs(passes[f"Path {name}{motion_metrics.MOTION}"][..., :2]).max())
 
 
 def errors(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
@@ -71,6 +81,6 @@ def wheel(longest: float) -> Image.Image:
     inside = np.hypot(x, y) <= radius
     shown = np.where(inside[..., None], component_sheet.wheel(-moved, longest), 1.0)
     made = Image.new("RGB", (WHEEL, WHEEL + HEADER), "white")
-    made.paste(Image.fromarray(np.uint8(np.rint(255.0 * shown))))
+    made.paste(_image(shown))
     ImageDraw.Draw(made).text((2, WHEEL), f"{longest:.1f} pixels", fill="black")
     return made
