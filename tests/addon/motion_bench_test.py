@@ -262,6 +262,34 @@ def test_the_wheel_has_the_colours_of_the_maps() -> None:
     assert np.abs(shown[0, 0] - wheel[pictures.WHEEL // 2, 0]).max() > 0.5
 
 
+def strip_of(frames: int) -> metrics.Passes:
+    """A reflection that goes to the right by two pixels a frame, on a surface at rest, in the left half of a picture."""
+    light = np.stack([waves(2.0 * k) for k in range(frames)])[..., None] * np.ones(3)
+    light[:, :, WIDTH // 2 :] = 0.0
+    return motion_of(forward(2.0, 0.0), frames) | {"Path Reflection": light, "Path Transmission": 0.5 * light, "Combined": light + 0.1}
+
+
+def test_strips_show_what_the_next_frame_differs_by_either_motion() -> None:
+    passes = strip_of(3)
+    own, surface, counts = pictures.differences(passes, "Reflection", 1)
+    assert not counts[:, WIDTH // 2 :].any(), "there is no light"
+    assert own[counts & (np.arange(WIDTH) < WIDTH // 2 - 8)].max() < 1e-4
+    assert np.sqrt(surface[counts].mean()) > 0.1
+    shown = np.asarray(pictures.strip(passes, "Reflection"))
+    assert shown.shape == (3 * (HEIGHT + pictures.HEADER) - pictures.GAP, 3 * (WIDTH + pictures.GAP) - pictures.GAP, 3)
+    rows = [pictures.HEADER - pictures.GAP + row * (HEIGHT + pictures.HEADER) for row in range(3)]
+    beneath = [shown[top : top + HEIGHT, : WIDTH // 2 - 8].mean() for top in rows[1:]]
+    assert beneath[0] < 0.5 * beneath[1], "errors are bright"
+    assert (shown[rows[1] : rows[1] + HEIGHT, 2 * (WIDTH + pictures.GAP) :] == 255).all(), "nothing follows the last frame"
+
+
+def test_strips_are_of_the_brightest_of_what_mirrors_and_glass_show() -> None:
+    passes = strip_of(2)
+    assert pictures.brightest(passes) == "Reflection"
+    assert pictures.brightest(passes | {"Path Transmission": 3.0 * passes["Path Reflection"]}) == "Transmission"
+    assert pictures.brightest({"Path Diffuse": passes["Combined"]}) == ""
+
+
 def arguments_of(**more: Any) -> SimpleNamespace:
     import motion
 
@@ -355,6 +383,8 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     predictions = {row["component"]: row for row in rows if row["part"] == "prediction"}
     assert predictions["Residual"]["all"]["pixels"] > 0, "its motion is by flow, which needs the frames beside"
     assert predictions["Diffuse"]["irradiance_all"]["pixels"] > 0
-    assert (tmp_path / pictures.file_name(animation.name)).exists()
+    assert all((tmp_path / of(animation.name)).exists() for of in (pictures.file_name, pictures.strip_name))
+    files = [block.file for block in report.blocks() if isinstance(block, document.Figure)]
+    assert files[1:] == [pictures.file_name(animation.name), pictures.strip_name(animation.name)]
     assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 7
     assert variants.of_row(rows[0]).size == (64, 36)

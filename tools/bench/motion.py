@@ -140,6 +140,7 @@ class MotionBench:
         if self.animation.scene.own:
             now = motion | motion_metrics.of_frame(parts[0], 0)
             motion_pictures.store(self.animation.name, now, {name: kinds[""] for name, kinds in found.items()})
+            motion_pictures.store_strip(self.animation.name, animation)
         for name, kinds in found.items():
             if kinds[""].counts.any():
                 rows = {kind: prediction.row() for kind, prediction in kinds.items()}

@@ -258,8 +258,11 @@ def cost(rows: Rows) -> list[Block]:
 
 
 def sheets() -> list[Block]:
-    files = {animation.name: motion_pictures.file_name(animation.name) for animation in ANIMATIONS if animation.scene.own}
-    found = [Figure(file, f"{name}: its components, their motion, and errors of what it predicts") for name, file in files.items()
-             if (FOLDER / file).exists()]  # fmt: skip
+    """Pictures of the project's own scenes."""
+    names = [animation.name for animation in ANIMATIONS if animation.scene.own]
+    files = {motion_pictures.file_name(name): f"{name}: its components, their motion, and errors of what it predicts" for name in names}
+    strips = {motion_pictures.strip_name(name): f"{name}: one component over the frames, what the next one differs" for name in names}
+    shown = [Figure(file, caption) for name in zip(files.items(), strips.items(), strict=True) for file, caption in name]
+    found = [figure for figure in shown if (FOLDER / figure.file).exists()]
     legend = [Figure("error-scale.svg", "errors of prediction; grey: nothing to predict, or not tracked")]
     return [Text("### Components, their motion, and what it predicts"), *legend, *found] if found else []
