@@ -201,6 +201,15 @@ def tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *rows: dict) -> list
     return [block for block in report.blocks() if isinstance(block, document.Table)]
 
 
+def column(table: document.Table, name: str) -> dict[str, str]:
+    """By labels of modes, of which each has one row."""
+    return {row[table.columns.index("mode")]: row[table.columns.index(name)] for row in table.rows}
+
+
+LABELS = {name: mode.label for name, mode in motion_modes.MODES.items()}
+TIMES = ("CPU-s a frame", "F at equal time / windows", "F at equal time / components along surfaces")
+
+
 def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
     assert motion_modes.DELIVERED in motion_modes.USUAL
     assert set(motion_modes.USUAL) < set(motion_modes.FLICKER)
@@ -208,23 +217,62 @@ def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
 
 def test_flicker_is_told_over_that_of_windows_of_the_same_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [flicker_row("windows-l2", 1.0), flicker_row("windows-l2", 4.0, 1), flicker_row("windows-parts-l2", 0.5)]
-    table = tables(tmp_path, monkeypatch, *rows)[-1]
-    ratios = {row[1]: row[9] for row in table.rows}
-    assert ratios[motion_modes.MODES["windows-parts-l2"].label] == "0.50"
+    table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-parts-surfaces-l2", 0.8))[-1]
+    assert column(table, "F / windows")[LABELS["windows-parts-l2"]] == "0.500"
+    assert column(table, "F / components along surfaces")[LABELS["windows-parts-l2"]] == "0.625"
 
 
 def test_times_of_a_loaded_machine_are_not_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    modes = {"windows-l2": 1.0, "windows-parts-l2": 0.5}
+    rows = {"windows-l2": 1.0, "windows-parts-surfaces-l2": 1.0, "windows-parts-l2": 0.5}
     for more, told in (({}, True), ({"loaded": True}, False)):
-        runs = [flicker_row(mode, flicker / n, samples=n, cpu=0.5 * n, **more) for mode, flicker in modes.items() for n in (4, 16)]
+        runs = [flicker_row(mode, flicker / n, samples=n, cpu=0.5 * n, **more) for mode, flicker in rows.items() for n in (4, 16)]
         table = tables(tmp_path, monkeypatch, *runs)[-1]
-        assert all((row[4] != "–") == told and (row[11] != "–") == told for row in table.rows)
+        assert all((cell != "–") == told for name in TIMES for cell in column(table, name).values())
+    assert column(table, "F / windows")[LABELS["windows-parts-l2"]] == "0.500", "samples are the same on any machine"
+
+
+def test_flicker_at_equal_time_charges_what_own_ways_take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half the flicker at the same samples, for a fifth more time. One count of samples cannot tell."""
+    name = "F at equal time / windows"
+    for counts, told in (((16,), "–"), ((4, 16), "0.600")):
+        rows = [flicker_row("windows-l2", 1.0 / n, samples=n, cpu=float(n)) for n in counts]
+        rows += [flicker_row("windows-parts-l2", 0.5 / n, samples=n, cpu=1.2 * n) for n in counts]
+        assert column(tables(tmp_path, monkeypatch, *rows)[-1], name)[LABELS["windows-parts-l2"]] == told
+
+
+def test_bars_of_flicker_name_scenes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    flickers = {"mirror_and_glass": 0.5, "moving-box": 1.021, "animated": 0.9}
+    rows = [flicker_row("windows-parts-surfaces-auto", 1.0, scene=scene) for scene in flickers]
+    rows += [flicker_row("windows-parts-auto", flicker, scene=scene) for scene, flicker in flickers.items()]
+    table = tables(tmp_path, monkeypatch, *rows)[-2]
+    (flicker, _) = table.rows
+    assert flicker[1:5] == ["components along surfaces", "F at equal samples", "3", "0.900"]
+    assert flicker[5:] == ["0.500 (mirror_and_glass)", "1.021 (moving-box)", "mirror_and_glass", "moving-box"]
 
 
 def test_the_newest_version_of_a_part_replaces_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [flicker_row("windows-l2", 1.0, version="old"), flicker_row("windows-parts-l2", 1.0, version="old")]
     table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-l2", 2.0))[-1]
-    assert [row[5] for row in table.rows] == ["2.0000", "1.0000"]
+    assert list(column(table, "F along").values()) == ["2.0000", "1.0000"]
+
+
+def test_versions_are_not_compared_with_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their pixels are others: each has its own ways."""
+    modes = ("windows-l2", "windows-parts-l2")
+    rows = [flicker_row(mode, 1.0 / n, version="old", samples=n, cpu=float(n)) for mode in modes for n in (4, 16)]
+    newer = [flicker_row("windows-l2", 2.0 / n, samples=n, cpu=float(n)) for n in (4, 16)]
+    for more, told in (([], "1.000"), (newer, "–")):
+        made = tables(tmp_path, monkeypatch, *rows, *more)[-1]
+        for name in ("F / windows", "relMSE / windows", "F at equal time / windows"):
+            assert column(made, name)[LABELS["windows-parts-l2"]] == told
+
+
+def test_another_size_of_truth_replaces_that_of_the_version_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "motion.jsonl"
+    rows = [flicker_row("", 0.0, version=version, width=width) | {"part": "truth"} for version, width in (("old", 160), ("new", 320))]
+    file.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    monkeypatch.setattr(report, "RESULTS", file)
+    assert [row["width"] for row in report.load()["truth"]] == [320]
 
 
 def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -232,7 +280,7 @@ def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.M
     import motion
 
     loaded, quiet = flicker_row("windows-l2", 1.0, loaded=True, frame=0), flicker_row("windows-l2", 2.0, frame=0)
-    assert [row[5] for row in tables(tmp_path, monkeypatch, loaded, quiet)[-1].rows] == ["2.0000"]
+    assert list(column(tables(tmp_path, monkeypatch, loaded, quiet)[-1], "F along").values()) == ["2.0000"]
     monkeypatch.setattr(motion, "RESULTS", tmp_path / "motion.jsonl")
     (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 6)
     for row, done in ((loaded, 0), (quiet, 1)):
@@ -246,10 +294,42 @@ def cost_row(mode: str, **seconds: float) -> dict:
 
 
 def test_costs_are_ratios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [cost_row("whole"), cost_row("parts", sample=1.04, reconstruct=0.7), cost_row("parts-motion", sample=1.0, links=0.02)]
+    rows = [cost_row("whole"), cost_row("parts", sample=1.04, reconstruct=0.7), cost_row("parts-surfaces", sample=1.1)]
+    rows += [cost_row("parts-motion", sample=2.0, links=0.062)]
     table = tables(tmp_path, monkeypatch, *rows)[-1]
-    assert table.rows == [["mirror_and_glass", "1.040", "1.400", "0.020", "1"]]
+    assert table.rows == [["mirror_and_glass", "1.040", "1.100", "1.400", "0.031", "1"]]
+    text = next(block.markdown for block in report.blocks() if "### Cost" in block.as_markdown())
+    assert "Missed: motion / sampling in mirror_and_glass (0.031)." in text
     assert len(tables(tmp_path, monkeypatch, *(row | {"loaded": True} for row in rows))) == 1, "no ratio of a loaded machine"
+
+
+def truth_row(component: str, tracked: int) -> dict:
+    check = {"searched": 10, "exist": 10, "tracked": 10, "error": {"median": 0.01, "quantile_95": 0.02}}
+    return flicker_row("", 0.0) | {"part": "truth", "component": component, "chains": 10000, "pixels": {"tracked": tracked}, "check": check}
+
+
+def test_components_of_which_too_little_is_tracked_are_named() -> None:
+    text = report.about_truth([truth_row("Reflection", 9499), truth_row("Transmission", 9500)]).markdown
+    assert "tracked in 1, of what can be followed in 2. Less of all pixels: mirror_and_glass, Reflection (94.99 %)." in text
+
+
+def prediction_row(component: str, own: float, surface: float, pixels: int = 1000) -> dict:
+    shares = {"pixels": pixels, "own": own, "surface": surface, "noise": 1.0, "median": 0.01}
+    kinds = {f"{kind}{key}": shares for kind in ("", "reflectance_", "irradiance_") for key in ("all", "moving")}
+    return flicker_row("parts", 0.0) | {"part": "prediction", "component": component} | kinds | {"lit": 2000}
+
+
+def test_predictions_are_summed_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [prediction_row("Reflection", 0.96, 0.48), prediction_row("Transmission", 0.3, 0.4), prediction_row("Residual", 0.5, 0.25, 10)]
+    texts = [text.markdown for text in report.about_prediction(rows)]
+    assert "of light in 1 of 3 (1 where noise is the reason for less), of reflectance in 1 of 3" in texts[0]
+    assert "of irradiance in 1 of 3" in texts[0]
+    extremes = "least 0.75 (mirror_and_glass, Transmission), most 2.00 (mirror_and_glass, Reflection); fewer in 1 of 2; "
+    assert [extremes in text for text in texts] == [False, True, True], "ten pixels of Residual tell nothing"
+    more = report.about_prediction([*rows, prediction_row("Transmission", 0.1, 0.0) | {"scene": "moving-box"}])
+    assert "fewer in 1 of 3; in 1 the surface's predicts none" in more[1].markdown
+    made = tables(tmp_path, monkeypatch, *rows)[-3:]
+    assert [table.rows[0][4:7] for table in made] == [["50.0 %", "96.0 %", "48.0 %"], *[["–", "96.0 %", "48.0 %"]] * 2]
 
 
 def test_the_wheel_has_the_colours_of_the_maps() -> None:
@@ -386,5 +466,5 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert all((tmp_path / of(animation.name)).exists() for of in (pictures.file_name, pictures.strip_name))
     files = [block.file for block in report.blocks() if isinstance(block, document.Figure)]
     assert files[1:] == [pictures.file_name(animation.name), pictures.strip_name(animation.name)]
-    assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 7
+    assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 8
     assert variants.of_row(rows[0]).size == (64, 36)
