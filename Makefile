@@ -60,9 +60,9 @@ bench-animation: ## flicker of animations against CPU time; limited by the same 
 	@SCENES='$(SCENES)' MODES='$(MODES)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
 	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' tools/bench.sh --animation
 
-bench-motion:   ## motion of reflections and refractions, and what it is worth; as bench-animation, PARTS=truth,prediction,flicker,cost LOADED=1
+bench-motion:   ## motion of reflections and refractions, and what it is worth; as bench-animation, PARTS=truth,prediction,flicker,cost REPEATS=3 LOADED=1
 	@SCENES='$(SCENES)' MODES='$(MODES)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
-	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' PARTS='$(PARTS)' LOADED='$(LOADED)' tools/bench.sh --motion
+	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' PARTS='$(PARTS)' REPEATS='$(REPEATS)' LOADED='$(LOADED)' tools/bench.sh --motion
 
 bench-quick:    ## errors of two scenes, in under five minutes
 	@tools/bench.sh --quick

@@ -6,7 +6,7 @@
 #   --agreement  converged images against those of Cycles and Mitsuba; SCENES, WIDTH and REFERENCE as above
 #   --animation  flicker against CPU time; SCENES, MODES, REFERENCE, SEEDS, SAMPLES and MINUTES limit it; SIZE=320x180 FRAMES=24 BLUR=1 vary it
 #   --motion  motion of components: truth, prediction, flicker, cost; SCENES, REFERENCE, SEEDS, SAMPLES and MINUTES limit it; PARTS=truth,flicker
-#             SIZE=320x180 FRAMES=6 BLUR=1 vary it; LOADED=1 says that the machine has other work: times are not shown
+#             SIZE=320x180 FRAMES=6 vary it, REPEATS=3 of cost, BLUR=1 of truth and cost; LOADED=1 says that the machine has other work: times are not shown
 #   --speed   time of a sample in the room; ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3 MINUTES=60 limit it
 #   --designs  reconstructions that were published, written anew in Python, against the product's; SCENES and REFERENCE as above
 #   --suite   time of the statistical tests and of the reconstructions
@@ -51,6 +51,7 @@ motion() {
   local arguments=()
   limits
   option --parts "${PARTS:-}"
+  option --repeats "${REPEATS:-}"
   option --size "${SIZE:-}"
   option --frames "${FRAMES:-}"
   [ -z "${BLUR:-}" ] || arguments+=(--blur)

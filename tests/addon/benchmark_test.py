@@ -118,6 +118,15 @@ def test_ratios_of_curves() -> None:
     assert metrics.equal_time_ratio([(1.0, 1.0), (2.0, 0.5)], [(10.0, 1.0), (20.0, 0.5)]) is None
 
 
+def test_one_count_of_samples_tells_nothing_of_equal_time() -> None:
+    """Equal samples passed for equal time where it differed by less than a quarter."""
+    assert metrics.equal_time_ratio([(1.2, 0.5)], [(1.0, 1.0)]) is None
+    theirs = [(t, 1.0 / t) for t in (1.0, 4.0)]
+    for time in (0.9, 1.2, 4.5):
+        assert metrics.equal_time_ratio([(time, 0.5 / time)], theirs) == pytest.approx(0.5), "the curve goes on to the time of the point"
+        assert metrics.equal_time_ratio(theirs, [(time, 0.5 / time)]) == pytest.approx(2.0)
+
+
 def test_slope_is_that_of_the_last_decade() -> None:
     curve = [(0.01, 5.0), (0.1, 5.0), (1.0, 1.0), (3.0, 1.0 / 3.0), (10.0, 0.1)]
     assert metrics.slope(curve) == pytest.approx(-1.0)

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import bpy
 import numpy as np
 import pytest
 
@@ -37,63 +38,104 @@ def forward(right: float, up: float) -> np.ndarray:
     return np.broadcast_to(np.array((-right, -up)), (HEIGHT, WIDTH, 2))
 
 
-def parts_of(now: np.ndarray, following: np.ndarray, own: np.ndarray, deviation: float = 0.0, count: int = 4) -> list[metrics.Passes]:
-    """Renderings of two frames whose reflection goes its own way while surfaces rest."""
+def motion_of(own: np.ndarray, frames: int = 2) -> metrics.Passes:
+    """A reflection that goes its own way while surfaces rest, and light on what it shows that rests with them; of all frames the same."""
+    motion = np.broadcast_to(np.concatenate([own, own], axis=-1), (frames, HEIGHT, WIDTH, 4)).copy()
+    passes = {"Vector": np.zeros_like(motion), "Path Reflection Motion": motion}
+    passes["Path Reflection Irradiance Motion"] = np.zeros_like(motion)
+    for what in ("", "Irradiance "):
+        passes[f"Path Reflection {what}Tracked"] = np.ones((frames, HEIGHT, WIDTH, 1))
+    return passes
+
+
+def parts_of(now: np.ndarray, following: np.ndarray, deviation: float = 0.0, count: int = 4) -> list[metrics.Passes]:
+    """Renderings of two frames of a reflection."""
     random = np.random.default_rng(1)
     both = np.stack([now, following])[..., None] * np.ones(3)
-    motion = np.zeros((2, HEIGHT, WIDTH, 4))
-    motion[0, ..., 2:] = own
-    passes = {"Vector": np.zeros((2, HEIGHT, WIDTH, 4)), "Path Reflection Motion": motion}
-    passes["Path Reflection Tracked"] = np.ones((2, HEIGHT, WIDTH, 1))
-    passes["Path Reflection Reflectance"] = 0.5 * both
+    passes = {"Path Reflection Reflectance": 0.5 * both, "Path Reflection Irradiance": np.ones_like(both)}
     noise = [deviation * random.normal(size=(2, HEIGHT, WIDTH, 1)) for _ in range(count)]
     return [passes | {"Path Reflection": both + n, "Combined": both + n} for n in noise]
 
 
+def predicted(own: np.ndarray, following: np.ndarray, deviation: float = 0.0, kind: str = "") -> dict[str, Any]:
+    motion = metrics.of_frame(motion_of(own), 0)
+    return metrics.predict(motion, parts_of(waves(), following, deviation), "Reflection")[kind].row()
+
+
 def test_the_right_vectors_predict_the_next_frame_and_the_surface_does_not() -> None:
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT)), "Reflection")[0].row()
+    found = predicted(forward(*SHIFT), waves(*SHIFT))
     assert found["all"]["own"] > 0.99
     assert found["all"]["surface"] < 0.2
     assert found["moving"]["pixels"] == found["all"]["pixels"] > 0.8 * HEIGHT * WIDTH, "what leaves the picture does not count"
+    assert found["lit"] == HEIGHT * WIDTH
 
 
 def test_vectors_of_the_wrong_sign_predict_nothing() -> None:
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), -forward(*SHIFT)), "Reflection")[0].row()
-    assert found["all"]["own"] < 0.2
+    assert predicted(-forward(*SHIFT), waves(*SHIFT))["all"]["own"] < 0.2
 
 
 def test_noise_of_independent_parts_is_no_error_of_prediction() -> None:
     """Each part is off by 4 %, their mean by 2 %."""
-    found = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.04), "Reflection")[0].row()
+    found = predicted(forward(*SHIFT), waves(*SHIFT), deviation=0.04)
     assert found["all"]["own"] > 0.9
     assert found["all"]["noise"] > 0.9
-    loud = metrics.predict(parts_of(waves(), waves(*SHIFT), forward(*SHIFT), deviation=0.4), "Reflection")[0].row()
+    loud = predicted(forward(*SHIFT), waves(*SHIFT), deviation=0.4)
     assert loud["all"]["noise"] < 0.8, "too much noise must be seen in what is told of it"
 
 
 def test_light_that_changes_is_an_error_of_prediction() -> None:
-    found = metrics.predict(parts_of(waves(), 1.05 * waves(*SHIFT), forward(*SHIFT), deviation=0.02), "Reflection")[0].row()
-    assert found["all"]["own"] < 0.1
+    assert predicted(forward(*SHIFT), 1.05 * waves(*SHIFT), deviation=0.02)["all"]["own"] < 0.1
 
 
 def test_light_that_changes_is_none_of_what_is_shown() -> None:
     """Reflectance goes along while the light changes."""
-    parts = parts_of(waves(), waves(*SHIFT), forward(*SHIFT))
+    parts = parts_of(waves(), waves(*SHIFT))
     for part in parts:
         part["Path Reflection"] = part["Path Reflection"] * np.array((1.0, 1.2))[:, None, None, None]
-    light, shown = metrics.predict(parts, "Reflection")
-    assert light.row()["all"]["own"] < 0.1
-    assert shown.row()["all"]["own"] > 0.99
+    found = metrics.predict(metrics.of_frame(motion_of(forward(*SHIFT)), 0), parts, "Reflection")
+    assert found[""].row()["all"]["own"] < 0.1
+    assert found["reflectance"].row()["all"]["own"] > 0.99
+
+
+def test_irradiance_is_predicted_by_its_own_motion_beside_that_of_what_it_falls_on() -> None:
+    """A shadow goes to the left over what is seen to go to the right."""
+    parts, passes = parts_of(waves(), waves(*SHIFT)), motion_of(forward(*SHIFT))
+    for part in parts:
+        part["Path Reflection Irradiance"] = np.stack([waves(), waves(-4.0, 2.0)])[..., None] * np.ones(3)
+    passes["Path Reflection Irradiance Motion"][..., 2:] = forward(-4.0, 2.0)
+    passes["Path Reflection Irradiance Tracked"][:, :10] = -9.0
+    found = metrics.predict(metrics.of_frame(passes, 0), parts, "Reflection")["irradiance"]
+    shares = found.row()
+    assert shares["all"]["own"] > 0.99
+    assert shares["all"]["surface"] < 0.2
+    assert not found.counts[:10].any(), "flow did not find it"
+    assert shares["moving"]["pixels"] == shares["all"]["pixels"] < 0.8 * shares["lit"]
 
 
 def test_pixels_without_a_track_do_not_count() -> None:
-    parts = parts_of(waves(), waves(*SHIFT), forward(*SHIFT))
-    parts[0]["Path Reflection Tracked"][0, :, : WIDTH // 2] = -4.0
-    assert metrics.predict(parts, "Reflection")[0].counts[:, : WIDTH // 2].sum() == 0
+    passes = motion_of(forward(*SHIFT))
+    passes["Path Reflection Tracked"][0, :, : WIDTH // 2] = -4.0
+    found = metrics.predict(metrics.of_frame(passes, 0), parts_of(waves(), waves(*SHIFT)), "Reflection")
+    assert found[""].counts[:, : WIDTH // 2].sum() == 0
+
+
+def test_pixels_count_where_both_ways_lead_into_the_picture() -> None:
+    """What the surface's vector had lead out of it was an error of 100 %, and spread about."""
+    passes = motion_of(forward(0.0, 0.0))
+    passes["Vector"][0, :, WIDTH // 2 :, 2] = -WIDTH
+    found = metrics.predict(metrics.of_frame(passes, 0), parts_of(waves(), waves()), "Reflection")[""]
+    assert not found.counts[:, WIDTH // 2 :].any()
+    assert found.row()["all"]["surface"] == 1.0
+    assert found.row()["all"]["pixels"] == HEIGHT * WIDTH // 2
+
+
+def test_components_are_those_that_tell_whether_they_are_tracked() -> None:
+    """Irradiance has a motion of its own, and is no component."""
+    assert metrics.components(motion_of(forward(0.0, 0.0))) == ["Reflection"]
 
 
 def test_own_ways_are_those_of_what_a_pixel_mostly_shows() -> None:
-    passes = parts_of(waves(), waves(), forward(*SHIFT))[0]
+    passes = motion_of(forward(*SHIFT)) | parts_of(waves(), waves())[0]
     passes["Combined"] = passes["Path Reflection"] * np.where(np.arange(WIDTH) < 20, 4.0, 1.0)[:, None]
     ways = metrics.own_ways(passes)
     assert (ways[:, :, :20] == metrics.NOWHERE).all()
@@ -111,11 +153,38 @@ def test_an_error_that_goes_along_does_not_flicker() -> None:
     assert still[1] > 1e-5
 
 
+def test_pixels_that_are_not_finite_are_named() -> None:
+    """A mean over the others hid them."""
+    images = np.ones((2, HEIGHT, WIDTH, 3))
+    metrics.check_finite(images, "windows-l2")
+    images[1, 3, 4] = np.nan
+    images[0, 3, 4, 0] = np.inf
+    with pytest.raises(RuntimeError, match=f"windows-l2: 2 of {2 * HEIGHT * WIDTH} pixels are not finite"):
+        metrics.check_finite(images, "windows-l2")
+
+
+def test_flicker_of_a_picture_that_is_not_finite_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With its mode, scene and samples."""
+    import motion
+
+    images = np.ones((2, HEIGHT, WIDTH, 3))
+    converged = SimpleNamespace(mean=images, variance=0.0 * images, samples=8)
+    monkeypatch.setattr(motion, "reference", lambda *_: converged)
+    bench = SimpleNamespace(animation=SimpleNamespace(name="box"), samples=8, _own_ways=lambda: np.zeros((2, HEIGHT, WIDTH, 4)))
+    bench.renderer = SimpleNamespace(render=lambda *_: (images * np.where(np.arange(WIDTH) == 0, np.nan, 1.0)[:, None], {}))
+    with pytest.raises(RuntimeError, match=f"windows-l2 in box, 4 samples, seed 1: {2 * HEIGHT} of"):
+        next(motion.MotionBench._flicker(bench, motion.Job("flicker", "windows-l2", 4, 1)))
+
+
 @pytest.mark.parametrize("mode", motion_modes.FLICKER)
-def test_every_mode_is_compared_with_windows_without_components(mode: str) -> None:
-    settings, other = motion_modes.MODES[mode].settings, motion_modes.MODES[motion_modes.compared_with(mode)].settings
-    assert (other["use_temporal"], other["use_decomposition"]) == (True, False)
-    assert settings["reconstruction"] == other["reconstruction"]
+def test_every_mode_is_compared_with_windows_along_surfaces(mode: str) -> None:
+    """Without components, and of components."""
+    settings = motion_modes.MODES[mode].settings
+    whole, parts = (motion_modes.MODES[of(mode)].settings for of in (motion_modes.compared_with, motion_modes.along_surfaces))
+    assert (whole["use_temporal"], whole["use_decomposition"]) == (True, False)
+    assert (parts["use_temporal"], parts["use_decomposition"], parts["component_replays"]) == (True, True, False)
+    assert {other["reconstruction"] for other in (whole, parts)} == {settings["reconstruction"]}
+    assert {other["integrator"] for other in (whole, parts)} == {settings["integrator"]}
     assert "use_temporal" in settings and "use_decomposition" in settings, "modes follow one another in one scene"  # noqa: PT018
 
 
@@ -132,24 +201,78 @@ def tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *rows: dict) -> list
     return [block for block in report.blocks() if isinstance(block, document.Table)]
 
 
+def column(table: document.Table, name: str) -> dict[str, str]:
+    """By labels of modes, of which each has one row."""
+    return {row[table.columns.index("mode")]: row[table.columns.index(name)] for row in table.rows}
+
+
+LABELS = {name: mode.label for name, mode in motion_modes.MODES.items()}
+TIMES = ("CPU-s a frame", "F at equal time / windows", "F at equal time / components along surfaces")
+
+
+def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
+    assert motion_modes.DELIVERED in motion_modes.USUAL
+    assert set(motion_modes.USUAL) < set(motion_modes.FLICKER)
+
+
 def test_flicker_is_told_over_that_of_windows_of_the_same_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [flicker_row("windows-l2", 1.0), flicker_row("windows-l2", 4.0, 1), flicker_row("windows-parts-l2", 0.5)]
-    table = tables(tmp_path, monkeypatch, *rows)[-1]
-    ratios = {row[1]: row[9] for row in table.rows}
-    assert ratios[motion_modes.MODES["windows-parts-l2"].label] == "0.50"
+    table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-parts-surfaces-l2", 0.8))[-1]
+    assert column(table, "F / windows")[LABELS["windows-parts-l2"]] == "0.500"
+    assert column(table, "F / components along surfaces")[LABELS["windows-parts-l2"]] == "0.625"
 
 
 def test_times_of_a_loaded_machine_are_not_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    modes = {"windows-l2": 1.0, "windows-parts-l2": 0.5}
+    rows = {"windows-l2": 1.0, "windows-parts-surfaces-l2": 1.0, "windows-parts-l2": 0.5}
     for more, told in (({}, True), ({"loaded": True}, False)):
-        table = tables(tmp_path, monkeypatch, *(flicker_row(mode, flicker, **more) for mode, flicker in modes.items()))[-1]
-        assert all((row[4] != "–") == told and (row[11] != "–") == told for row in table.rows)
+        runs = [flicker_row(mode, flicker / n, samples=n, cpu=0.5 * n, **more) for mode, flicker in rows.items() for n in (4, 16)]
+        table = tables(tmp_path, monkeypatch, *runs)[-1]
+        assert all((cell != "–") == told for name in TIMES for cell in column(table, name).values())
+    assert column(table, "F / windows")[LABELS["windows-parts-l2"]] == "0.500", "samples are the same on any machine"
+
+
+def test_flicker_at_equal_time_charges_what_own_ways_take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half the flicker at the same samples, for a fifth more time. One count of samples cannot tell."""
+    name = "F at equal time / windows"
+    for counts, told in (((16,), "–"), ((4, 16), "0.600")):
+        rows = [flicker_row("windows-l2", 1.0 / n, samples=n, cpu=float(n)) for n in counts]
+        rows += [flicker_row("windows-parts-l2", 0.5 / n, samples=n, cpu=1.2 * n) for n in counts]
+        assert column(tables(tmp_path, monkeypatch, *rows)[-1], name)[LABELS["windows-parts-l2"]] == told
+
+
+def test_bars_of_flicker_name_scenes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    flickers = {"mirror_and_glass": 0.5, "moving-box": 1.021, "animated": 0.9}
+    rows = [flicker_row("windows-parts-surfaces-auto", 1.0, scene=scene) for scene in flickers]
+    rows += [flicker_row("windows-parts-auto", flicker, scene=scene) for scene, flicker in flickers.items()]
+    table = tables(tmp_path, monkeypatch, *rows)[-2]
+    (flicker, _) = table.rows
+    assert flicker[1:5] == ["components along surfaces", "F at equal samples", "3", "0.900"]
+    assert flicker[5:] == ["0.500 (mirror_and_glass)", "1.021 (moving-box)", "mirror_and_glass", "moving-box"]
 
 
 def test_the_newest_version_of_a_part_replaces_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [flicker_row("windows-l2", 1.0, version="old"), flicker_row("windows-parts-l2", 1.0, version="old")]
     table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-l2", 2.0))[-1]
-    assert [row[5] for row in table.rows] == ["2.0000", "1.0000"]
+    assert list(column(table, "F along").values()) == ["2.0000", "1.0000"]
+
+
+def test_versions_are_not_compared_with_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their pixels are others: each has its own ways."""
+    modes = ("windows-l2", "windows-parts-l2")
+    rows = [flicker_row(mode, 1.0 / n, version="old", samples=n, cpu=float(n)) for mode in modes for n in (4, 16)]
+    newer = [flicker_row("windows-l2", 2.0 / n, samples=n, cpu=float(n)) for n in (4, 16)]
+    for more, told in (([], "1.000"), (newer, "–")):
+        made = tables(tmp_path, monkeypatch, *rows, *more)[-1]
+        for name in ("F / windows", "relMSE / windows", "F at equal time / windows"):
+            assert column(made, name)[LABELS["windows-parts-l2"]] == told
+
+
+def test_another_size_of_truth_replaces_that_of_the_version_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "motion.jsonl"
+    rows = [flicker_row("", 0.0, version=version, width=width) | {"part": "truth"} for version, width in (("old", 160), ("new", 320))]
+    file.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    monkeypatch.setattr(report, "RESULTS", file)
+    assert [row["width"] for row in report.load()["truth"]] == [320]
 
 
 def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,7 +280,7 @@ def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.M
     import motion
 
     loaded, quiet = flicker_row("windows-l2", 1.0, loaded=True, frame=0), flicker_row("windows-l2", 2.0, frame=0)
-    assert [row[5] for row in tables(tmp_path, monkeypatch, loaded, quiet)[-1].rows] == ["2.0000"]
+    assert list(column(tables(tmp_path, monkeypatch, loaded, quiet)[-1], "F along").values()) == ["2.0000"]
     monkeypatch.setattr(motion, "RESULTS", tmp_path / "motion.jsonl")
     (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 6)
     for row, done in ((loaded, 0), (quiet, 1)):
@@ -171,20 +294,140 @@ def cost_row(mode: str, **seconds: float) -> dict:
 
 
 def test_costs_are_ratios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [cost_row("whole"), cost_row("parts", sample=1.04, reconstruct=0.7), cost_row("parts-motion", sample=1.0, links=0.02)]
+    rows = [cost_row("whole"), cost_row("parts", sample=1.04, reconstruct=0.7), cost_row("parts-surfaces", sample=1.1)]
+    rows += [cost_row("parts-motion", sample=2.0, links=0.062)]
     table = tables(tmp_path, monkeypatch, *rows)[-1]
-    assert table.rows == [["mirror_and_glass", "1.040", "1.400", "0.020", "1"]]
+    assert table.rows == [["mirror_and_glass", "1.040", "1.100", "1.400", "0.031", "1"]]
+    text = next(block.markdown for block in report.blocks() if "### Cost" in block.as_markdown())
+    assert "Missed: motion / sampling in mirror_and_glass (0.031)." in text
     assert len(tables(tmp_path, monkeypatch, *(row | {"loaded": True} for row in rows))) == 1, "no ratio of a loaded machine"
+
+
+def truth_row(component: str, tracked: int) -> dict:
+    check = {"searched": 10, "exist": 10, "tracked": 10, "error": {"median": 0.01, "quantile_95": 0.02}}
+    return flicker_row("", 0.0) | {"part": "truth", "component": component, "chains": 10000, "pixels": {"tracked": tracked}, "check": check}
+
+
+def test_components_of_which_too_little_is_tracked_are_named() -> None:
+    text = report.about_truth([truth_row("Reflection", 9499), truth_row("Transmission", 9500)]).markdown
+    assert "tracked in 1, of what can be followed in 2. Less of all pixels: mirror_and_glass, Reflection (94.99 %)." in text
+
+
+def prediction_row(component: str, own: float, surface: float, pixels: int = 1000) -> dict:
+    shares = {"pixels": pixels, "own": own, "surface": surface, "noise": 1.0, "median": 0.01}
+    kinds = {f"{kind}{key}": shares for kind in ("", "reflectance_", "irradiance_") for key in ("all", "moving")}
+    return flicker_row("parts", 0.0) | {"part": "prediction", "component": component} | kinds | {"lit": 2000}
+
+
+def test_predictions_are_summed_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [prediction_row("Reflection", 0.96, 0.48), prediction_row("Transmission", 0.3, 0.4), prediction_row("Residual", 0.5, 0.25, 10)]
+    texts = [text.markdown for text in report.about_prediction(rows)]
+    assert "of light in 1 of 3 (1 where noise is the reason for less), of reflectance in 1 of 3" in texts[0]
+    assert "of irradiance in 1 of 3" in texts[0]
+    extremes = "least 0.75 (mirror_and_glass, Transmission), most 2.00 (mirror_and_glass, Reflection); fewer in 1 of 2; "
+    assert [extremes in text for text in texts] == [False, True, True], "ten pixels of Residual tell nothing"
+    more = report.about_prediction([*rows, prediction_row("Transmission", 0.1, 0.0) | {"scene": "moving-box"}])
+    assert "fewer in 1 of 3; in 1 the surface's predicts none" in more[1].markdown
+    made = tables(tmp_path, monkeypatch, *rows)[-3:]
+    assert [table.rows[0][4:7] for table in made] == [["50.0 %", "96.0 %", "48.0 %"], *[["–", "96.0 %", "48.0 %"]] * 2]
 
 
 def test_the_wheel_has_the_colours_of_the_maps() -> None:
     """What moves to the right has the colour at the right of the wheel."""
-    passes = {name: images[0] for name, images in parts_of(waves(), waves(), forward(*SHIFT))[0].items()}
+    passes = metrics.of_frame(motion_of(forward(*SHIFT)), 0)
     passes["Path Reflection Motion"] = np.broadcast_to(np.array((-4.0, 0.0, -4.0, 0.0)), (HEIGHT, WIDTH, 4))
     shown = pictures.component_sheet.motion(passes, "Reflection")
     wheel = np.asarray(pictures.wheel(4.0)) / 255.0
     np.testing.assert_allclose(shown[0, 0], wheel[pictures.WHEEL // 2, -1], atol=0.01)
     assert np.abs(shown[0, 0] - wheel[pictures.WHEEL // 2, 0]).max() > 0.5
+
+
+def strip_of(frames: int) -> metrics.Passes:
+    """A reflection that goes to the right by two pixels a frame, on a surface at rest, in the left half of a picture."""
+    light = np.stack([waves(2.0 * k) for k in range(frames)])[..., None] * np.ones(3)
+    light[:, :, WIDTH // 2 :] = 0.0
+    return motion_of(forward(2.0, 0.0), frames) | {"Path Reflection": light, "Path Transmission": 0.5 * light, "Combined": light + 0.1}
+
+
+def test_strips_show_what_the_next_frame_differs_by_either_motion() -> None:
+    passes = strip_of(3)
+    own, surface, counts = pictures.differences(passes, "Reflection", 1)
+    assert not counts[:, WIDTH // 2 :].any(), "there is no light"
+    assert own[counts & (np.arange(WIDTH) < WIDTH // 2 - 8)].max() < 1e-4
+    assert np.sqrt(surface[counts].mean()) > 0.1
+    shown = np.asarray(pictures.strip(passes, "Reflection"))
+    assert shown.shape == (3 * (HEIGHT + pictures.HEADER) - pictures.GAP, 3 * (WIDTH + pictures.GAP) - pictures.GAP, 3)
+    rows = [pictures.HEADER - pictures.GAP + row * (HEIGHT + pictures.HEADER) for row in range(3)]
+    beneath = [shown[top : top + HEIGHT, : WIDTH // 2 - 8].mean() for top in rows[1:]]
+    assert beneath[0] < 0.5 * beneath[1], "errors are bright"
+    assert (shown[rows[1] : rows[1] + HEIGHT, 2 * (WIDTH + pictures.GAP) :] == 255).all(), "nothing follows the last frame"
+
+
+def test_strips_are_of_the_brightest_of_what_mirrors_and_glass_show() -> None:
+    passes = strip_of(2)
+    assert pictures.brightest(passes) == "Reflection"
+    assert pictures.brightest(passes | {"Path Transmission": 3.0 * passes["Path Reflection"]}) == "Transmission"
+    assert pictures.brightest({"Path Diffuse": passes["Combined"]}) == ""
+
+
+def arguments_of(**more: Any) -> SimpleNamespace:
+    import motion
+
+    usual = {
+        "parts": list(motion.PARTS), "size": None, "frames": 6, "blur": False, "seeds": 1, "repeats": 3, "samples": [4, 16],
+        "modes": list(motion_modes.USUAL), "light": 256, "loaded": False, "reference": 512,
+    }  # fmt: skip
+    return SimpleNamespace(**usual | more)
+
+
+def test_flicker_is_of_small_pictures_and_the_others_of_large_ones(capsys: pytest.CaptureFixture[str]) -> None:
+    import motion
+
+    sizes = {variant.size: parts for variant, parts in motion.parts_of(arguments_of()).items()}
+    assert sizes == {(160, 90): ["flicker"], (320, 180): ["truth", "prediction", "cost"]}
+    assert list(motion.parts_of(arguments_of(size=(64, 36))).values()) == [list(motion.PARTS)]
+    assert not capsys.readouterr().out
+
+
+def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    """A pixel has more than one vector then."""
+    import motion
+
+    ((variant, parts),) = motion.parts_of(arguments_of(blur=True)).items()
+    assert variant.shutter == 0.5
+    assert parts == ["truth", "cost"]
+    assert [line.split(":")[0] for line in capsys.readouterr().out.splitlines()] == ["SKIP prediction", "SKIP flicker"]
+
+
+def test_what_is_measured_of_cost_is_asked_for() -> None:
+    """Without a pass of theirs no component is made, and all were as cheap as none."""
+    import motion
+
+    asked = {mode: set(passes) for mode, (_, passes) in motion.COST_MODES.items()}
+    assert not asked["whole"]
+    assert all("components" in passes for mode, passes in asked.items() if mode != "whole")
+    assert asked["parts-motion"] - asked["parts"] == {"component_motion"}
+    assert asked["parts-surfaces"] - asked["parts"] == {"component_reflectance", "component_normal"}
+    (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 6)
+    jobs = motion.jobs_of(animation, arguments_of(repeats=2), ["cost"])
+    assert [(job.mode, job.seed) for job in jobs] == [(mode, seed) for seed in range(2) for mode in asked]
+
+
+@pytest.mark.module
+def test_passes_that_are_not_wanted_are_off(scene: bpy.types.Scene) -> None:
+    import motion_worker
+
+    layer = scene.view_layers[0]
+    known = {switch.identifier for switch in layer.gradus.bl_rna.properties if switch.identifier.startswith("use_pass_component")}
+    assert {f"use_pass_{name}" for name in motion_worker.OF_COMPONENTS} == known
+    motion_worker.set_passes(layer, motion_worker.SWITCHES)
+    assert layer.use_pass_vector
+    assert all(getattr(layer.gradus, name) for name in known)
+    motion_worker.set_passes(layer, ["components"])
+    assert not layer.use_pass_vector
+    assert [name for name in known if getattr(layer.gradus, name)] == ["use_pass_components"]
+    with pytest.raises(ValueError, match="component_color"):
+        motion_worker.set_passes(layer, ["component_color"])
 
 
 @pytest.mark.module
@@ -205,18 +448,23 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
         monkeypatch.setattr(module, "FOLDER", tmp_path)
     monkeypatch.setattr(motion, "CHECKED", 8)
     (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 2)
-    arguments = SimpleNamespace(
-        parts=list(motion.PARTS), size=(64, 36), frames=2, blur=False, seeds=1, reference=8, light=8, samples=[2], loaded=False,
-        modes=["frames-l2", "windows-l2", "windows-parts-l2"],
-    )  # fmt: skip
+    modes = ["frames-l2", "windows-l2", "windows-parts-auto"]
+    arguments = arguments_of(size=(64, 36), frames=2, repeats=1, reference=8, light=8, samples=[2], modes=modes)
     for _ in range(2):
         motion.bench_motion(animation, arguments, "version", float("inf"))
     rows = [json.loads(line) for line in results.read_text().splitlines()]
     counts = {part: sum(row["part"] == part for row in rows) for part in motion.PARTS}
-    assert counts["flicker"] == counts["cost"] == 3
+    assert (counts["flicker"], counts["cost"]) == (3, 4)
+    seconds = {row["mode"]: row["seconds"] for row in rows if row["part"] == "cost"}
+    assert [mode for mode, found in seconds.items() if found["links"] > 0.0] == ["parts-motion"]
     assert counts["truth"] >= 3 and counts["prediction"] >= 3  # noqa: PT018
     reflected = next(row for row in rows if (row["part"], row["component"]) == ("truth", "Reflection"))
     assert reflected["check"]["error"]["quantile_95"] < 0.5
-    assert (tmp_path / pictures.file_name(animation.name)).exists()
-    assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 7
+    predictions = {row["component"]: row for row in rows if row["part"] == "prediction"}
+    assert predictions["Residual"]["all"]["pixels"] > 0, "its motion is by flow, which needs the frames beside"
+    assert predictions["Diffuse"]["irradiance_all"]["pixels"] > 0
+    assert all((tmp_path / of(animation.name)).exists() for of in (pictures.file_name, pictures.strip_name))
+    files = [block.file for block in report.blocks() if isinstance(block, document.Figure)]
+    assert files[1:] == [pictures.file_name(animation.name), pictures.strip_name(animation.name)]
+    assert len([block for block in report.blocks() if isinstance(block, document.Table)]) == 8
     assert variants.of_row(rows[0]).size == (64, 36)

@@ -109,8 +109,11 @@ def equal_time_ratio(ours: list[tuple[float, float]], theirs: list[tuple[float, 
     """R: geometric mean of error(ours)/error(theirs) at equal CPU time.
 
     Curves are lists of (CPU seconds, error); both are interpolated log-log over the range of time that they share, with no extrapolation
-    beyond a factor of 1.25. None where they share none.
+    beyond a factor of 1.25. None where they share none, and of two single points, whose times differ by what cannot be told; where one of
+    them is single, it is taken at its time.
     """
+    if len(ours) < 2 and len(theirs) < 2:
+        return None
     a = np.log(np.array(sorted(ours)))
     b = np.log(np.array(sorted(theirs)))
     slack = np.log(1.25)
@@ -118,7 +121,8 @@ def equal_time_ratio(ours: list[tuple[float, float]], theirs: list[tuple[float, 
     high = min(a[-1, 0], b[-1, 0])
     if high < low - slack:
         return None
-    times = np.linspace(min(low, high), max(low, high), 16)
+    single = next((curve[0, 0] for curve in (a, b) if len(curve) < 2), None)
+    times = np.linspace(min(low, high), max(low, high), 16) if single is None else np.array([single])
     return float(np.exp(np.mean(_interpolate(times, a) - _interpolate(times, b))))
 
 

@@ -20,7 +20,7 @@ DARK = 0.05  # of the picture's mean: a component with less light says nothing o
 AROUND, REACH = 2.0, 2.5  # pixels: deviation of the mean around a pixel, and how many deviations it reaches
 MOVES = 0.5  # pixels from which a pixel counts as moving
 MAIN = 0.5  # share of the light from which a pixel shows a component
-REFLECTANCE = " Reflectance"
+REFLECTANCE, IRRADIANCE, MOTION, TRACKED = " Reflectance", " Irradiance", " Motion", " Tracked"
 SMOOTH = ("Reflection", "Transmission")
 NOWHERE = 1e6  # pixels: a way that leaves every picture
 
@@ -60,14 +60,15 @@ def _around(plane: np.ndarray) -> np.ndarray:
 class Prediction:
     """Of one component from one frame to the next: relative squared errors by pixels, of which only `counts` count."""
 
-    counts: np.ndarray  # tracked, lit, and leading into the picture
+    lit: np.ndarray  # where there is anything to predict
+    counts: np.ndarray  # of those: tracked, and both ways lead into the picture
     moves: np.ndarray  # those whose way is not to stay
     own: np.ndarray
-    surface: np.ndarray
+    surface: np.ndarray  # by the motion that its own is compared with
     noise: np.ndarray  # of the frame and itself by other samples: what is not 0 of it is noise
 
     def row(self) -> dict[str, Any]:
-        return {"all": self._shares(self.counts), "moving": self._shares(self.counts & self.moves)}
+        return {"lit": int(self.lit.sum()), "all": self._shares(self.counts), "moving": self._shares(self.counts & self.moves)}
 
     def _shares(self, where: np.ndarray) -> dict[str, float | int]:
         """Of the pixels that are predicted; median error by their own ways."""
@@ -77,34 +78,66 @@ class Prediction:
         return {"pixels": int(where.sum())} | shares | {"median": float(np.sqrt(max(np.median(self.own[where]), 0.0)))}
 
 
-def predict(parts: list[Passes], component: str) -> tuple[Prediction, Prediction]:
-    """From the first of two frames to the second one, of light and, where there is light, of reflectance. parts: renderings with seeds of
-    their own, four or more of an even number."""
+@dataclass(frozen=True)
+class Ways:
+    """Steps to the next frame (height, width, 2), and where they are known."""
+
+    own: np.ndarray
+    surface: np.ndarray
+    tracked: np.ndarray
+
+    def moves(self) -> np.ndarray:
+        return np.maximum(np.hypot(*np.moveaxis(self.own, -1, 0)), np.hypot(*np.moveaxis(self.surface, -1, 0))) > MOVES
+
+
+def of_frame(passes: Passes, index: int) -> Passes:
+    return {name: frames[index] for name, frames in passes.items()}
+
+
+def predict(motion: Passes, parts: list[Passes], component: str) -> dict[str, Prediction]:
+    """From the first of two frames to the second one: of light, and where there is light of reflectance, both compared with the motion of
+    the surface that is seen, and of irradiance, compared with that of what the component shows. `motion`: passes of the first frame, by a
+    seed that no picture has, since flow follows noise, too. `parts`: renderings with seeds of their own, four or more of an even number."""
     now = np.stack([gray(part[f"Path {component}"][0]) for part in parts])
     lit = now.mean(axis=0) > DARK * gray(parts[0]["Combined"][0]).mean()
-    light = _predict(parts, component, "", lit)
-    reflecting = gray(parts[0][f"Path {component}{REFLECTANCE}"][0]) > DARK
-    return light, _predict(parts, component, REFLECTANCE, lit & reflecting)
+    reflecting = lit & (gray(parts[0][f"Path {component}{REFLECTANCE}"][0]) > DARK)
+    shown, light = ways_of_shown(motion, component), ways_of_light(motion, component)
+    return {
+        "": _predict(shown, parts, f"Path {component}", lit),
+        "reflectance": _predict(shown, parts, f"Path {component}{REFLECTANCE}", reflecting),
+        "irradiance": _predict(light, parts, f"Path {component}{IRRADIANCE}", reflecting),
+    }
 
 
-def _predict(parts: list[Passes], component: str, plane: str, lit: np.ndarray) -> Prediction:
-    now, following = (np.stack([gray(part[f"Path {component}{plane}"][frame]) for part in parts]) for frame in (0, 1))
-    first, mean = parts[0], np.maximum(now.mean(axis=0), 1e-9)
-    forward, surface = first[f"Path {component} Motion"][0, ..., 2:], first["Vector"][0, ..., 2:]
-    own, along = (np.stack([warped(after, vectors) for after in following]) - now for vectors in (forward, surface))
-    tracked = first[f"Path {component} Tracked"][0, ..., 0] > 0.0
-    counts = tracked & lit & np.isfinite(own[0])
-    moves = np.maximum(np.hypot(*np.moveaxis(forward, -1, 0)), np.hypot(*np.moveaxis(surface, -1, 0))) > MOVES
+def ways_of_shown(motion: Passes, component: str) -> Ways:
+    """Of what a component shows, beside those of the surface that is seen."""
+    tracked = motion[f"Path {component}{TRACKED}"][..., 0] > 0.0
+    return Ways(motion[f"Path {component}{MOTION}"][..., 2:], motion["Vector"][..., 2:], tracked)
+
+
+def ways_of_light(motion: Passes, component: str) -> Ways:
+    """Of its irradiance, beside those of what it shows."""
+    shown = ways_of_shown(motion, component)
+    tracked = motion[f"Path {component}{IRRADIANCE}{TRACKED}"][..., 0] > 0.0
+    return Ways(motion[f"Path {component}{IRRADIANCE}{MOTION}"][..., 2:], shown.own, tracked & shown.tracked)
+
+
+def _predict(ways: Ways, parts: list[Passes], plane: str, lit: np.ndarray) -> Prediction:
+    now, following = (np.stack([gray(part[plane][frame]) for part in parts]) for frame in (0, 1))
+    own, along = (np.stack([warped(after, steps) for after in following]) - now for steps in (ways.own, ways.surface))
+    counts = ways.tracked & lit & np.isfinite(own[0]) & np.isfinite(along[0])
 
     def relative(differences: np.ndarray) -> np.ndarray:
-        return mean_product(np.where(np.isfinite(differences), differences, mean), counts) / mean**2
+        return mean_product(np.where(counts, differences, 0.0), counts) / np.maximum(now.mean(axis=0), 1e-9) ** 2
 
     again = as_noisy(now[::2] - now[1::2], len(parts))
-    return Prediction(counts, moves, relative(own), relative(along), relative(again))
+    return Prediction(lit, counts, ways.moves(), relative(own), relative(along), relative(again))
 
 
 def components(passes: Passes) -> list[str]:
-    return [name.removeprefix("Path ").removesuffix(" Motion") for name in passes if name.startswith("Path ") and name.endswith(" Motion")]
+    """Names, which have no blank, of those that tell whether they are tracked."""
+    found = (name.removeprefix("Path ").removesuffix(TRACKED) for name in passes if name.startswith("Path ") and name.endswith(TRACKED))
+    return [name for name in found if " " not in name]
 
 
 def own_ways(passes: Passes) -> np.ndarray:
@@ -113,13 +146,19 @@ def own_ways(passes: Passes) -> np.ndarray:
     ways = np.full((*combined.shape, 4), NOWHERE)
     for name in (name for name in SMOOTH if f"Path {name}" in passes):
         shown = gray(passes[f"Path {name}"]) > MAIN * np.maximum(combined, 1e-9)
-        tracked = passes[f"Path {name} Tracked"][..., 0] > 0.0
-        ways = np.where((shown & tracked)[..., None], passes[f"Path {name} Motion"], ways)
+        tracked = passes[f"Path {name}{TRACKED}"][..., 0] > 0.0
+        ways = np.where((shown & tracked)[..., None], passes[f"Path {name}{MOTION}"], ways)
     return ways
 
 
+def check_finite(images: np.ndarray, what: str) -> None:
+    """Of pixels (…, channels). Means over those that are finite would hide the others."""
+    if wrong := int((~np.isfinite(images).all(axis=-1)).sum()):
+        raise RuntimeError(f"{what}: {wrong} of {images[..., 0].size} pixels are not finite")
+
+
 def flicker_measures(images: np.ndarray, reference: np.ndarray, variance: np.ndarray, ways: np.ndarray) -> dict[str, float | int]:
-    """By their names in motion.jsonl, of the pixels that have a way alone; without the worst 0.1 %."""
+    """By their names in motion.jsonl, of the pixels that have a way alone; without the worst 0.1 %. All must be finite."""
     smooth = ways[..., 0] < NOWHERE
     along = temporal_metrics.warped_flicker_map(images, reference, variance, ways)
     errors = temporal_metrics.error_map(images, reference, variance)

@@ -11,22 +11,25 @@ PARTS = {"use_decomposition": True, "components": ""}
 WHOLE = {"use_decomposition": False}
 WINDOWS, FRAMES = {"use_temporal": True}, {"use_temporal": False}
 ALONG_SURFACES = {"component_replays": False}
-
-
-def _solved(name: str, label: str, **settings: object) -> Mode:
-    """A mode of stills with more settings."""
-    found = modes.MODES[name]
-    return replace(found, label=f"{found.label}, {label}", settings=found.settings | settings)
+AUTO = replace(
+    modes.MODES["auto"], label="Gradus AUTO + REGULARIZED", settings=modes.MODES["auto"].settings | {"reconstruction": "REGULARIZED"}
+)
+SOLVERS = {"l2": modes.MODES["gradient-l2"], "regularized": modes.MODES["gradient-regularized"], "auto": AUTO}
+"""By what families of modes are named; `auto` is what an animation gets where nothing is chosen."""
 
 
 def _family(solver: str) -> dict[str, Mode]:
-    name = f"gradient-{solver}"
+    solved = SOLVERS[solver]
+
+    def mode(label: str, **settings: object) -> Mode:
+        return replace(solved, label=f"{solved.label}, {label}", settings=solved.settings | settings)
+
     return {
-        f"frames-{solver}": _solved(name, "frame by frame", **FRAMES, **WHOLE),
-        f"frames-parts-{solver}": _solved(name, "components, frame by frame", **FRAMES, **PARTS),
-        f"windows-{solver}": _solved(name, "windows", **WINDOWS, **WHOLE),
-        f"windows-parts-surfaces-{solver}": _solved(name, "windows of components along surfaces", **WINDOWS, **PARTS, **ALONG_SURFACES),
-        f"windows-parts-{solver}": _solved(name, "windows of components along their own ways", **WINDOWS, **PARTS),
+        f"frames-{solver}": mode("frame by frame", **FRAMES, **WHOLE),
+        f"frames-parts-{solver}": mode("components, frame by frame", **FRAMES, **PARTS),
+        f"windows-{solver}": mode("windows", **WINDOWS, **WHOLE),
+        f"windows-parts-surfaces-{solver}": mode("windows of components along surfaces", **WINDOWS, **PARTS, **ALONG_SURFACES),
+        f"windows-parts-{solver}": mode("windows of components along their own ways", **WINDOWS, **PARTS),
     }
 
 
@@ -34,12 +37,22 @@ MODES = {
     "path": replace(modes.MODES["path"], settings=modes.MODES["path"].settings | FRAMES | WHOLE),
     "whole": Mode("Gradus PT + REGULARIZED", GRADUS, modes.MODES["path-regularized"].settings | FRAMES | WHOLE),
     "parts": Mode("Gradus PT + REGULARIZED, components", GRADUS, modes.MODES["path-regularized"].settings | FRAMES | PARTS),
-    **_family("l2"),
-    **_family("regularized"),
+    **{name: mode for solver in SOLVERS for name, mode in _family(solver).items()},
 }
 FLICKER = tuple(mode for mode in MODES if mode.startswith(("frames", "windows")))
+USUAL = tuple(mode for mode in FLICKER if not mode.startswith("frames-parts"))  # those are the same pictures as without components
+DELIVERED = "windows-parts-auto"  # an animation as it is delivered
+
+
+def solver_of(name: str) -> str:
+    return name.rsplit("-", 1)[1]
 
 
 def compared_with(name: str) -> str:
     """The same solver over windows without components: what components are to better."""
-    return f"windows-{name.rsplit('-', 1)[1]}"
+    return f"windows-{solver_of(name)}"
+
+
+def along_surfaces(name: str) -> str:
+    """The same solver over windows of components that go with the surfaces: what their own ways are to better."""
+    return f"windows-parts-surfaces-{solver_of(name)}"

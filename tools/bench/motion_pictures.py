@@ -1,5 +1,5 @@
 """Pictures of a frame's components, of the project's own scenes: light, motion by a wheel of colours, and how much the next frame
-differs from what it predicts, a column for each component."""
+differs from what it predicts, a column for each component; and one component over all frames."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import maps
+import motion_metrics
 import numpy as np
-from animation_variants import Variant
-from motion_metrics import Passes, Prediction
+from motion_metrics import SMOOTH, Passes, Prediction
 from PIL import Image, ImageDraw
 from results import FOLDER
 
@@ -26,35 +26,92 @@ def file_name(scene: str) -> str:
     return f"{FOLDER_NAME}/motion-{scene}.webp"
 
 
-def store(scene: str, variant: Variant, passes: Passes, found: dict[str, Prediction]) -> None:
-    """Of the usual variant alone."""
-    if variant.shutter == 0.0:
-        (FOLDER / FOLDER_NAME).mkdir(parents=True, exist_ok=True)
-        sheet(passes, found).save(FOLDER / file_name(scene), quality=QUALITY, method=6)
+def strip_name(scene: str) -> str:
+    return f"{FOLDER_NAME}/motion-strip-{scene}.webp"
+
+
+def store(scene: str, passes: Passes, found: dict[str, Prediction]) -> None:
+    _save(sheet(passes, found), file_name(scene))
+
+
+def store_strip(scene: str, passes: Passes) -> None:
+    """Of what most of the light that is not seen directly comes by; none where all is."""
+    if name := brightest(passes):
+        _save(strip(passes, name), strip_name(scene))
+
+
+def _save(picture: Image.Image, file: str) -> None:
+    (FOLDER / FOLDER_NAME).mkdir(parents=True, exist_ok=True)
+    picture.save(FOLDER / file, quality=QUALITY, method=6)
+
+
+def brightest(passes: Passes) -> str:
+    light = {name: float(passes[f"Path {name}"].sum()) for name in SMOOTH if f"Path {name}" in passes}
+    name = max(light, key=lambda name: light[name], default="")
+    return name if light.get(name, 0.0) > 0.0 else ""
+
+
+def strip(passes: Passes, name: str) -> Image.Image:
+    """One component over all frames, and below each frame how much the next one differs from it where it is led to: by the component's
+    own motion, and by that of the surface; grey where not both lead into the picture. passes: (frames, height, width, channels)."""
+    white = max(float(np.percentile(passes["Combined"][..., :3], component_sheet.BRIGHTEST)), 1e-6)
+    count = len(passes["Combined"])
+    steps = [differences(passes, name, frame) for frame in range(count - 1)]
+    rows = {
+        f"{name}, frame after frame": [component_sheet.light(frame, white) for frame in passes[f"Path {name}"]],
+        "the next frame's difference, by its own motion": [errors(own, counts) for own, _, counts in steps],
+        "by the surface's motion": [errors(surface, counts) for _, surface, counts in steps],
+    }
+    height, width = passes["Combined"].shape[1:3]
+    made = Image.new("RGB", (count * (width + GAP) - GAP, len(rows) * (height + HEADER) - GAP), "white")
+    for row, (about, shown) in enumerate(rows.items()):
+        top = row * (height + HEADER)
+        ImageDraw.Draw(made).text((2, top), about, fill="black")
+        for column, picture in enumerate(shown):
+            made.paste(_image(picture), (column * (width + GAP), top + HEADER - GAP))
+    return made
+
+
+def differences(passes: Passes, name: str, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Relative squared differences of the next frame by a component's own ways and by those of surfaces, and where they count."""
+    now, following = (motion_metrics.gray(passes[f"Path {name}"][at]) for at in (frame, frame + 1))
+    ways = motion_metrics.ways_of_shown(motion_metrics.of_frame(passes, frame), name)
+    own, surface = (motion_metrics.warped(following, steps) - now for steps in (ways.own, ways.surface))
+    lit = now > motion_metrics.DARK * motion_metrics.gray(passes["Combined"][frame]).mean()
+    counts = ways.tracked & lit & np.isfinite(own) & np.isfinite(surface)
+    return *((np.where(counts, difference, 0.0) / np.maximum(now, 1e-9)) ** 2 for difference in (own, surface)), counts
 
 
 def sheet(passes: Passes, found: dict[str, Prediction]) -> Image.Image:
-    """Of the components that anything is told of; the wheel of colours in a corner of the first one's motion."""
-    first = {name: frames[0] for name, frames in passes.items()}
+    """Of the components that anything is told of, of one frame; the wheel of colours in a corner of the first one's motion."""
     names = [name for name, prediction in found.items() if prediction.counts.any()]
-    longest = component_sheet.longest_motion(first)
-    white = max(float(np.percentile(first["Combined"][..., :3], component_sheet.BRIGHTEST)), 1e-6)
+    longest = max(longest_motion(passes, name) for name in names)
+    white = max(float(np.percentile(passes["Combined"][..., :3], component_sheet.BRIGHTEST)), 1e-6)
     rows = {
-        "": lambda name: component_sheet.light(first[f"Path {name}"], white),
-        "motion": lambda name: component_sheet.motion(first, name, longest),
+        "": lambda name: component_sheet.light(passes[f"Path {name}"], white),
+        "motion": lambda name: component_sheet.motion(passes, name, longest),
         "error of its prediction": lambda name: errors(found[name].own, found[name].counts),
         "by the surface's motion": lambda name: errors(found[name].surface, found[name].counts),
     }
-    height, width = first["Combined"].shape[:2]
+    height, width = passes["Combined"].shape[:2]
     made = Image.new("RGB", (len(names) * (width + GAP) - GAP, len(rows) * (height + HEADER) - GAP), "white")
     text = ImageDraw.Draw(made)
     for row, (about, show) in enumerate(rows.items()):
         for column, name in enumerate(names):
             place = column * (width + GAP), row * (height + HEADER)
             text.text((place[0] + 2, place[1]), f"{name} {about}", fill="black")
-            made.paste(Image.fromarray(np.uint8(np.rint(255.0 * show(name)))), (place[0], place[1] + HEADER - GAP))
+            made.paste(_image(show(name)), (place[0], place[1] + HEADER - GAP))
     made.paste(wheel(longest), (GAP, height + 2 * HEADER))
     return made
+
+
+def _image(shown: np.ndarray) -> Image.Image:
+    return Image.fromarray(np.uint8(np.rint(255.0 * shown)))
+
+
+def longest_motion(passes: Passes, name: str) -> float:
+    """Of one component, from the frame before, in pixels."""
+    return float(np.abs(passes[f"Path {name}{motion_metrics.MOTION}"][..., :2]).max())
 
 
 def errors(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
@@ -71,6 +128,6 @@ def wheel(longest: float) -> Image.Image:
     inside = np.hypot(x, y) <= radius
     shown = np.where(inside[..., None], component_sheet.wheel(-moved, longest), 1.0)
     made = Image.new("RGB", (WHEEL, WHEEL + HEADER), "white")
-    made.paste(Image.fromarray(np.uint8(np.rint(255.0 * shown))))
+    made.paste(_image(shown))
     ImageDraw.Draw(made).text((2, WHEEL), f"{longest:.1f} pixels", fill="black")
     return made

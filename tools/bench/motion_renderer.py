@@ -18,10 +18,10 @@ TOOL = ROOT / "build" / "native" / "gradus"
 class MotionRenderer(AnimationRenderer):
     script = "motion_worker.py"
 
-    def passes(self, mode: str, samples: int, seed: int, frames: tuple[int, int]) -> Passes:
-        """The picture, vectors, and components with their motion, each (frames, height, width, channels)."""
+    def passes(self, mode: str, samples: int, seed: int, frames: tuple[int, int], wanted: tuple[str, ...]) -> Passes:
+        """The picture and passes that motion_worker.py knows by these names, each (frames, height, width, channels)."""
         out = self.folder / "passes.npz"
-        self.render_to(out, mode, samples, seed, frames=frames, passes=True)
+        self.render_to(out, mode, samples, seed, frames=frames, passes=wanted)
         with np.load(out) as stored:
             return {name: stored[name].astype(np.float64) for name in stored.files}
 

@@ -1,18 +1,18 @@
 """Renders ranges of frames with the passes of their components inside the Python module bpy: one process per scene, as animation_worker.py.
 
 Reads one JSON job per line from standard input, answers with one JSON line prefixed by RESULT:
-  {"mode": "windows-parts-l2", "samples": 16, "seed": 3, "frames": [8, 13], "shutter": 0.0, "out": "x.npy"}
+  {"mode": "windows-parts-l2", "samples": 16, "seed": 3, "frames": [8, 13], "shutter": 0.0, "passes": [], "out": "x.npy"}
   ->  {"cpu": 9.1, "wall": 4.7, "peak_memory_bytes": …, "seconds": [{"sample": 0.9, …}, …]}
-Stored is float32 (frames, height, width, 3), top row first; "seconds" are CPU seconds of each frame by phases. A job with "passes" stores
-in an .npz the picture, the pass Vector, and each component with its motion, all by the names of the passes, whose time counts, too.
-A job with "scene" in place of "mode" saves the frame "frame" for the tool, with vectors. What cannot be done is {"error": "why"}.
+Stored is float32 (frames, height, width, 3), top row first; "seconds" are CPU seconds of each frame by phases. A job with "passes"
+(some of SWITCHES) stores in an .npz the picture and these by their names, of one to four channels; their time counts, too. A job with
+"scene" in place of "mode" saves the frame "frame" for the tool, with vectors. What cannot be done is {"error": "why"}.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -26,8 +26,13 @@ import worker
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import component_sheet  # noqa: E402
 
-WHOLE = ("Combined", "Vector")
-OF_A_COMPONENT = ("", " Reflectance", " Motion", " Tracked")
+VECTOR = "vector"
+OF_COMPONENTS = (
+    "components", "component_reflectance", "component_irradiance", "component_normal", "component_depth", "component_uv",
+    "component_index", "component_emit", "component_motion", "component_irradiance_motion",
+)  # fmt: skip
+SWITCHES = (VECTOR, *OF_COMPONENTS)
+FOLLOWED = ("vector", "components", "component_reflectance", "component_motion")  # what the tool's scenes are of
 
 
 @contextmanager
@@ -41,11 +46,14 @@ def options(**values: str) -> Iterator[None]:
         sys.argv[:] = before
 
 
-def set_passes(layer: bpy.types.ViewLayer, wanted: bool) -> None:
-    layer.use_pass_vector = wanted
-    for name in ("components", "component_reflectance", "component_motion"):
-        setattr(layer.gradus, f"use_pass_{name}", wanted)
-    worker.choose_file(layers=wanted)
+def set_passes(layer: bpy.types.ViewLayer, wanted: Collection[str]) -> None:
+    """These and no others."""
+    if unknown := set(wanted) - set(SWITCHES):
+        raise ValueError(f"no passes: {', '.join(sorted(unknown))}")
+    layer.use_pass_vector = VECTOR in wanted
+    for name in OF_COMPONENTS:
+        setattr(layer.gradus, f"use_pass_{name}", name in wanted)
+    worker.choose_file(layers=bool(wanted))
 
 
 def set_up(job: dict) -> None:
@@ -55,7 +63,7 @@ def set_up(job: dict) -> None:
     modes.apply(scene, motion_modes.MODES[job["mode"]], job["samples"], job["seed"])
     animation_worker.set_motion_blur(scene, layer, job["shutter"])
     scene.gradus.vector_with_motion_blur = True
-    set_passes(layer, job.get("passes", False))
+    set_passes(layer, job.get("passes", ()))
 
 
 def render(job: dict, folder: Path) -> dict:
@@ -73,14 +81,19 @@ def render(job: dict, folder: Path) -> dict:
 
 
 def passes_of(files: list[Path]) -> dict[str, np.ndarray]:
+    """The picture, Vector, and all of components."""
     frames = [component_sheet.read(file) for file in files]
-    names = [*WHOLE, *(f"Path {name}{suffix}" for name in component_sheet.components(frames[0]) for suffix in OF_A_COMPONENT)]
-    return {name: np.stack([passes[name] for passes in frames])[..., : 4 if name == "Vector" or "Motion" in name else 3] for name in names}
+    names = [name for name in frames[0] if name in ("Combined", "Vector") or name.startswith("Path ")]
+    return {name: np.stack([passes[name] for passes in frames])[..., : 4 if is_of_two_steps(name) else 3] for name in names}
+
+
+def is_of_two_steps(name: str) -> bool:
+    return name == "Vector" or name.endswith(" Motion")
 
 
 def save_scene(job: dict, folder: Path) -> dict:
     """By a render of one sample: what is saved is what is rendered."""
-    set_up({"mode": "parts", "samples": 1, "seed": 0, "shutter": job["shutter"], "passes": True})
+    set_up({"mode": "parts", "samples": 1, "seed": 0, "shutter": job["shutter"], "passes": FOLLOWED})
     with options(save_scene=job["scene"]):
         answer, files = animation_worker.render_range((job["frame"], job["frame"]), folder)
     animation_worker.remove(files)
