@@ -125,6 +125,16 @@ class PathTracer {
   // The path may still find something that counts.
   bool is_wanted() const { return (context_.components.ahead(state_.word) & wanted_) != 0; }
 
+  // Of light that is found from here, one scattering further.
+  bool is_light_wanted(const PathState& here) const {
+    if (wanted_ == kEveryComponent) return true;
+    const ComponentSet& set = context_.components;
+    for (int k = 0; k < kScatterClasses; ++k) {
+      if ((wanted_ >> set.component(set.next(here.word, static_cast<ScatterClass>(k))) & 1) != 0) return true;
+    }
+    return false;
+  }
+
   // The recorder looks at the closures of the next vertex.
   bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
 
@@ -159,7 +169,7 @@ class PathTracer {
     observer_.survived(survival, *vertex);
     const PathState here = state_;
     const bool leaves = look_ahead(u, *vertex);
-    add_light(here, u, *vertex);
+    if (is_light_wanted(here)) add_light(here, u, *vertex);
     return tell_scattering(leaves, here.depth, u, *vertex);
   }
 

@@ -9,16 +9,17 @@
 
 namespace gradus {
 
+// Along the ways of one component; others that go the same way from a pixel are sampled with it.
 struct ComponentReplay {
-  uint32_t component = 0;
   SampleSources sources;
-  std::vector<uint8_t> pixels;  // 1: the component is sampled there
+  std::vector<uint8_t> pixels;       // 1: it is sampled there
+  std::vector<uint32_t> components;  // bits of those that are, by pixels
 };
 
 struct ComponentReplays {
   std::vector<ComponentReplay> own;
   std::vector<uint32_t> shared;  // bits of the components that go with the surface, by pixels; empty: all of them, everywhere
-  uint64_t pixels = 0;           // that are sampled once more, for one component or another
+  uint64_t pixels = 0;           // that are sampled once more, for some components or others
 };
 
 // Pixels are sampled no more than once again on average: a component beyond that goes with the surface after all.

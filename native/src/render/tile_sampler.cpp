@@ -69,18 +69,17 @@ Counters TileSampler::sample(const WorkUnit& unit) {
   return counters;
 }
 
-// What goes with the surface, and then each component that goes its own way.
+// What goes with the surface, and then the components that go their own ways.
 Counters TileSampler::sample_replay(WorkUnit unit) {
   const ComponentReplays& components = replay_->components;
   if (!components.shared.empty()) unit.component_map = &components.shared;
   Counters sum = sample(unit);
-  unit.component_map = nullptr;
   unit.again = true;
   for (const ComponentReplay& replay : components.own) {
     if (!has_pixels(replay.pixels, unit.tile, frame_->region)) continue;
-    unit.components = uint32_t{1} << replay.component;
     unit.sources = &replay.sources;
     unit.pixel_map = &replay.pixels;
+    unit.component_map = &replay.components;
     sum.add(sample(unit));
   }
   return sum;

@@ -82,17 +82,33 @@ TEST(ComponentReplays, AreTakenWhereTheWaysPart) {
   sources.of_component = {{}, {Row{0, 3, kNoLink, 2}}};
   const ComponentReplays replays = replays_of_components(sources);
   ASSERT_EQ(replays.own.size(), 1u);
-  EXPECT_EQ(replays.own[0].component, 1u);
   EXPECT_EQ(replays.own[0].pixels, (std::vector<uint8_t>{0, 1, 0, 1}));
+  EXPECT_EQ(replays.own[0].components, (std::vector<uint32_t>{0, 2, 0, 2}));
   EXPECT_EQ(replays.own[0].sources.links, sources.of_component[1]);
   EXPECT_EQ(replays.shared, (std::vector<uint32_t>{kEveryComponent, ~2u, kEveryComponent, ~2u}));
   EXPECT_EQ(replays.pixels, 2u);
 }
 
+// As Residual goes with what is seen through glass: its paths are those of the same camera ray.
+TEST(ComponentReplays, TakeThoseTogetherThatGoTheSameWay) {
+  SampleSources sources;
+  sources.links.pixel = {0, 1, 2, 3};
+  sources.of_component = {{Row{1, 0, 2, 3}}, {}, {Row{1, 0, 3, 3}}, {Row{1, 1, 3, 3}}};
+  SampleSources limited = sources;
+  limit_own_ways(&limited);
+  EXPECT_EQ(limited.of_component, sources.of_component);
+  const ComponentReplays replays = replays_of_components(sources);
+  ASSERT_EQ(replays.own.size(), 2u);
+  EXPECT_EQ(replays.own[0].components, (std::vector<uint32_t>{1u | 4u | 8u, 1u | 4u, 0, 0}));
+  EXPECT_EQ(replays.own[1].components, (std::vector<uint32_t>{0, 0, 4u | 8u, 0}));
+  EXPECT_EQ(replays.shared, (std::vector<uint32_t>{~13u, ~5u, ~12u, kEveryComponent}));
+  EXPECT_EQ(replays.pixels, 3u);
+}
+
 TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
   SampleSources sources;
   sources.links.pixel = {0, 1, 2, 3};
-  sources.of_component = {{Row{1, 0, 3, 3}}, {Row{1, 1, 2, 3}}, {Row{0, 1, 3, 3}}};
+  sources.of_component = {{Row{1, 0, 3, 3}}, {Row{2, 1, 2, 3}}, {Row{3, 1, 2, 3}}};
   SampleSources limited = sources;
   limit_own_ways(&limited);
   EXPECT_EQ(limited.of_component, (std::vector<PixelLinks>{sources.of_component[0], sources.of_component[1], {}}));
@@ -103,7 +119,7 @@ TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
 TEST(ComponentReplays, AComponentThatIsTooMuchTakesNoOtherOnesPlace) {
   SampleSources sources;
   sources.links.pixel = {0, 1, 2, 3};
-  sources.of_component = {{Row{1, 0, 3, 3}}, {Row{1, 0, 3, 2}}, {Row{0, 1, 3, 3}}};
+  sources.of_component = {{Row{1, 0, 3, 3}}, {Row{2, 3, 2, 2}}, {Row{0, 3, 2, 3}}};
   SampleSources limited = sources;
   limit_own_ways(&limited);
   EXPECT_EQ(limited.of_component, (std::vector<PixelLinks>{sources.of_component[0], {}, sources.of_component[2]}));
