@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -140,13 +141,17 @@ def test_sockets_of_the_longest_names_are_whole(scene: bpy.types.Scene) -> None:
 
 
 class Labels:
-    """Writes down labels and icons; takes all else."""
+    """Writes down labels and icons, and which properties are shown; takes all else."""
 
     def __init__(self) -> None:
         self.found: list[tuple[str, str]] = []
+        self.properties: list[str] = []
 
     def label(self, text: str = "", icon: str = "NONE") -> None:
         self.found.append((text, icon))
+
+    def prop(self, _owner: Any, name: str, **_: Any) -> None:
+        self.properties.append(name)
 
     def __getattr__(self, name: str) -> Any:
         return lambda *_, **__: self
@@ -184,6 +189,12 @@ def test_the_panel_says_why_a_set_is_refused(scene: bpy.types.Scene, text: str) 
     assert "overlap: both match EDL" in message or "longer than 511 bytes" in message
 
 
+@pytest.mark.parametrize(("text", "shown"), [("", ["components", "path"]), ("A=ED(", ["components"])])
+def test_a_set_that_is_none_hid_a_switch_that_has_nothing_to_do_with_it(scene: bpy.types.Scene, text: str, shown: list[str]) -> None:
+    scene.gradus.components = text
+    assert drawn(scene).properties == [*shown, "component_replays"]
+
+
 def test_the_panel_says_that_a_path_is_none(scene: bpy.types.Scene) -> None:
     bpy.context.window_manager.gradus.path = "EXL"
     labels = drawn(scene)
@@ -196,6 +207,14 @@ def test_the_automatic_set_can_be_written_out(scene: bpy.types.Scene) -> None:
     settings = bpy.context.scene.gradus
     assert settings.components.startswith("Emission=EL;Diffuse=ED.*L;")
     assert not bpy.ops.gradus.write_out_components.poll()
+
+
+def test_without_a_library_writing_out_was_a_traceback(scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, str(tmp_path / "libgradus.so"))
+    with pytest.raises(RuntimeError, match="library not found") as refused:  # as a script hears of a report
+        bpy.ops.gradus.write_out_components()
+    assert "Traceback" not in str(refused.value)
+    assert bpy.context.scene.gradus.components == ""
 
 
 def test_components_have_a_panel_among_the_passes() -> None:
