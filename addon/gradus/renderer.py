@@ -95,6 +95,8 @@ def native_settings(
         library.settings_parse(byref(result), native.text(name), native.text(text))
     if result.use_decomposition:
         components.describe(library, result.components)  # refuses what is no set, before the export
+    elif is_final:
+        overrides.refuse_components()
     return result
 
 

@@ -10,7 +10,7 @@ import bpy
 import pytest
 from gradus import components, native, passes, renderer, ui
 from gradus.failure import Failure
-from gradus.options import parse
+from gradus.options import PREFIX, OptionError, parse
 from gradus.ui import decomposition_panels
 from support import compositing
 
@@ -78,6 +78,23 @@ def test_options_win_over_the_scene_s_set(scene: bpy.types.Scene) -> None:
         native.load(), scene, scene.view_layers[0], parse(["--gradus-components", "B=EDL", "--gradus-use-decomposition", "1"])
     )
     assert (filled.components, filled.use_decomposition) == (b"B=EDL", 1)
+
+
+NEED_PARTS = ([f"{PREFIX}components", "A=ED("], [f"{PREFIX}components="], [f"{PREFIX}passes", "depth,component_normal"])
+
+
+@pytest.mark.parametrize("arguments", NEED_PARTS, ids=lambda arguments: arguments[0])
+def test_options_of_components_were_passed_over_in_a_picture_that_is_one(scene: bpy.types.Scene, arguments: list[str]) -> None:
+    """A malformed set was no error, and passes were missing without a word."""
+    layer = scene.view_layers[0]
+    off, on = ([f"{PREFIX}use-decomposition", value] for value in "01")
+    for given in (arguments, arguments + off):
+        with pytest.raises(OptionError, match=f"{PREFIX}(components|passes): .* add {PREFIX}use-decomposition 1"):
+            renderer.native_settings(native.load(), scene, layer, parse(given))
+    well = [text.replace("ED(", "EDL") for text in arguments]
+    assert renderer.native_settings(native.load(), scene, layer, parse(well + on)).use_decomposition == 1
+    scene.gradus.use_decomposition = True
+    assert renderer.native_settings(native.load(), scene, layer, parse(well)).use_decomposition == 1
 
 
 def test_too_long_a_set_is_named(scene: bpy.types.Scene) -> None:
