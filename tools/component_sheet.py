@@ -34,8 +34,9 @@ def read(path: Path) -> Passes:
 
 
 def components(passes: Passes) -> list[str]:
-    """Names in the order of the file's first pass of each."""
-    return [name.removeprefix("Path ").removesuffix(" Motion") for name in passes if name.startswith("Path ") and name.endswith(" Motion")]
+    """Names in the order of the file's first pass of each. They have no blanks, and each is followed: one may be called Irradiance."""
+    words = (name.split(" ") for name in passes if name.startswith("Path "))
+    return [found[1] for found in words if found[2:] == ["Tracked"]]
 
 
 def light(image: np.ndarray, white: float) -> np.ndarray:
@@ -44,7 +45,7 @@ def light(image: np.ndarray, white: float) -> np.ndarray:
 
 def longest_motion(passes: Passes) -> float:
     """Of any component, in pixels."""
-    return max(float(np.abs(image[..., :2]).max()) for name, image in passes.items() if name.endswith(" Motion"))
+    return max(float(np.abs(passes[f"Path {name} Motion"][..., :2]).max()) for name in components(passes))
 
 
 def wheel(vectors: np.ndarray, longest: float) -> np.ndarray:

@@ -46,6 +46,12 @@ class Overrides:
         """The same of a switch; None, too, where it is none, which the library says."""
         return _BOOL.get((self.text(name) or "").lower())
 
+    def refuse_components(self) -> None:
+        """Raises OptionError where something is asked of the components of a picture that is not taken apart (contract 5.1)."""
+        name = "components" if self.text("components") is not None else "passes" if self.passes.parts else ""
+        if name:
+            raise OptionError(f"option {PREFIX}{name}: the picture is not taken apart into components; add {PREFIX}use-decomposition 1")
+
 
 def parse(arguments: Sequence[str]) -> Overrides:
     """`arguments`: those after `--`. Raises OptionError. The values of native settings are left to the library."""

@@ -77,11 +77,13 @@ def host_value(name: str, scene: Any, overrides: options.Overrides) -> Any:
     return overrides.host.get(name, getattr(scene.gradus, name))
 
 
-def native_settings(library: native.Library, scene: Any, view_layer: Any, overrides: options.Overrides) -> native.Settings:
-    """Everything but size, region and passes."""
+def native_settings(
+    library: native.Library, scene: Any, view_layer: Any, overrides: options.Overrides, is_final: bool = True
+) -> native.Settings:
+    """Everything but size, region and passes. Only final renders take the picture apart: to others no set is malformed."""
     result = native.Settings()
     library.settings_default(byref(result))
-    settings.fill(result, scene.gradus)
+    settings.fill(result, scene.gradus, () if is_final else settings.OF_COMPONENTS)
     if view_layer.samples > 0:
         result.samples = view_layer.samples
     result.frame = scene.frame_current
@@ -93,6 +95,8 @@ def native_settings(library: native.Library, scene: Any, view_layer: Any, overri
         library.settings_parse(byref(result), native.text(name), native.text(text))
     if result.use_decomposition:
         components.describe(library, result.components)  # refuses what is no set, before the export
+    elif is_final:
+        overrides.refuse_components()
     return result
 
 
@@ -101,7 +105,6 @@ def limit_preview(result: native.Settings, samples: int) -> None:
     result.samples = min(result.samples, samples)
     result.threads = max(1, store.process_cpu_threads() // 2)
     result.denoiser = native.Denoiser.NONE
-    result.use_decomposition = 0
 
 
 def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
@@ -177,7 +180,7 @@ class Job:
 
     def new_settings(self) -> native.Settings:
         """Those of the frame that the depsgraph shows."""
-        settings = native_settings(native.load(), self.scene, self.layer, self.overrides)
+        settings = native_settings(native.load(), self.scene, self.layer, self.overrides, not self.is_preview)
         settings.width, settings.height = self.engine.resolution_x, self.engine.resolution_y  # by which plans are made before the export
         infos = self.filled()
         settings.passes, settings.component_passes = passes.mask(infos), passes.component_mask(infos)

@@ -3,7 +3,7 @@ the library's own table (gradus_option). No Blender here."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -269,12 +269,15 @@ TEST_SWITCHES = ("independent_sampler", "first_sample")
 FROM_BLENDER = ("width", "height", "frame", "film_transparent", "use_sky", "alpha_threshold", "threads")
 """Native settings that Blender's own properties give."""
 
+OF_COMPONENTS = frozenset(("use_decomposition", "components", "component_replays"))
+"""Of final renders alone: previews and the viewport show the picture as one."""
 
-def fill(settings: Any, properties: Any) -> None:
-    """Copies the scene's values (attributes of `properties`) into a native.Settings."""
+
+def fill(settings: Any, properties: Any, left_out: Collection[str] = ()) -> None:
+    """Copies the scene's values (attributes of `properties`) into a native.Settings; those left out are not even looked at."""
     for setting in native_settings():
-        value = getattr(properties, setting.name)
-        setattr(settings, setting.name, native_value(setting, value))
+        if setting.name not in left_out:
+            setattr(settings, setting.name, native_value(setting, getattr(properties, setting.name)))
 
 
 def native_value(setting: Setting, value: Any) -> Any:

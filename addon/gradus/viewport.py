@@ -18,7 +18,7 @@ import bpy
 import gpu
 from gpu_extras.presets import draw_texture_2d
 
-from . import native, options, passes, renderer, store, view_border
+from . import native, options, passes, renderer, settings, store, view_border
 from .export import ViewOverride, panorama
 from .native import Denoiser, Error, GradusError, Integrator, Pass, Phase, Reconstruction
 from .store import VIEWPORT, Key, Session
@@ -102,11 +102,10 @@ class View:
 
     def start(self, scene: Any, layer: Any, region: tuple[int, int, int, int]) -> None:
         """Builds and samples on another thread. Only when `interrupt` has succeeded."""
-        settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides())
+        settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides(), is_final=False)
         settings.samples = scene.gradus.preview_samples
         settings.noise_threshold = settings.time_limit = 0.0
         settings.integrator, settings.reconstruction, settings.denoiser = Integrator.PATH, _reconstruction(scene.gradus), Denoiser.NONE
-        settings.use_decomposition = 0
         settings.threads = max(1, store.process_cpu_threads() - 1)  # one is left for the interface
         settings.width, settings.height = self.override.width, self.override.height
         settings.region[:] = region
@@ -288,14 +287,15 @@ def _override(context: Any) -> ViewOverride:
 
 
 def _has_edits(depsgraph: Any) -> bool:
-    """Whether something besides the scene itself was updated. Selecting gives an update of the scene alone."""
-    return any(not isinstance(update.id, bpy.types.Scene) for update in depsgraph.updates)
+    """Whether something besides the scene itself was updated. Selecting gives an update of the scene alone. Before 5.0 the scene's
+    compositor comes along with it, which works on the picture when it is there."""
+    return any(not isinstance(update.id, (bpy.types.Scene, bpy.types.CompositorNodeTree)) for update in depsgraph.updates)
 
 
 def _signature(depsgraph: Any) -> object:
     """What a bare scene update may have changed: settings, frame, and which objects there are (hidden ones are not)."""
     scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
-    values = tuple(getattr(scene.gradus, setting.name) for setting in renderer.settings.SETTINGS)
+    values = tuple(getattr(scene.gradus, name) for name in settings.BY_NAME if name not in settings.OF_COMPONENTS)
     objects = hash(tuple(instance.object.original.as_pointer() for instance in depsgraph.object_instances))
     replaced = (scene.world, layer.material_override, getattr(layer, "world_override", None))
     blocks = tuple(block.original.as_pointer() if block else 0 for block in replaced)

@@ -57,26 +57,27 @@ def mirror_and_glass() -> None:
     """Each frame in parts, with their motion."""
     _scene()
     scene = bpy.context.scene
+    scene.view_layers[0].use_pass_z = True
     _take_apart(scene)
 
 
 def compositor() -> None:
-    """The reflection graded alone, each component blurred by its own motion, and the sum."""
+    """The reflection graded alone, each component blurred by its own motion and depth, and the sum."""
     _scene()
     scene = bpy.context.scene
     scene.frame_set(FRAMES // 2)
     _take_apart(scene)
+    if hasattr(scene, "gradus"):
+        scene.view_layers[0].gradus.use_pass_component_depth = True
     scene.use_nodes = True
     scene.view_layers[0].update_render_passes()
     _compositing_tree(scene.node_tree)
 
 
 def _take_apart(scene: bpy.types.Scene) -> None:
-    layer = scene.view_layers[0]
-    layer.use_pass_z = True
     if hasattr(scene, "gradus"):
         scene.gradus.use_decomposition = True
-        layer.gradus.use_pass_component_motion = True
+        scene.view_layers[0].gradus.use_pass_component_motion = True
 
 
 def _compositing_tree(tree: bpy.types.NodeTree) -> None:
@@ -102,7 +103,8 @@ def _blurred(
     blur.name = blur.label = name
     blur.factor, blur.samples, blur.location = 0.5, 32, place
     tree.links.new(picture, blur.inputs["Image"])
-    tree.links.new(render.outputs["Depth"], blur.inputs["Z"])
+    # Of what the component shows: by the render's depth all that a mirror shows would be as near as the mirror.
+    tree.links.new(render.outputs[f"Path {component} Depth"], blur.inputs["Z"])
     tree.links.new(render.outputs[f"Path {component} Motion"], blur.inputs["Speed"])
     return blur.outputs["Image"]
 

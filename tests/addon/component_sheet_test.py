@@ -43,6 +43,21 @@ def test_a_column_for_each_component_and_a_row_for_each_pass(tool: dict[str, Any
     assert shown(4, 1) == [64, 64, 64], "not tracked"
 
 
+def flow_of(name: str, x: float) -> dict[str, np.ndarray]:
+    motion = np.full((HEIGHT, WIDTH, 4), x, np.float32)
+    return {f"Path {name} Irradiance Motion": motion, f"Path {name} Irradiance Tracked": motion[..., :1] * 0.0 - 9.0}
+
+
+def test_motion_of_irradiance_was_taken_for_that_of_another_component(tool: dict[str, Any]) -> None:
+    """It ended in KeyError: 'Path Diffuse Irradiance Tracked', or by its length dimmed all others."""
+    passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)}
+    for name in ("Diffuse", "Irradiance"):
+        passes |= passes_of(name, (1.0, 0.0, 0.0), 1.0) | flow_of(name, -400.0)
+    assert tool["components"](passes) == ["Diffuse", "Irradiance"]
+    assert tool["longest_motion"](passes) == 4.0
+    assert tool["sheet"](passes).size[0] == 2 * (WIDTH + tool["GAP"]) - tool["GAP"]
+
+
 def test_passes_that_are_empty_have_no_row(tool: dict[str, Any]) -> None:
     passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)} | passes_of("Diffuse", (1.0, 0.0, 0.0), 0.0)
     passes["Path Diffuse Motion"] = np.zeros((HEIGHT, WIDTH, 4), np.float32)

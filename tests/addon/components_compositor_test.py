@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+import bpy
 import numpy as np
 import pytest
 from support import compositing, images
@@ -45,6 +46,39 @@ def test_the_grade_changes_the_reflection_alone(render: Callable[..., images.Pas
     assert (reflection > 0.05).any(axis=-1).mean() > 0.02
     np.testing.assert_allclose(change, reflection * (WARM - 1.0), atol=2e-5 * max(1.0, float(reflection.max())))
     assert np.abs(change[reflection.max(axis=-1) == 0.0]).max() < 1e-5
+
+
+def test_what_a_mirror_shows_was_blurred_by_the_depth_of_the_mirror() -> None:
+    """And all behind glass by that of the glass: near and far could not hide each other."""
+    bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
+    for name, blur in zip(NAMES, BLURS, strict=True):
+        sources = {link.from_socket.name for link in compositing.tree_of(bpy.context.scene).links if link.to_node.name == blur}
+        assert {f"Path {name} Depth", f"Path {name} Motion"} < sources
+
+
+def show_the_world(scene: bpy.types.Scene) -> None:
+    """Behind the room, transparent; the sum takes the render's alpha."""
+    bpy.data.objects.remove(bpy.data.objects["Back"])
+    scene.render.film_transparent = True
+    tree = compositing.tree_of(scene)
+    alpha = tree.nodes.new("CompositorNodeSetAlpha")
+    if hasattr(alpha, "mode"):
+        alpha.mode = "REPLACE_ALPHA"
+    else:
+        alpha.inputs["Type"].default_value = "Replace Alpha"
+    ((total, output),) = ((link.from_socket, link.to_socket) for link in tree.links if link.from_node.name == "Add Residual")
+    (render,) = (node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers")
+    tree.links.new(total, alpha.inputs["Image"])
+    tree.links.new(render.outputs["Alpha"], alpha.inputs["Alpha"])
+    tree.links.new(alpha.outputs["Image"], output)
+
+
+def test_the_sum_before_a_transparent_film_takes_its_alpha_from_the_render(tmp_path: Path) -> None:
+    """As the user guide has it."""
+    settings = {"percentage": 25, "frame": 12, "samples": 4, "change": show_the_world}
+    passes = compositing.render_muted(SAMPLE, tmp_path, ("Grade", *BLURS), **settings)
+    assert (passes[COMBINED][..., 3].min(), passes[COMBINED][..., 3].max()) == (0.0, 1.0)
+    np.testing.assert_allclose(passes[COMPOSITE], passes[COMBINED], rtol=1e-5, atol=1e-5)
 
 
 def test_the_composite_is_finite(render: Callable[..., images.Passes]) -> None:

@@ -329,6 +329,18 @@ def test_a_malformed_set_on_the_command_line_is_exit_code_1(blender: Callable[..
 
 
 @pytest.mark.application
+@pytest.mark.parametrize("option", [("--gradus-components", "A=ED("), ("--gradus-passes", "components")], ids=lambda option: option[0])
+def test_what_needs_components_is_exit_code_1_without_them(
+    blender: Callable[..., application.Outcome], tmp_path: Path, option: tuple[str, str]
+) -> None:
+    """It was passed over: the picture came without its parts."""
+    sample = SAMPLE.with_name("cornell.blend")
+    outcome = blender("--addons", "gradus", sample, "-o", tmp_path / "f_", "-f", "1", "--", *option, "--gradus-samples", "1")
+    assert (outcome.code, list(tmp_path.glob("f_*"))) == (1, []), outcome.output
+    assert f"{option[0]}: the picture is not taken apart into components; add --gradus-use-decomposition 1" in outcome.output
+
+
+@pytest.mark.application
 def test_the_command_line_takes_a_picture_apart(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
     sample = SAMPLE.with_name("cornell.blend")
     outcome = blender(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,7 +10,7 @@ import bpy
 import pytest
 from gradus import components, native, passes, renderer, ui
 from gradus.failure import Failure
-from gradus.options import parse
+from gradus.options import PREFIX, OptionError, parse
 from gradus.ui import decomposition_panels
 from support import compositing
 
@@ -79,6 +80,23 @@ def test_options_win_over_the_scene_s_set(scene: bpy.types.Scene) -> None:
     assert (filled.components, filled.use_decomposition) == (b"B=EDL", 1)
 
 
+NEED_PARTS = ([f"{PREFIX}components", "A=ED("], [f"{PREFIX}components="], [f"{PREFIX}passes", "depth,component_normal"])
+
+
+@pytest.mark.parametrize("arguments", NEED_PARTS, ids=lambda arguments: arguments[0])
+def test_options_of_components_were_passed_over_in_a_picture_that_is_one(scene: bpy.types.Scene, arguments: list[str]) -> None:
+    """A malformed set was no error, and passes were missing without a word."""
+    layer = scene.view_layers[0]
+    off, on = ([f"{PREFIX}use-decomposition", value] for value in "01")
+    for given in (arguments, arguments + off):
+        with pytest.raises(OptionError, match=f"{PREFIX}(components|passes): .* add {PREFIX}use-decomposition 1"):
+            renderer.native_settings(native.load(), scene, layer, parse(given))
+    well = [text.replace("ED(", "EDL") for text in arguments]
+    assert renderer.native_settings(native.load(), scene, layer, parse(well + on)).use_decomposition == 1
+    scene.gradus.use_decomposition = True
+    assert renderer.native_settings(native.load(), scene, layer, parse(well)).use_decomposition == 1
+
+
 def test_too_long_a_set_is_named(scene: bpy.types.Scene) -> None:
     scene.gradus.use_decomposition, scene.gradus.components = True, "A=" + "E" * 600
     with pytest.raises(Failure, match="Components .components. is longer than 511 bytes"):
@@ -140,13 +158,17 @@ def test_sockets_of_the_longest_names_are_whole(scene: bpy.types.Scene) -> None:
 
 
 class Labels:
-    """Writes down labels and icons; takes all else."""
+    """Writes down labels and icons, and which properties are shown; takes all else."""
 
     def __init__(self) -> None:
         self.found: list[tuple[str, str]] = []
+        self.properties: list[str] = []
 
     def label(self, text: str = "", icon: str = "NONE") -> None:
         self.found.append((text, icon))
+
+    def prop(self, _owner: Any, name: str, **_: Any) -> None:
+        self.properties.append(name)
 
     def __getattr__(self, name: str) -> Any:
         return lambda *_, **__: self
@@ -184,6 +206,12 @@ def test_the_panel_says_why_a_set_is_refused(scene: bpy.types.Scene, text: str) 
     assert "overlap: both match EDL" in message or "longer than 511 bytes" in message
 
 
+@pytest.mark.parametrize(("text", "shown"), [("", ["components", "path"]), ("A=ED(", ["components"])])
+def test_a_set_that_is_none_hid_a_switch_that_has_nothing_to_do_with_it(scene: bpy.types.Scene, text: str, shown: list[str]) -> None:
+    scene.gradus.components = text
+    assert drawn(scene).properties == [*shown, "component_replays"]
+
+
 def test_the_panel_says_that_a_path_is_none(scene: bpy.types.Scene) -> None:
     bpy.context.window_manager.gradus.path = "EXL"
     labels = drawn(scene)
@@ -196,6 +224,14 @@ def test_the_automatic_set_can_be_written_out(scene: bpy.types.Scene) -> None:
     settings = bpy.context.scene.gradus
     assert settings.components.startswith("Emission=EL;Diffuse=ED.*L;")
     assert not bpy.ops.gradus.write_out_components.poll()
+
+
+def test_without_a_library_writing_out_was_a_traceback(scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, str(tmp_path / "libgradus.so"))
+    with pytest.raises(RuntimeError, match="library not found") as refused:  # as a script hears of a report
+        bpy.ops.gradus.write_out_components()
+    assert "Traceback" not in str(refused.value)
+    assert bpy.context.scene.gradus.components == ""
 
 
 def test_components_have_a_panel_among_the_passes() -> None:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from ctypes import byref
 
 import bpy
 import pytest
 from gradus import viewport
-from support import recording
+from gradus.export import ViewOverride
+from gradus.native import Phase, Progress
+from mathutils import Matrix
+from support import compositing, recording
+
+WIDTH, HEIGHT = 32, 18
 
 
 def signature() -> object:
@@ -26,6 +32,71 @@ def no_surfaces(layer: bpy.types.ViewLayer) -> None:
 
 def clay(layer: bpy.types.ViewLayer) -> None:
     layer.material_override = bpy.data.materials.new("Clay")
+
+
+class Engine:
+    """As much of one as an export of a view takes."""
+
+    resolution_x = resolution_y = 0
+
+
+@pytest.fixture
+def view(scene: bpy.types.Scene) -> Iterator[viewport.View]:
+    """A viewport onto an empty scene, exported."""
+    engine, depsgraph = Engine(), bpy.context.evaluated_depsgraph_get()
+    made = viewport.View(engine, depsgraph)
+    made.synchronize(depsgraph, ViewOverride.from_view(Matrix(), Matrix(), (0.1, 100.0), WIDTH, HEIGHT))
+    yield made
+    made.free()
+
+
+@pytest.mark.parametrize("text", ["A=ED(", "A=EDL;B=ED.*L", "A=" + "E" * 600])
+def test_a_set_that_is_none_did_not_let_the_viewport_start(scene: bpy.types.Scene, view: viewport.View, text: str) -> None:
+    """Rendered shading ended with the set's refusal, over a picture that has no components."""
+    scene.gradus.use_decomposition, scene.gradus.components, scene.gradus.preview_samples = True, text, 1
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    view.start(depsgraph.scene_eval, depsgraph.view_layer_eval, (0, 0, WIDTH, HEIGHT))
+    view.worker.join()
+    view.session.library.render_wait(view.render, 60.0)
+    view.session.library.render_poll(view.render, byref(progress := Progress()))
+    assert (view.error, progress.phase, progress.samples_done) == (None, Phase.DONE, 1)
+    assert view.settings.use_decomposition == 0
+
+
+def test_components_are_edited_without_a_new_picture(scene: bpy.types.Scene) -> None:
+    """Each letter of a set started the viewport again, which has no components."""
+    before = signature()
+    settings = scene.gradus
+    settings.use_decomposition, settings.components, settings.component_replays = True, "A=EDL", False
+    scene.update_tag()  # as the interface does
+    assert signature() == before
+    settings.roughness_threshold = 0.2
+    scene.update_tag()
+    assert signature() != before
+
+
+def has_edits(change: Callable[[], None]) -> bool:
+    """Whether the update after a change is more than one of the scene."""
+    found: list[bool] = []
+
+    def look(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        found.append(viewport._has_edits(depsgraph))
+
+    bpy.context.view_layer.update()
+    bpy.app.handlers.depsgraph_update_post.append(look)
+    change()
+    bpy.context.view_layer.update()
+    bpy.app.handlers.depsgraph_update_post.remove(look)
+    assert found
+    return any(found)
+
+
+def test_with_a_compositor_every_setting_was_an_edit(scene: bpy.types.Scene) -> None:
+    """Its tree is updated with the scene, and the viewport started again."""
+    compositing.new_tree(scene)
+    obj = recording.add(recording.grid(1))
+    assert not has_edits(lambda: setattr(scene.gradus, "components", "A=EDL"))
+    assert has_edits(lambda: setattr(obj, "location", (1.0, 0.0, 0.0)))
 
 
 @pytest.mark.parametrize("change", [no_sky, no_surfaces, clay], ids=lambda change: change.__name__)

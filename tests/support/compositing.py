@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -30,12 +30,17 @@ def new_tree(scene: bpy.types.Scene) -> tuple[bpy.types.NodeTree, bpy.types.Node
     return tree, tree.nodes.new("CompositorNodeRLayers"), output.inputs[0]
 
 
-def render_muted(sample: Path, folder: Path, muted: Iterable[str], *, percentage: int, **settings: Any) -> images.Passes:
-    """All passes of a sample that has a compositor, and its composite, with these nodes muted."""
+def render_muted(
+    sample: Path, folder: Path, muted: Iterable[str], *, percentage: int, change: Callable[[bpy.types.Scene], None] | None = None,
+    **settings: Any,
+) -> images.Passes:  # fmt: skip
+    """All passes of a sample that has a compositor, and its composite, with these nodes muted, after a change."""
     bpy.ops.wm.open_mainfile(filepath=str(sample))
     scene = bpy.context.scene
     assert (scene.render.engine, scene.render.use_compositing) == ("GRADUS", True)
     scene.render.resolution_percentage = percentage
     for name in muted:
         tree_of(scene).nodes[name].mute = True
+    if change is not None:
+        change(scene)
     return images.render(scene, folder, noise_threshold=0.0, **settings)

@@ -35,15 +35,20 @@ class GRADUS_RENDER_PT_decomposition(RenderPanel, bpy.types.Panel):
         row = layout.row(align=True)
         row.prop(scene.gradus, "components")
         row.operator("gradus.write_out_components", text="", icon="GREASEPENCIL")
-        try:
-            found = described(scene)
-        except (native.GradusError, Failure) as error:
-            draw_error(layout, str(error), characters(context))
-            return
-        draw_components(layout, found)
-        layout.prop(context.window_manager.gradus, "path")
-        draw_path(layout, scene, context.window_manager.gradus.path, characters(context))
+        draw_set(layout, context)
         layout.prop(scene.gradus, "component_replays")
+
+
+def draw_set(layout: Any, context: Any) -> None:
+    """What the library makes of the set, or why it is none."""
+    try:
+        found = described(context.scene)
+    except (native.GradusError, Failure) as error:
+        draw_error(layout, str(error), characters(context))
+        return
+    draw_components(layout, found)
+    layout.prop(context.window_manager.gradus, "path")
+    draw_path(layout, context.scene, context.window_manager.gradus.path, characters(context))
 
 
 def draw_error(layout: Any, text: str, width: int) -> None:
@@ -89,7 +94,12 @@ class GRADUS_OT_write_out_components(bpy.types.Operator):
         return not context.scene.gradus.components
 
     def execute(self, context: Any) -> set[str]:
-        context.scene.gradus.components = components.written(described(context.scene))
+        try:
+            found = described(context.scene)
+        except native.GradusError as error:  # without the library nobody knows the set
+            self.report({"ERROR"}, error.text)
+            return {"CANCELLED"}
+        context.scene.gradus.components = components.written(found)
         return {"FINISHED"}
 
 
