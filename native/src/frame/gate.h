@@ -37,8 +37,8 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
 
 // A vertex of one sample.
 inline void add_rough(const RoughVertices& vertex, RoughVertices* sum, Counters* counters) {
-  const RoughVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal,
-                           sum->inverse_depth + vertex.inverse_depth, sum->samples + vertex.samples};
+  const RoughVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal, sum->inverse_depth + vertex.inverse_depth,
+                           sum->samples + vertex.samples};
   if (fits(Radiance(next.reflectance, next.inverse_depth)) && fits(Radiance(next.normal, next.samples))) {
     *sum = next;
   } else {

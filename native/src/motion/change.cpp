@@ -13,10 +13,28 @@ bool same_view(const GradusCamera& a, const GradusCamera& b) {
   return std::equal(a.matrix, a.matrix + 16, b.matrix) && std::equal(a.window, a.window + 4, b.window);
 }
 
-// moved: the same one, perhaps in the other frame's place.
-bool rests(const InstanceData& a, const InstanceData& moved) {
-  const auto kind = [](const InstanceData& instance) { return instance.visibility | GRADUS_MAY_MOVE; };
-  return a.mesh == moved.mesh && a.to_world == moved.to_world && !a.moves() && a.materials == moved.materials && kind(a) == kind(moved);
+struct Placed {
+  const Snapshot& snapshot;
+  const InstanceData& instance;
+
+  uint32_t kind() const { return instance.visibility | GRADUS_MAY_MOVE; }
+  size_t slots() const { return instance.materials.size(); }
+  // nullptr: the default one, which every snapshot has of its own.
+  const MaterialData* material(size_t slot) const {
+    const uint32_t material = instance.materials[slot];
+    return material > 0 ? snapshot.materials[material].get() : nullptr;
+  }
+};
+
+bool same_materials(const Placed& a, const Placed& b) {
+  bool same = a.slots() == b.slots();
+  for (size_t slot = 0; same && slot < a.slots(); ++slot) same = a.material(slot) == b.material(slot);
+  return same;
+}
+
+bool rests(const Placed& a, const Placed& b) {
+  return a.instance.mesh == b.instance.mesh && a.instance.to_world == b.instance.to_world && !a.instance.moves() && a.kind() == b.kind() &&
+         same_materials(a, b);
 }
 
 }  // namespace
@@ -25,13 +43,13 @@ bool rests(const InstanceData& a, const InstanceData& moved) {
 Change::Change(const Snapshot& now) : now_(now), all_(now.camera.shutter_key_count > 0), instances_(now.instances.size()) {}
 
 void Change::add(const Snapshot& other) {
-  all_ |= !same_view(now_.camera, other.camera) || now_.origin != other.origin || now_.materials != other.materials;
+  all_ |= !same_view(now_.camera, other.camera) || now_.origin != other.origin || now_.images != other.images;
   const std::vector<uint32_t> there = matching_instances(now_, other);
   std::vector<bool> is_new(other.instances.size(), true);
   for (size_t i = 0; i < instances_.size(); ++i) {
     const InstanceData &a = now_.instances[i], *b = there[i] != kNoInstance ? &other.instances[there[i]] : nullptr;
     if (b != nullptr) is_new[there[i]] = false;
-    if (b != nullptr && gradus::rests(a, *b)) continue;
+    if (b != nullptr && gradus::rests({now_, a}, {other, *b})) continue;
     instances_[i] = any_ = true;
     add_box(a);
     if (b != nullptr) add_box(*b);

@@ -13,7 +13,7 @@ class Change {
   explicit Change(const Snapshot& now);
   void add(const Snapshot& other);
 
-  // The camera, or what surfaces are made of.
+  // The camera, or pictures on surfaces.
   bool of_all() const { return all_; }
   bool of_instance(uint32_t index) const { return instances_[index]; }
   // Whether something that moves may be on that part of the ray, at any of these moments.

@@ -28,7 +28,8 @@ class PassRecorder {
   void no_ray() {
     if (!again_) add(GRADUS_PASS_MIST, 1.0f);
   }
-  // A lamp or the world on the path's last segment, at a distance from where that begins, with the whole of the light that comes from there.
+  // A lamp or the world on the path's last segment, at a distance from where that begins, with the whole of the light that comes from
+  // there.
   void sighting(const Rgb& throughput, int component, const Rgb& light, float distance) {
     if (!features_done_) add_albedo(throughput * light);
     shines(component, light, distance);
@@ -82,7 +83,7 @@ class PassRecorder {
   uint32_t told_ = 0;             // bits of components that know details of this segment
   uint32_t told_rough_ = 0;       // … its vertex, and of what reflectance
   std::array<Rgb, kMostComponents> told_reflectance_{};
-  uint32_t number_ = 0;           // of the sample
+  uint32_t number_ = 0;  // of the sample
   bool first_sample_ = false;
   bool again_ = false;
   bool features_done_ = false;

@@ -142,8 +142,8 @@ void RenderLoop::prepare() {
     check_gradients(*input_.resumed, !gradients_.none());
     frame = std::make_shared<Frame>(*input_.resumed);
   } else {
-    frame = std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, components_.count(),
-                                    !gradients_.none());
+    frame =
+        std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, components_.count(), !gradients_.none());
     name_planes(components_, frame.get());
     const bool motion = plan_.component_motion && !input_.replay;
     keep_of_components({plan_.rough_vertices, plan_.rough_details, motion, motion && input_.samples_only}, frame.get());

@@ -7,8 +7,8 @@
 
 namespace gradus {
 
-// Of the components whose bits are set in `wanted`, in order, by pixels of `from`; NoPath where a component is seen directly, or not at all.
-// Cancelled: pixels are NotConverged.
+// Of the components whose bits are set in `wanted`, in order, by pixels of `from`; NoPath where a component is seen directly, or not at
+// all. Cancelled: pixels are NotConverged.
 std::vector<ChainMotion> follow_components(const CentreView& from, const ChainTracer& to, const ComponentSet& components, uint32_t wanted,
                                            const CancelTest& is_cancelled);
 // Whether a component is seen through smooth surfaces anywhere.

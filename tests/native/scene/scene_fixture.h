@@ -168,6 +168,7 @@ class TestScene {
   }
   // Of the instance added as number i: where it is in the next commit.
   void move(size_t i, const Mat4& matrix) { matrices_[i] = matrix; }
+  void dress(size_t i, uint64_t material) { materials_[i] = material; }
   void replace_mesh(size_t i, uint64_t mesh_key) { meshes_[i] = mesh_key; }
   size_t instance_count() const { return meshes_.size(); }
   void remove_last() {
