@@ -22,6 +22,15 @@ bool can_flow(const MadeFrame& from, const MadeFrame& to) {
          wanted_flows(*from.frame) == wanted_flows(*to.frame);
 }
 
+// A frame as another one is changed. Numbers may have keys: those that the other is asked for as it was sampled for are its own.
+GradusSettings as_changed(GradusSettings frame, const GradusSettings& other, const GradusSettings& changed) {
+  frame.reconstruction = changed.reconstruction;
+  frame.denoiser = changed.denoiser;
+  if (changed.reconstruction_alpha != other.reconstruction_alpha) frame.reconstruction_alpha = changed.reconstruction_alpha;
+  if (changed.film_exposure != other.film_exposure) frame.film_exposure = changed.film_exposure;
+  return frame;
+}
+
 // Where a flow was not to be had although it should lead there.
 Tracking or_no_neighbour(Tracking leads) { return leads == Tracking::Tracked ? Tracking::NoNeighbour : leads; }
 
@@ -64,14 +73,14 @@ std::shared_ptr<const MadeFrame> FrameDelivery::make() {
   return previous;
 }
 
+GradusSettings FrameDelivery::own_settings(int32_t number) const {
+  const std::optional<GradusSettings> stored = sequence_->folder_.settings(number);
+  return stored ? *stored : sequence_->form_at(sequence_->place_of(number)).settings;
+}
+
 std::shared_ptr<MadeFrame> FrameDelivery::make_beside(int32_t number) const {
-  std::optional<GradusSettings> asked = sequence_->folder_.settings(number);
-  if (changed_) {
-    if (!asked) asked = sequence_->form_at(sequence_->place_of(number)).settings;
-    asked->reconstruction = changed_->reconstruction;
-    asked->reconstruction_alpha = changed_->reconstruction_alpha;
-    asked->denoiser = changed_->denoiser;
-  }
+  std::optional<GradusSettings> asked;  // nothing: what the folder knows
+  if (changed_) asked = as_changed(own_settings(number), own_settings(number_), *changed_);
   FrameMaker maker(sequence_.get(), number, asked, cancel_);
   std::shared_ptr<MadeFrame> made = maker.load();
   maker.make_picture(made.get());

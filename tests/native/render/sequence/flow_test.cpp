@@ -271,6 +271,35 @@ TEST(SequenceFlow, AFrameThatWasMadeAheadObeysItsOwnSettings) {
   EXPECT_GT(read_flow(*task, "Diffuse").count(kTracked), kPixels / 2);
 }
 
+// Files that are loaded to deliver frames 0 to 2, each as it was sampled for, but for what `change` does.
+template <class Change>
+uint64_t loads_by(float alpha_by_frame, const Change& change, bool with_flow = true) {
+  const auto sequence = flow_sequence(2, with_flow);
+  MovingShadow scene;
+  const auto settings_at = [&](int32_t frame) {
+    GradusSettings settings = flow_settings(frame);
+    settings.reconstruction_alpha = alpha_by_frame * float(1 + frame);
+    return settings;
+  };
+  for (const int32_t frame : {0, 1, 2}) test::run(sequence->sample(scene.at(frame), settings_at(frame)).get());
+  const uint64_t before = sequence->folder().loads();
+  for (const int32_t frame : {0, 1, 2}) {
+    GradusSettings settings = settings_at(frame);
+    change(&settings);
+    test::run(sequence->deliver(frame, &settings).get());
+  }
+  return sequence->folder().loads() - before;
+}
+
+void as_it_is(GradusSettings*) {}
+
+TEST(SequenceFlow, FramesOfAnotherExposureAreMadeOnce) {
+  EXPECT_EQ(loads_by(0.0f, [](GradusSettings* settings) { settings->film_exposure = 2.0f; }), loads_by(0.0f, as_it_is));
+}
+
+// Its windows are those of each frame alone, with flow or without, and no frame is made twice.
+TEST(SequenceFlow, AKeyedAlphaIsThatOfTheFrameItself) { EXPECT_EQ(loads_by(0.2f, as_it_is, true), loads_by(0.2f, as_it_is, false)); }
+
 TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
   const Folder asked, not_asked;
   const auto with = flow_sequence(2, true, GRADUS_BINARY_DIR "/native", asked.path());
