@@ -1,5 +1,7 @@
 #include "render/sequence/component_flows.h"
 
+#include <algorithm>
+
 #include "path/components.h"
 #include "render/component_read.h"
 #include "settings/pass_table.h"
@@ -65,6 +67,14 @@ class FlowInput {
   std::vector<float> depth_;
 };
 
+// The end of the list: it has none.
+size_t place_of(const std::vector<FlowKind>& kinds, const MadeFrame& made, const std::string& component, FlowDomain domain) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const FlowKind& kind) {
+    return kind.domain == domain && made.frame->components[kind.component].name == component;
+  });
+  return size_t(found - kinds.begin());
+}
+
 }  // namespace
 
 std::vector<FlowKind> wanted_flows(const Frame& frame) {
@@ -80,24 +90,30 @@ std::vector<FlowKind> wanted_flows(const Frame& frame) {
 }
 
 std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const MadeFrame& first, const MadeFrame& second) {
-  std::array<FrameFlows, 2> flows;
+  const std::vector<FlowKind> kinds = wanted_flows(*first.frame), others = wanted_flows(*second.frame);
+  std::array<FrameFlows, 2> flows{FrameFlows(kinds.size()), FrameFlows(others.size())};
   const Region& region = first.delivered();
-  for (const FlowKind& kind : wanted_flows(*first.frame)) {
-    const FlowInput a(first, kind, Side::Next), b(second, kind, Side::Previous);
-    std::array<PixelMotion, 2> motion = irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kind.domain);
-    for (size_t i = 0; i < 2; ++i) flows[i].push_back(std::move(motion[i]));
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    const std::string& name = first.frame->components[kinds[k].component].name;
+    const size_t other = place_of(others, second, name, kinds[k].domain);
+    if (other == others.size()) continue;
+    const FlowInput a(first, kinds[k], Side::Next), b(second, others[other], Side::Previous);
+    std::array<PixelMotion, 2> motion = irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kinds[k].domain);
+    flows[0][k] = std::move(motion[0]);
+    flows[1][other] = std::move(motion[1]);
   }
   return flows;
 }
 
-FrameFlows flows_without(const MadeFrame& frame, Side side, Tracking cause) {
-  FrameFlows flows;
-  for (const FlowKind& kind : wanted_flows(*frame.frame)) {
-    KnownMotion known = known_motion(frame, kind.component, side);
+void complete_flows(const MadeFrame& frame, Side side, Tracking cause, FrameFlows* flows) {
+  const std::vector<FlowKind> kinds = wanted_flows(*frame.frame);
+  flows->resize(kinds.size());
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    if (!(*flows)[k].vectors.empty()) continue;
+    KnownMotion known = known_motion(frame, kinds[k].component, side);
     for (float& tracked : known.tracked) tracked = tracked == kTracked ? float(cause) : tracked;
-    flows.push_back({std::move(known.vectors), std::move(known.tracked)});
+    (*flows)[k] = {std::move(known.vectors), std::move(known.tracked)};
   }
-  return flows;
 }
 
 std::vector<FlowPass> join_flows(const MadeFrame& frame, const FrameFlows& previous, const FrameFlows& next) {

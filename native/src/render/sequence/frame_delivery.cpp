@@ -17,10 +17,7 @@ constexpr const char* kNotDelivered = "the frame was not delivered: ";
 
 bool has_flow(const MadeFrame& made) { return wants_flow(made.frame->settings) && !made.frame->components[0].shown.empty(); }
 
-bool can_flow(const MadeFrame& from, const MadeFrame& to) {
-  return has_flow(from) && has_flow(to) && from.delivered() == to.delivered() && same_components(*from.frame, *to.frame) &&
-         wanted_flows(*from.frame) == wanted_flows(*to.frame);
-}
+bool can_flow(const MadeFrame& from, const MadeFrame& to) { return has_flow(from) && has_flow(to) && from.delivered() == to.delivered(); }
 
 // A frame as another one is changed. Numbers may have keys: those that the other is asked for as it was sampled for are its own.
 GradusSettings as_changed(GradusSettings frame, const GradusSettings& other, const GradusSettings& changed) {
@@ -120,7 +117,7 @@ void FrameDelivery::join(const MadeFrame* previous, Tracking leads_here, std::sh
   const FlowLibrary* library = sequence_->flow_library(&warnings_);
   FrameFlows back = std::exchange(sequence_->back_, {});
   if (back.empty() && previous && can_flow(*previous, *made_)) back = flows_between(*library, *previous, *made_)[1];
-  if (back.empty()) back = flows_without(*made_, Side::Previous, or_no_neighbour(leads_here));
+  complete_flows(*made_, Side::Previous, or_no_neighbour(leads_here), &back);
   stop_if_asked();
   FrameFlows forth;
   if (next && can_flow(*made_, *next)) {
@@ -128,7 +125,7 @@ void FrameDelivery::join(const MadeFrame* previous, Tracking leads_here, std::sh
     forth = std::move(both[0]);
     sequence_->back_ = std::move(both[1]);
   }
-  if (forth.empty()) forth = flows_without(*made_, Side::Next, or_no_neighbour(leads_on));
+  complete_flows(*made_, Side::Next, or_no_neighbour(leads_on), &forth);
   sequence_->ahead_ = std::move(next);
   flows_ = join_flows(*made_, back, forth);
 }

@@ -45,13 +45,14 @@ Mat4 shining_along(const Vec3& direction) {
 // A floor that rests, seen from above, with the shadow of a ball beside the picture: it goes by kShift from frame to frame.
 class MovingShadow {
  public:
-  // angle: by which it is seen from the side.
-  std::shared_ptr<const Snapshot> at(int32_t frame, float angle = 0.0f) {
+  // angle: by which it is seen from the side. with_mirror: one that shows the floor stands in a corner of the picture.
+  std::shared_ptr<const Snapshot> at(int32_t frame, float angle = 0.0f, bool with_mirror = false) {
     PathScene& scene = scenes_[frame];
     const uint64_t matte_floor = scene.material(matte(Rgb(0.6f)));
     scene.quad(Vec3(-4, -4, 0), Vec3(8, 0, 0), Vec3(0, 8, 0), matte_floor);
     const Vec2 middle = kPixel * (float(frame) - 1.5f) * kShift;
     scene.ball(Vec3(middle, 0.0f) - 2.4f * kDirection, 0.3f, matte_floor, 24, true);
+    if (with_mirror) scene.quad(Vec3(0.8f, 0.6f, 0.01f), Vec3(0.2f, 0, 0.45f), Vec3(0, 0.4f, 0), scene.material(glossy(0.0f)));
     GradusLight sun = make_light(GRADUS_LIGHT_SUN, shining_along(kDirection), Rgb(3.0f));
     sun.angle = 0.08f;
     scene.light(sun);
@@ -237,6 +238,23 @@ TEST(SequenceFlow, UnderACutNothingIsTracked) {
   const Flow flow = read_flow(*delivered(sequence.get(), 1), "Diffuse");
   EXPECT_EQ(flow.count(kTracked), 0u);
   EXPECT_EQ(flow.count(float(Tracking::Cut)), kPixels);
+}
+
+// Those that are on one side alone are not tracked there.
+TEST(SequenceFlow, AMirrorThatAppearsTakesNoFlowFromOthers) {
+  const auto sequence = flow_sequence(3);
+  MovingShadow scene;
+  for (const int32_t frame : {0, 1, 2, 3}) test::run(sequence->sample(scene.at(frame, 0.0f, frame >= 2), flow_settings(frame)).get());
+  for (const int32_t frame : {0, 1, 2}) {
+    const auto task = delivered(sequence.get(), frame);
+    ASSERT_EQ(find_component(*task->frame(), "Reflection") >= 0, frame == 2) << frame;
+    if (frame == 0) continue;
+    EXPECT_GT(read_flow(*task, "Diffuse").count(kTracked), kPixels / 2) << frame;
+    if (frame == 1) continue;
+    const Flow reflected = read_flow(*task, "Reflection");
+    EXPECT_EQ(reflected.count(kTracked), 0u);
+    EXPECT_GT(reflected.count(kNoNeighbour), 20u);
+  }
 }
 
 // Frames come as they would without: what is made ahead is delivered in its turn.
