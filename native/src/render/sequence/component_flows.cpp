@@ -4,6 +4,7 @@
 
 #include "path/components.h"
 #include "render/component_read.h"
+#include "render/region_pixels.h"
 #include "settings/pass_table.h"
 
 namespace gradus {
@@ -15,20 +16,11 @@ struct KnownMotion {
   std::vector<float> tracked;
 };
 
-template <class Body>
-void each_pixel(const MadeFrame& made, const Body& body) {
-  const Region& region = made.delivered();
-  size_t out = 0;
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x, ++out) body(out, made.frame->index(x, y));
-  }
-}
-
 KnownMotion known_motion(const MadeFrame& made, size_t component, Side side) {
   const ComponentPlanes& planes = made.frame->components[component];
   const auto pixels = size_t(made.delivered().area());
   KnownMotion known{std::vector<Vec2>(pixels), std::vector<float>(pixels)};
-  each_pixel(made, [&](size_t out, size_t i) {
+  for_pixels(*made.frame, made.delivered(), [&](size_t i, size_t out) {
     const Vec4& motion = planes.motion[i];
     known.vectors[out] = side == Side::Previous ? Vec2(motion) : -Vec2(motion.z, motion.w);
     known.tracked[out] = planes.tracked[i];
@@ -44,7 +36,10 @@ std::vector<Rgb> light_of(const MadeFrame& made, const FlowKind& kind) {
   read_component_pass(*made.frame, int(kind.component), pass, region, made.components[kind.component], values.data());
   const float exposure = made.frame->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
   std::vector<Rgb> light(values.size() / 3);
-  for (size_t i = 0; i < light.size(); ++i) light[i] = factor * Rgb(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  for_pixels(*made.frame, region, [&](size_t, size_t out) {
+    const float* const value = &values[3 * out];
+    light[out] = factor * Rgb(value[0], value[1], value[2]);
+  });
   return light;
 }
 
@@ -53,7 +48,7 @@ class FlowInput {
   FlowInput(const MadeFrame& made, const FlowKind& kind, Side side)
       : light_(light_of(made, kind)), known_(known_motion(made, kind.component, side)), object_(light_.size()), depth_(light_.size()) {
     const std::vector<ShownPoint>& shown = made.frame->components[kind.component].shown;
-    each_pixel(made, [&](size_t out, size_t i) {
+    for_pixels(*made.frame, made.delivered(), [&](size_t i, size_t out) {
       object_[out] = int32_t(shown[i].object);
       depth_[out] = shown[i].depth;
     });
@@ -122,10 +117,10 @@ std::vector<FlowPass> join_flows(const MadeFrame& frame, const FrameFlows& previ
   for (size_t k = 0; k < kinds.size(); ++k) {
     const PixelMotion &before = previous[k], &after = next[k];
     FlowPass pass{kinds[k], std::vector<Vec4>(before.vectors.size()), before.tracked};
-    for (size_t i = 0; i < pass.vectors.size(); ++i) {
-      pass.vectors[i] = Vec4(before.vectors[i], -after.vectors[i]);
-      if (pass.tracked[i] == kTracked) pass.tracked[i] = after.tracked[i];
-    }
+    for_pixels(*frame.frame, frame.delivered(), [&](size_t, size_t out) {
+      pass.vectors[out] = Vec4(before.vectors[out], -after.vectors[out]);
+      if (pass.tracked[out] == kTracked) pass.tracked[out] = after.tracked[out];
+    });
     passes.push_back(std::move(pass));
   }
   return passes;
