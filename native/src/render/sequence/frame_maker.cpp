@@ -168,7 +168,7 @@ void FrameMaker::denoise(MadeFrame* made) {
   const uint32_t threads = threads_of(frame.settings, device);
   std::vector<float> rgba = denoise_and_bill(*library, frame, made->delivered(), threads, is_cancelled_, made->combined, &stats);
   if (rgba.empty()) return;
-  follow_picture(made->combined, rgba, &made->components);
+  arena_.execute([&] { follow_picture(made->combined, rgba, &made->components); });
   made->combined = std::move(rgba);
   for (float& value : made->error) value *= denoised_error(frame.settings.reconstruction);
 }
