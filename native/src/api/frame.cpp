@@ -60,7 +60,8 @@ MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t recon
   const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
   std::vector<float> image, estimate;
   std::vector<std::vector<float>> components;
-  tbb::task_arena(arena_size(threads)).execute([&] {
+  tbb::task_arena arena(arena_size(threads));
+  arena.execute([&] {
     const FlushDenormals flush;
     SolveReport report;
     image = combine(frame, reconstruction, alpha, delivered_region(frame), never, &report, error != nullptr ? &estimate : nullptr,
@@ -74,7 +75,7 @@ MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t recon
     if (denoised.empty()) {
       object->device->warnings().add(failure);
     } else {
-      follow_picture(image, denoised, &components);
+      arena.execute([&] { follow_picture(image, denoised, &components); });
       image = std::move(denoised);
       for (float& value : estimate) value *= denoised_error(reconstruction);
     }

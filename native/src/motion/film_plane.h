@@ -25,6 +25,12 @@ inline Vec2 clamped_to(const Vec2& p, int width, int height) {
   return glm::clamp(p, Vec2(0.0f), Vec2(float(width - 1), float(height - 1)));
 }
 
+// No longer than the film; 0 where it is not finite.
+inline Vec2 bounded(const Vec2& vector, int width, int height) {
+  const Vec2 most = {float(width), float(height)};
+  return is_finite(vector.x) && is_finite(vector.y) ? glm::clamp(vector, -most, most) : Vec2(0.0f);
+}
+
 // Catmull and Rom's, of the four pixels around.
 inline std::array<float, 4> cubic_weights(float u) {
   return {u * (-0.5f + u * (1.0f - 0.5f * u)), 1.0f + u * u * (-2.5f + 1.5f * u), u * (0.5f + u * (2.0f - 1.5f * u)),

@@ -28,7 +28,6 @@ class FlowFrame {
   }
   size_t nearest(const Vec2& place) const;
   bool holds(const Vec2& place) const;
-  Vec2 bounded(const Vec2& vector) const;
 
   template <class T>
   FilmPlane<T> plane(const std::vector<T>& values) const {

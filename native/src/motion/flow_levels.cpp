@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/each_pixel.h"
+
 namespace gradus {
 namespace {
 
@@ -19,36 +21,51 @@ float tamed(const Rgb& radiance) {
   return is_finite(value) ? std::clamp(value, -kBrightest, kBrightest) : 0.0f;
 }
 
-float mean_magnitude(const Values& values) {
-  double sum = 0.0;
-  for (const float value : values) sum += std::abs(value);
-  return values.empty() ? 0.0f : float(sum / double(values.size()));
+// Values of both frames, in rows of the film: twice its height.
+float mean_magnitude(const Values& values, int width, int rows) {
+  const Sums sums = sum_rows(rows, 1, [&](int y, int) {
+    double sum = 0.0;
+    for (size_t i = size_t(y) * size_t(width); i < size_t(y + 1) * size_t(width); ++i) sum += std::abs(values[i]);
+    return sum;
+  });
+  return values.empty() ? 0.0f : float(sums[0] / double(values.size()));
 }
 
-float quantile(Values values, float share) {
-  const auto at = values.begin() + ptrdiff_t(std::lround(share * float(values.size() - 1)));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+struct Scale {
+  float low, high;
+};
+
+// All but the outliers.
+Scale scale_of(Values values) {
+  const auto place = [&](float share) { return values.begin() + ptrdiff_t(std::lround(share * float(values.size() - 1))); };
+  const auto lower = place(kOutliers), upper = place(1.0f - kOutliers);
+  std::nth_element(values.begin(), lower, values.end());
+  const float low = *lower;
+  std::nth_element(lower, upper, values.end());
+  return {low, *upper};
 }
 
 }  // namespace
 
 std::array<GreyImage, 2> flow_levels(int width, int height, std::span<const Rgb> first, std::span<const Rgb> second, FlowDomain domain) {
   const size_t count = first.size();
-  Values values;
-  values.reserve(2 * count);
-  for (const Rgb& radiance : first) values.push_back(tamed(radiance));
-  for (const Rgb& radiance : second) values.push_back(tamed(radiance));
-  const float mean = mean_magnitude(values);
+  Values values(2 * count);
+  each_pixel(width, height, [&](int, int, size_t p) {
+    values[p] = tamed(first[p]);
+    values[count + p] = tamed(second[p]);
+  });
+  const float mean = mean_magnitude(values, width, 2 * height);
   std::array<GreyImage, 2> result{GreyImage{width, height, Values(count)}, GreyImage{width, height, Values(count)}};
   if (mean == 0.0f) return result;
   if (domain == FlowDomain::Logarithmic) {
-    for (float& value : values) value = std::log(std::max(value, 0.0f) / mean + kFloor);
+    each_pixel(width, 2 * height, [&](int, int, size_t p) { values[p] = std::log(std::max(values[p], 0.0f) / mean + kFloor); });
   }
-  const float low = quantile(values, kOutliers), high = quantile(values, 1.0f - kOutliers);
+  const auto [low, high] = scale_of(values);
   const float least = domain == FlowDomain::Logarithmic ? kLeastLogarithms : kLeastShare * mean;
   const float scale = 255.0f / std::max(high - low, least);
-  for (size_t i = 0; i < values.size(); ++i) result[i / count].levels[i % count] = std::clamp((values[i] - low) * scale, 0.0f, 255.0f);
+  each_pixel(width, height, [&, low = low](int, int, size_t p) {
+    for (size_t k = 0; k < 2; ++k) result[k].levels[p] = std::clamp((values[k * count + p] - low) * scale, 0.0f, 255.0f);
+  });
   return result;
 }
 

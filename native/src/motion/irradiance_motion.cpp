@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_invoke.h>
 
+#include "motion/each_pixel.h"
 #include "motion/rest_flow.h"
 
 namespace gradus {
@@ -35,10 +36,10 @@ class Check {
 PixelMotion checked(const FlowFrame& from, const FlowFrame& to, const std::vector<Vec2>& there, const std::vector<Vec2>& back) {
   const Check check(from, to, there, back);
   PixelMotion result{from.surface(), std::vector<float>(from.count())};
-  for (size_t p = 0; p < from.count(); ++p) {
+  each_pixel(from.width(), from.height(), [&](int, int, size_t p) {
     result.tracked[p] = check.cause(p);
     if (result.tracked[p] == kTracked) result.vectors[p] = there[p];
-  }
+  });
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "motion/film_plane.h"
 
 namespace gradus {
 namespace {
@@ -52,11 +53,6 @@ std::vector<float> finite_levels(std::vector<float> levels) {
   return levels;
 }
 
-Vec2 bounded(const Vec2& vector, const Vec2& most) {
-  if (!is_finite(vector.x) || !is_finite(vector.y)) return Vec2(0.0f);
-  return glm::clamp(vector, -most, most);
-}
-
 }  // namespace
 
 std::string flow_library_folder() {
@@ -93,8 +89,7 @@ std::vector<Vec2> optical_flow(const FlowLibrary& library, const GreyImage& from
   if (library.estimate(&images, &kEffort, &flow[0].x, error.data(), error.size()) != 0) {
     throw Error(GRADUS_ERROR_UNKNOWN, std::string("optical flow: ") + error.data());
   }
-  const Vec2 most(float(from.width), float(from.height));
-  for (Vec2& vector : flow) vector = bounded(vector, most);
+  for (Vec2& vector : flow) vector = bounded(vector, from.width, from.height);
   return flow;
 }
 

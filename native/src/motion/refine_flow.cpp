@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "reconstruct/rows.h"
+#include "motion/each_pixel.h"
 
 namespace gradus {
 namespace {
@@ -82,13 +82,7 @@ class Refinement {
   size_t index(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
   template <class Body>
   void each_pixel(const Body& body) {
-    for_rows(height_, [&](int y) { row(y, body); });
-  }
-  // Rows are no part of what calls them: a compiler that makes two variants of them rounds differently in each, and which one a row gets
-  // would depend on the threads.
-  template <class Body>
-  [[gnu::noinline]] void row(int y, const Body& body) {
-    for (int x = 0; x < width_; ++x) body(x, y, index(x, y));
+    gradus::each_pixel(width_, height_, body);
   }
 
   // The other image where the vectors lead to. Where it cannot show the same: this one, with which nothing is wrong.
@@ -141,7 +135,8 @@ class Refinement {
     return normal.inverse();
   }
 
-  // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each other.
+  // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each other. Apart from what
+  // calls it, as of motion/each_pixel.h.
   [[gnu::noinline]] void relax(int y, int colour) {
     for (int x = (y + colour) & 1; x < width_; x += 2) {
       const size_t p = index(x, y), row = size_t(width_);

@@ -1,8 +1,8 @@
 #include "motion/rest_flow.h"
 
 #include "base/fpu.h"
+#include "motion/each_pixel.h"
 #include "motion/refine_flow.h"
-#include "reconstruct/rows.h"
 
 namespace gradus {
 namespace {
@@ -17,7 +17,7 @@ constexpr float kGain = 1.5f;                        // variances that a vector 
 class RestFlow {
  public:
   RestFlow(const FlowFrame& from, const FlowFrame& to) : from_(from), to_(to), seen_(from.count()) {
-    for (size_t p = 0; p < seen_.size(); ++p) seen_[p] = is_seen(p);
+    each_pixel([this](size_t p) { seen_[p] = is_seen(p); });
   }
 
   std::vector<Vec2> vectors(const FlowLibrary& library) const {
@@ -27,11 +27,16 @@ class RestFlow {
     const std::vector<float> noise = deviations(moved);
     std::vector<Vec2> rest = believed(found, still, moved, noise);
     refine_flow({from_.levels(), to_.levels(), noise, from_.surface(), seen_, from_.object()}, &rest);
-    for (size_t p = 0; p < rest.size(); ++p) rest[p] = from_.bounded(from_.surface()[p] + rest[p]);
+    each_pixel([&](size_t p) { rest[p] = bounded(from_.surface()[p] + rest[p], from_.width(), from_.height()); });
     return rest;
   }
 
  private:
+  template <class Body>
+  void each_pixel(const Body& body) const {
+    gradus::each_pixel(from_.width(), from_.height(), [&](int, int, size_t p) { body(p); });
+  }
+
   // Whether the surface of a pixel is in the other frame, unhidden, and no edge is near.
   bool is_seen(size_t p) const {
     const Vec2 there = from_.place(p) + from_.surface()[p];
@@ -44,18 +49,18 @@ class RestFlow {
   // The other frame as the surfaces' motion leads to it; this one where it does not.
   GreyImage compensated() const {
     GreyImage image = from_.image();
-    for (size_t p = 0; p < seen_.size(); ++p) {
+    each_pixel([&](size_t p) {
       if (seen_[p]) image.levels[p] = cubic_at(to_.levels(), from_.place(p) + from_.surface()[p]);
-    }
+    });
     return image;
   }
 
   std::vector<float> squares_off(const GreyImage& there, const std::vector<Vec2>& vectors) const {
     std::vector<float> result(vectors.size());
-    for (size_t p = 0; p < vectors.size(); ++p) {
+    each_pixel([&](size_t p) {
       const float off = linear_at(from_.plane(there.levels), from_.place(p) + vectors[p]) - from_.image().levels[p];
       result[p] = off * off;
-    }
+    });
     return result;
   }
 
@@ -75,24 +80,24 @@ class RestFlow {
   std::vector<float> deviations(const std::vector<float>& squares) const {
     const float of_most = deviation(squares);
     std::vector<float> result = patch_means(squares);
-    for (float& value : result) value = std::max(of_most, std::sqrt(0.5f * value));
+    each_pixel([&](size_t p) { result[p] = std::max(of_most, std::sqrt(0.5f * result[p])); });
     return result;
   }
 
   // The vectors that explain more than chance; no rest for the others.
   std::vector<Vec2> believed(const std::vector<Vec2>& found, std::vector<float> still, const std::vector<float>& moved,
                              const std::vector<float>& noise) const {
-    for (size_t p = 0; p < still.size(); ++p) still[p] -= moved[p];
+    each_pixel([&](size_t p) { still[p] -= moved[p]; });
     const std::vector<float> gain = patch_means(still);
     std::vector<Vec2> rest(found.size(), Vec2(0.0f));
-    for (size_t p = 0; p < found.size(); ++p) {
+    each_pixel([&](size_t p) {
       const Vec2 place = from_.place(p) + found[p];
       const size_t q = from_.nearest(place);
       const float least = std::max(noise[p], kLeastBelieved);
-      if (gain[p] < kGain * least * least || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) continue;
+      if (gain[p] < kGain * least * least || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) return;
       // What it shows there has gone on with the surface of that place.
       rest[p] = found[p] + linear_at(from_.plane(from_.surface()), place) - from_.surface()[p];
-    }
+    });
     return rest;
   }
 
@@ -101,12 +106,10 @@ class RestFlow {
     std::vector<float> rows(values.size()), result(values.size());
     const FilmPlane<float> down{from_.width(), from_.height(), rows};
     const auto sum = [&](const FilmPlane<float>& plane, int dx, int dy, std::vector<float>* sums) {
-      for_rows(plane.height, [&](int y) {
-        for (int x = 0; x < plane.width; ++x) {
-          float total = 0.0f;
-          for (int i = -kPatch; i <= kPatch; ++i) total += plane.at(x + i * dx, y + i * dy);
-          (*sums)[size_t(y) * size_t(plane.width) + size_t(x)] = total / float(2 * kPatch + 1);
-        }
+      gradus::each_pixel(plane.width, plane.height, [&](int x, int y, size_t p) {
+        float total = 0.0f;
+        for (int i = -kPatch; i <= kPatch; ++i) total += plane.at(x + i * dx, y + i * dy);
+        (*sums)[p] = total / float(2 * kPatch + 1);
       });
     };
     sum(across, 1, 0, &rows);

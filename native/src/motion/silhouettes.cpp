@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "motion/each_pixel.h"
 
 namespace gradus {
 namespace {
@@ -41,11 +42,8 @@ std::vector<uint8_t> silhouettes(int width, int height, std::span<const int32_t>
     const bool across = x > 0 && x + 1 < width && steps(near_at(x - 1, y), here, near_at(x + 1, y));
     return across || (y > 0 && y + 1 < height && steps(near_at(x, y - 1), here, near_at(x, y + 1)));
   };
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      result[index(x, y)] = (!object.empty() && shows_other(x, y)) || (!depth.empty() && shows_step(x, y));
-    }
-  }
+  each_pixel(width, height,
+             [&](int x, int y, size_t p) { result[p] = (!object.empty() && shows_other(x, y)) || (!depth.empty() && shows_step(x, y)); });
   return result;
 }
 

@@ -60,6 +60,7 @@ class Tracker {
     } else {
       search(target, x, y, before, &result, counts);
     }
+    result.film = on_film(result.film);
     const Vec2 way = glm::abs(to_.camera().way(pixel_centre(x, y), result.film));
     const bool inside = way.x <= float(to_.settings().width) && way.y <= float(to_.settings().height);
     if (result.tracking == Tracking::Tracked && !inside) result.tracking = Tracking::Outside;
@@ -112,7 +113,7 @@ class Tracker {
     const Target own = own_target(chain);
     Vec2 first = centre;
     const bool is_there = first_vertex(chain, &first);
-    const FilmSearch::Problem problem{here_, to_, chain.way, own, target, first - centre};
+    const FilmSearch::Problem problem{here_, to_, chain.way, own, target, to_.camera().way(centre, first)};
     SearchCounts searched;
     FilmSearch newton(problem, &searched);
     FilmPlace start{centre, chain, chain_jacobian(from_, own, x, y)}, found;
@@ -147,6 +148,14 @@ class Tracker {
     if (beside) return before.left->film + Vec2(1, 0);
     if (under) return before.below->film + Vec2(0, 1);
     return std::nullopt;
+  }
+
+  // Searches go past the seam of a panorama, whose film comes back to its beginning.
+  Vec2 on_film(const Vec2& film) const {
+    const auto width = float(to_.settings().width);
+    if (film.x >= 0.0f && film.x < width) return film;
+    const Vec2 middle(0.5f * width, film.y);
+    return middle + to_.camera().way(middle, film);
   }
 
   // Where the point of the first smooth surface is in the other frame; to the bit where it was, if it rests.

@@ -9,18 +9,13 @@
 
 #include <vector>
 
+#include "reconstruct/reconstructed.h"
 #include "reconstruct/solver.h"
 
 namespace gradus {
 
-// What the estimate is made of, images of GradientImages' layout. One pixel's squares say little: their sums over a cell or a window do.
-struct ErrorTerms {
-  std::vector<float> noise;  // what the reconstruction, or L2 in its place, makes of half the difference of the halves
-  std::vector<float> apart;  // distance of the image from L2's; empty where the reconstruction is linear
-};
-
-// image: what `reconstruction` (NONE, L2, WEIGHTED, L1) makes of the component. Where a half has no samples, the other one's mean stands
-// for the difference: its square is no less than the variance on average.
+// Of GradientImages' layout. image: what `reconstruction` (NONE, L2, WEIGHTED, L1) makes of the component. Where a half has no samples, the
+// other one's mean stands for the difference: its square is no less than the variance on average.
 ErrorTerms error_terms(const Frame& frame, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
                        const CancelTest& cancel);
 

@@ -6,21 +6,38 @@
 
 #include "reconstruct/reconstruct_frame.h"
 #include "render/pass_read.h"
+#include "render/region_pixels.h"
 
 namespace gradus {
 namespace {
 
 constexpr double kMaxFloat = std::numeric_limits<float>::max();
+constexpr int kPixels = 4096;  // that a task is worth
+
+// value(i, c) of a reconstructed image, as it is delivered.
+auto value_of(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image) {
+  const float exposure = frame.settings.film_exposure, least = keeps_negative(reconstruction) ? -INFINITY : 0.0f;
+  const auto channels = size_t(frame.channels);
+  return [&image, exposure, least, channels](size_t i, size_t c) { return exposure * std::max(image[i * channels + c], least); };
+}
+
+// A change of the picture over a value of the components, by the light that they have there.
+void spread(float change, size_t value, std::vector<std::vector<float>>* components) {
+  float light = 0.0f;
+  for (const std::vector<float>& component : *components) light += std::fabs(component[value]);
+  if (light > 0.0f) {
+    for (std::vector<float>& component : *components) component[value] += change * (std::fabs(component[value]) / light);
+  } else {
+    components->back()[value] += change;
+  }
+}
 
 }  // namespace
 
 std::vector<float> crop_error(const Frame& frame, const std::vector<float>& error, const Region& region) {
   const double scale = double(frame.settings.film_exposure) * frame.settings.film_exposure;
-  std::vector<float> result;
-  result.reserve(size_t(region.area()));
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x) result.push_back(float(std::min(kMaxFloat, scale * error[frame.index(x, y)])));
-  }
+  std::vector<float> result(size_t(region.area()));
+  for_pixels(frame, region, [&](size_t i, size_t out) { result[out] = float(std::min(kMaxFloat, scale * error[i])); });
   return result;
 }
 
@@ -45,39 +62,36 @@ std::vector<std::vector<float>> crop_components(const Frame& frame, uint32_t rec
                                                 const Region& region) {
   clamp_components(reconstruction, frame.channels, &images);
   for (std::vector<float>& image : images) {
-    const std::vector<float> rgba = crop_picture(frame, reconstruction, image, region);
-    image.clear();
-    for (size_t i = 0; i < rgba.size(); i += 4) image.insert(image.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
+    std::vector<float> rgb(size_t(region.area()) * 3);
+    const auto of_pixel = value_of(frame, reconstruction, image);
+    for_pixels(frame, region, [&](size_t i, size_t out) {
+      for (size_t c = 0; c < 3; ++c) rgb[3 * out + c] = of_pixel(i, c);
+    });
+    image = std::move(rgb);
   }
   return images;
 }
 
 void follow_picture(const std::vector<float>& before, const std::vector<float>& after, std::vector<std::vector<float>>* components) {
   if (components->empty()) return;
-  for (size_t i = 0; i < before.size() / 4 * 3; ++i) {
-    const size_t value = i / 3 * 4 + i % 3;
-    float light = 0.0f;
-    for (const std::vector<float>& component : *components) light += std::fabs(component[i]);
-    const float change = after[value] - before[value];
-    if (light > 0.0f) {
-      for (std::vector<float>& component : *components) component[i] += change * (std::fabs(component[i]) / light);
-    } else {
-      components->back()[i] += change;
-    }
-  }
+  for_pieces(
+      int(before.size() / 4),
+      [&](int begin, int end) {
+        for (auto p = size_t(begin); p < size_t(end); ++p) {
+          for (size_t c = 0; c < 3; ++c) spread(after[4 * p + c] - before[4 * p + c], 3 * p + c, components);
+        }
+      },
+      kPixels);
 }
 
 std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
-  const float exposure = frame.settings.film_exposure;
-  float* p = rgba.data();
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x, p += 4) {
-      const float* from = image.data() + frame.index(x, y) * size_t(frame.channels);
-      for (int c = 0; c < 3; ++c) p[c] = exposure * (keeps_negative(reconstruction) ? from[c] : std::max(from[c], 0.0f));
-      p[3] = frame.channels == 4 ? std::clamp(from[3], 0.0f, 1.0f) : 1.0f;
-    }
-  }
+  const auto channels = size_t(frame.channels);
+  const auto of_pixel = value_of(frame, reconstruction, image);
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    for (size_t c = 0; c < 3; ++c) rgba[4 * out + c] = of_pixel(i, c);
+    rgba[4 * out + 3] = channels == 4 ? std::clamp(image[4 * i + 3], 0.0f, 1.0f) : 1.0f;
+  });
   return rgba;
 }
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "motion/tracked.h"
 #include "path/components.h"
+#include "render/region_pixels.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
 
@@ -54,23 +55,18 @@ float tracked_in_one_frame(float tracked, bool by_flow) { return by_flow && trac
 void read_motion(const Frame& frame, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
   const bool by_flow = is_by_flow(planes.name, info.pass);
   if (planes.motion.empty()) throw not_asked_for(info);
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
-      const size_t i = frame.index(x, y);
-      if (info.channels == 1) *pixels = tracked_in_one_frame(planes.tracked[i], by_flow);
-      if (info.channels == 4) std::copy_n(&planes.motion[i][0], 4, pixels);
-    }
-  }
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    if (info.channels == 1) pixels[out] = tracked_in_one_frame(planes.tracked[i], by_flow);
+    if (info.channels == 4) std::copy_n(&planes.motion[i][0], 4, pixels + 4 * out);
+  });
 }
 
 void read_details(const Frame& frame, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
   if (planes.details.empty()) throw not_asked_for(info);
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
-      const Vec3 value = value_of(info.pass, planes.details[frame.index(x, y)], frame.settings.film_exposure);
-      std::copy_n(&value.x, info.channels, pixels);
-    }
-  }
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    const Vec3 value = value_of(info.pass, planes.details[i], frame.settings.film_exposure);
+    std::copy_n(&value.x, info.channels, pixels + out * info.channels);
+  });
 }
 
 }  // namespace
@@ -98,14 +94,11 @@ void read_component_pass(const Frame& frame, int component, uint32_t pass, const
   if (is_motion(pass)) return read_motion(frame, planes, info, region, pixels);
   if (is_of_rough_details(pass)) return read_details(frame, planes, info, region, pixels);
   if (planes.rough[0].empty()) throw not_asked_for(info);
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x, pixels += info.channels) {
-      const size_t out = 3 * (size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0));
-      const Vec3 light = is_of_picture(pass) ? Vec3(color[out], color[out + 1], color[out + 2]) : Vec3(0.0f);
-      const Vec3 value = value_of(pass, mean_at(planes, frame.index(x, y)), light);
-      for (int c = 0; c < int(info.channels); ++c) pixels[c] = value[c];
-    }
-  }
+  for_pixels(frame, region, [&](size_t i, size_t out) {
+    const Vec3 light = is_of_picture(pass) ? Vec3(color[3 * out], color[3 * out + 1], color[3 * out + 2]) : Vec3(0.0f);
+    const Vec3 value = value_of(pass, mean_at(planes, i), light);
+    std::copy_n(&value.x, info.channels, pixels + out * info.channels);
+  });
 }
 
 }  // namespace gradus

@@ -301,7 +301,8 @@ void RenderLoop::find_motion() {
 void RenderLoop::denoise_frame() {
   const CancelTest cancel = [this] { return is_stopped(); };
   std::vector<float> rgba = denoise_and_bill(*denoiser_, *frame_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
-  if (!rgba.empty()) picture_.show_denoised(std::move(rgba), denoised_error(frame_->settings.reconstruction));
+  if (rgba.empty()) return;
+  arena_.execute([&] { picture_.show_denoised(std::move(rgba), denoised_error(frame_->settings.reconstruction)); });
 }
 
 void RenderLoop::split_light() {

@@ -35,8 +35,10 @@ void Picture::show(std::vector<float> rgba, std::vector<float> error, std::vecto
 }
 
 void Picture::show_denoised(std::vector<float> rgba, float error) {
+  std::vector<std::vector<float>> components = components_;  // who reads them waits for no more than the exchange
+  follow_picture(combined_, rgba, &components);
   const std::lock_guard lock(mutex_);
-  follow_picture(combined_, rgba, &components_);
+  components_ = std::move(components);
   combined_ = std::move(rgba);
   for (float& value : error_) value *= error;
 }

@@ -22,7 +22,7 @@ class Picture {
   // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
   // components: RGB of each, or none.
   void show(std::vector<float> rgba, std::vector<float> error, std::vector<std::vector<float>> components = {});
-  // In place of what was shown. error: its squared error, over that of what was shown.
+  // In place of what was shown, by the thread that showed it. error: its squared error, over that of what was shown.
   void show_denoised(std::vector<float> rgba, float error);
   // From now on the frame tells what the noisy image is.
   void end_tiles();

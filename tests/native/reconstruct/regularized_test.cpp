@@ -222,8 +222,9 @@ TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
   for (int y = 0; y < kHeight; y += 4) {
     for (int x = y / 4 % 4; x < kWidth; x += 4) frame.components[0].primal[0][size_t(y * kWidth + x)] = Radiance(32.0f * albedo(x));
   }
-  const auto [image, error, components] = solve_with_error(frame);
-  EXPECT_TRUE(components.empty());
+  const Reconstructed solved = solve_with_error(frame);
+  const std::vector<float>&image = solved.image, &error = solved.error;
+  EXPECT_TRUE(solved.components.empty());
   double light = 0.0, beside_edges = 0.0, squares = 0.0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {

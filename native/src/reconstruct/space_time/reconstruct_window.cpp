@@ -1,8 +1,8 @@
 #include "reconstruct/space_time/reconstruct_window.h"
 
 #include <optional>
+#include <utility>
 
-#include "reconstruct/error_estimate.h"
 #include "reconstruct/solver_planes.h"
 
 namespace gradus {
@@ -25,18 +25,19 @@ class HalfDifferences final : public WindowSource {
 class WindowErrors {
  public:
   WindowErrors(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, const CancelTest& cancel, SolveReport* report)
-      : size_(source.size()), noise_(l2(HalfDifferences(source), alpha, cancel, report)) {
+      : noise_(l2(HalfDifferences(source), alpha, cancel, report)) {
     if (reconstruction != GRADUS_RECONSTRUCTION_L2) l2_ = l2(source, alpha, cancel, report);
   }
 
-  std::vector<float> of(int t, const Field& picture) const {
-    ErrorTerms terms{interleave(noise_[size_t(t)]), {}};
+  // Once.
+  ErrorTerms take(int t, const Field& picture) {
+    ErrorTerms terms{interleave(std::exchange(noise_[size_t(t)], {})), {}};
     if (l2_) {
       terms.apart = interleave(picture);
-      const std::vector<float> other = interleave((*l2_)[size_t(t)]);
+      const std::vector<float> other = interleave(std::exchange((*l2_)[size_t(t)], {}));
       for (size_t i = 0; i < other.size(); ++i) terms.apart[i] -= other[i];
     }
-    return error_of_pixels(terms, size_.width, size_.height, 3);
+    return terms;
   }
 
  private:
@@ -44,7 +45,6 @@ class WindowErrors {
     return WindowSolver(source, GRADUS_RECONSTRUCTION_L2, alpha, cancel, report).take_solution();
   }
 
-  WindowSize size_;
   Frames noise_;
   std::optional<Frames> l2_;
 };
@@ -63,7 +63,7 @@ void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstructio
   if (cancel()) return;
   for (int t = 0; t < size.frames; ++t) {
     Reconstructed picture{std::vector<float>(size_t(size.width) * size_t(size.height) * size_t(size.channels)), {}};
-    if (errors) picture.error = errors->of(t, parts.front()[size_t(t)]);
+    if (errors) picture.terms = errors->take(t, parts.front()[size_t(t)]);
     int channel = 0;
     for (Frames& part : parts) {
       const Field field = std::move(part[size_t(t)]);

@@ -1,4 +1,4 @@
-// The pictures of a window by L2, L1 or WEIGHTED, and their errors.
+// The pictures of a window by L2, L1 or WEIGHTED, and what their errors are made of.
 #pragma once
 
 #include <functional>
@@ -8,8 +8,8 @@
 
 namespace gradus {
 
-// The pictures of a window's frames by W of all channels, interleaved; each is made when it is taken. with_error: theirs, too, as of still
-// frames (reconstruct/error_estimate.h): two more solves at most. Nothing is taken when cancelled.
+// The pictures of a window's frames by W of all channels, interleaved; each is made when it is taken. with_error: the terms of their
+// errors, too, as of still frames (reconstruct/error_estimate.h): two more solves at most. Nothing is taken when cancelled.
 void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, bool with_error, const CancelTest& cancel,
                         SolveReport* report, const std::function<void(int t, Reconstructed picture)>& take);
 

@@ -17,7 +17,7 @@ namespace gradus {
 struct SequenceMethod {
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2;  // L2, L1, WEIGHTED or REGULARIZED
   float alpha = 0.0f;                                  // 0: what measures best
-  bool with_error = false;                             // whether the pictures' errors are wanted
+  bool with_error = false;                             // whether the pictures' errors, or their terms, are wanted
   bool operator==(const SequenceMethod&) const = default;
 };
 

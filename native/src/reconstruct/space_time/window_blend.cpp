@@ -10,6 +10,8 @@ void scale(std::vector<float>* values, float factor) {
 void scale(Reconstructed* picture, float factor) {
   scale(&picture->image, factor);
   scale(&picture->error, factor);
+  scale(&picture->terms.noise, factor);
+  scale(&picture->terms.apart, factor);
   for (std::vector<float>& component : picture->components) scale(&component, factor);
 }
 
@@ -20,6 +22,8 @@ void add(const std::vector<float>& from, std::vector<float>* to) {
 void add(const Reconstructed& from, Reconstructed* to) {
   add(from.image, &to->image);
   add(from.error, &to->error);
+  add(from.terms.noise, &to->terms.noise);
+  add(from.terms.apart, &to->terms.apart);
   for (size_t k = 0; k < to->components.size(); ++k) add(from.components[k], &to->components[k]);
 }
 

@@ -1,7 +1,10 @@
 #include "render/sequence/component_flows.h"
 
+#include <algorithm>
+
 #include "path/components.h"
 #include "render/component_read.h"
+#include "render/region_pixels.h"
 #include "settings/pass_table.h"
 
 namespace gradus {
@@ -13,20 +16,11 @@ struct KnownMotion {
   std::vector<float> tracked;
 };
 
-template <class Body>
-void each_pixel(const MadeFrame& made, const Body& body) {
-  const Region& region = made.delivered();
-  size_t out = 0;
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x, ++out) body(out, made.frame->index(x, y));
-  }
-}
-
 KnownMotion known_motion(const MadeFrame& made, size_t component, Side side) {
   const ComponentPlanes& planes = made.frame->components[component];
   const auto pixels = size_t(made.delivered().area());
   KnownMotion known{std::vector<Vec2>(pixels), std::vector<float>(pixels)};
-  each_pixel(made, [&](size_t out, size_t i) {
+  for_pixels(*made.frame, made.delivered(), [&](size_t i, size_t out) {
     const Vec4& motion = planes.motion[i];
     known.vectors[out] = side == Side::Previous ? Vec2(motion) : -Vec2(motion.z, motion.w);
     known.tracked[out] = planes.tracked[i];
@@ -42,7 +36,10 @@ std::vector<Rgb> light_of(const MadeFrame& made, const FlowKind& kind) {
   read_component_pass(*made.frame, int(kind.component), pass, region, made.components[kind.component], values.data());
   const float exposure = made.frame->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
   std::vector<Rgb> light(values.size() / 3);
-  for (size_t i = 0; i < light.size(); ++i) light[i] = factor * Rgb(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  for_pixels(*made.frame, region, [&](size_t, size_t out) {
+    const float* const value = &values[3 * out];
+    light[out] = factor * Rgb(value[0], value[1], value[2]);
+  });
   return light;
 }
 
@@ -51,7 +48,7 @@ class FlowInput {
   FlowInput(const MadeFrame& made, const FlowKind& kind, Side side)
       : light_(light_of(made, kind)), known_(known_motion(made, kind.component, side)), object_(light_.size()), depth_(light_.size()) {
     const std::vector<ShownPoint>& shown = made.frame->components[kind.component].shown;
-    each_pixel(made, [&](size_t out, size_t i) {
+    for_pixels(*made.frame, made.delivered(), [&](size_t i, size_t out) {
       object_[out] = int32_t(shown[i].object);
       depth_[out] = shown[i].depth;
     });
@@ -64,6 +61,14 @@ class FlowInput {
   std::vector<int32_t> object_;
   std::vector<float> depth_;
 };
+
+// The end of the list: it has none.
+size_t place_of(const std::vector<FlowKind>& kinds, const MadeFrame& made, const std::string& component, FlowDomain domain) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const FlowKind& kind) {
+    return kind.domain == domain && made.frame->components[kind.component].name == component;
+  });
+  return size_t(found - kinds.begin());
+}
 
 }  // namespace
 
@@ -80,24 +85,30 @@ std::vector<FlowKind> wanted_flows(const Frame& frame) {
 }
 
 std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const MadeFrame& first, const MadeFrame& second) {
-  std::array<FrameFlows, 2> flows;
+  const std::vector<FlowKind> kinds = wanted_flows(*first.frame), others = wanted_flows(*second.frame);
+  std::array<FrameFlows, 2> flows{FrameFlows(kinds.size()), FrameFlows(others.size())};
   const Region& region = first.delivered();
-  for (const FlowKind& kind : wanted_flows(*first.frame)) {
-    const FlowInput a(first, kind, Side::Next), b(second, kind, Side::Previous);
-    std::array<PixelMotion, 2> motion = irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kind.domain);
-    for (size_t i = 0; i < 2; ++i) flows[i].push_back(std::move(motion[i]));
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    const std::string& name = first.frame->components[kinds[k].component].name;
+    const size_t other = place_of(others, second, name, kinds[k].domain);
+    if (other == others.size()) continue;
+    const FlowInput a(first, kinds[k], Side::Next), b(second, others[other], Side::Previous);
+    std::array<PixelMotion, 2> motion = irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kinds[k].domain);
+    flows[0][k] = std::move(motion[0]);
+    flows[1][other] = std::move(motion[1]);
   }
   return flows;
 }
 
-FrameFlows flows_without(const MadeFrame& frame, Side side, Tracking cause) {
-  FrameFlows flows;
-  for (const FlowKind& kind : wanted_flows(*frame.frame)) {
-    KnownMotion known = known_motion(frame, kind.component, side);
+void complete_flows(const MadeFrame& frame, Side side, Tracking cause, FrameFlows* flows) {
+  const std::vector<FlowKind> kinds = wanted_flows(*frame.frame);
+  flows->resize(kinds.size());
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    if (!(*flows)[k].vectors.empty()) continue;
+    KnownMotion known = known_motion(frame, kinds[k].component, side);
     for (float& tracked : known.tracked) tracked = tracked == kTracked ? float(cause) : tracked;
-    flows.push_back({std::move(known.vectors), std::move(known.tracked)});
+    (*flows)[k] = {std::move(known.vectors), std::move(known.tracked)};
   }
-  return flows;
 }
 
 std::vector<FlowPass> join_flows(const MadeFrame& frame, const FrameFlows& previous, const FrameFlows& next) {
@@ -106,10 +117,10 @@ std::vector<FlowPass> join_flows(const MadeFrame& frame, const FrameFlows& previ
   for (size_t k = 0; k < kinds.size(); ++k) {
     const PixelMotion &before = previous[k], &after = next[k];
     FlowPass pass{kinds[k], std::vector<Vec4>(before.vectors.size()), before.tracked};
-    for (size_t i = 0; i < pass.vectors.size(); ++i) {
-      pass.vectors[i] = Vec4(before.vectors[i], -after.vectors[i]);
-      if (pass.tracked[i] == kTracked) pass.tracked[i] = after.tracked[i];
-    }
+    for_pixels(*frame.frame, frame.delivered(), [&](size_t, size_t out) {
+      pass.vectors[out] = Vec4(before.vectors[out], -after.vectors[out]);
+      if (pass.tracked[out] == kTracked) pass.tracked[out] = after.tracked[out];
+    });
     passes.push_back(std::move(pass));
   }
   return passes;

@@ -18,15 +18,15 @@ struct FlowKind {
 // What the passes that are asked for are made of.
 std::vector<FlowKind> wanted_flows(const Frame& frame);
 
-// Of a frame to the one before or after it: of each kind by pixels of what is delivered.
+// Of a frame to the one before or after it: of each of its kinds by pixels of what is delivered; no pixels: not known.
 using FrameFlows = std::vector<PixelMotion>;
 
 enum class Side { Previous, Next };
 
-// From `first` to the frame after it, and back. Both show the same region by the same components.
+// From `first` to the frame after it, and back, of the components that both have. Both show the same region.
 std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const MadeFrame& first, const MadeFrame& second);
-// Nothing is there to compare it with, or by: the surfaces' motion, and why.
-FrameFlows flows_without(const MadeFrame& frame, Side side, Tracking cause);
+// Where nothing is there to compare it with, or by: the surfaces' motion, and why.
+void complete_flows(const MadeFrame& frame, Side side, Tracking cause, FrameFlows* flows);
 
 // As passes have it (contract 6.6).
 struct FlowPass {

@@ -17,9 +17,15 @@ constexpr const char* kNotDelivered = "the frame was not delivered: ";
 
 bool has_flow(const MadeFrame& made) { return wants_flow(made.frame->settings) && !made.frame->components[0].shown.empty(); }
 
-bool can_flow(const MadeFrame& from, const MadeFrame& to) {
-  return has_flow(from) && has_flow(to) && from.delivered() == to.delivered() && same_components(*from.frame, *to.frame) &&
-         wanted_flows(*from.frame) == wanted_flows(*to.frame);
+bool can_flow(const MadeFrame& from, const MadeFrame& to) { return has_flow(from) && has_flow(to) && from.delivered() == to.delivered(); }
+
+// A frame as another one is changed. Numbers may have keys: those that the other is asked for as it was sampled for are its own.
+GradusSettings as_changed(GradusSettings frame, const GradusSettings& other, const GradusSettings& changed) {
+  frame.reconstruction = changed.reconstruction;
+  frame.denoiser = changed.denoiser;
+  if (changed.reconstruction_alpha != other.reconstruction_alpha) frame.reconstruction_alpha = changed.reconstruction_alpha;
+  if (changed.film_exposure != other.film_exposure) frame.film_exposure = changed.film_exposure;
+  return frame;
 }
 
 // Where a flow was not to be had although it should lead there.
@@ -64,14 +70,14 @@ std::shared_ptr<const MadeFrame> FrameDelivery::make() {
   return previous;
 }
 
+GradusSettings FrameDelivery::own_settings(int32_t number) const {
+  const std::optional<GradusSettings> stored = sequence_->folder_.settings(number);
+  return stored ? *stored : sequence_->form_at(sequence_->place_of(number)).settings;
+}
+
 std::shared_ptr<MadeFrame> FrameDelivery::make_beside(int32_t number) const {
-  std::optional<GradusSettings> asked = sequence_->folder_.settings(number);
-  if (changed_) {
-    if (!asked) asked = sequence_->form_at(sequence_->place_of(number)).settings;
-    asked->reconstruction = changed_->reconstruction;
-    asked->reconstruction_alpha = changed_->reconstruction_alpha;
-    asked->denoiser = changed_->denoiser;
-  }
+  std::optional<GradusSettings> asked;  // nothing: what the folder knows
+  if (changed_) asked = as_changed(own_settings(number), own_settings(number_), *changed_);
   FrameMaker maker(sequence_.get(), number, asked, cancel_);
   std::shared_ptr<MadeFrame> made = maker.load();
   maker.make_picture(made.get());
@@ -111,7 +117,7 @@ void FrameDelivery::join(const MadeFrame* previous, Tracking leads_here, std::sh
   const FlowLibrary* library = sequence_->flow_library(&warnings_);
   FrameFlows back = std::exchange(sequence_->back_, {});
   if (back.empty() && previous && can_flow(*previous, *made_)) back = flows_between(*library, *previous, *made_)[1];
-  if (back.empty()) back = flows_without(*made_, Side::Previous, or_no_neighbour(leads_here));
+  complete_flows(*made_, Side::Previous, or_no_neighbour(leads_here), &back);
   stop_if_asked();
   FrameFlows forth;
   if (next && can_flow(*made_, *next)) {
@@ -119,7 +125,7 @@ void FrameDelivery::join(const MadeFrame* previous, Tracking leads_here, std::sh
     forth = std::move(both[0]);
     sequence_->back_ = std::move(both[1]);
   }
-  if (forth.empty()) forth = flows_without(*made_, Side::Next, or_no_neighbour(leads_on));
+  complete_flows(*made_, Side::Next, or_no_neighbour(leads_on), &forth);
   sequence_->ahead_ = std::move(next);
   flows_ = join_flows(*made_, back, forth);
 }

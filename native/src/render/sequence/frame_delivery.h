@@ -26,6 +26,8 @@ class FrameDelivery final : public RenderTask {
 
   // The frame before it, where flow needs it.
   std::shared_ptr<const MadeFrame> make();
+  // What a frame was sampled for.
+  GradusSettings own_settings(int32_t number) const;
   std::shared_ptr<MadeFrame> make_beside(int32_t number) const;
   // Whether flow leads from the frame before `place` to that; if not, why.
   Tracking leads_to(int place);

@@ -5,6 +5,7 @@
 #include "base/bill.h"
 #include "base/error.h"
 #include "frame/features.h"
+#include "reconstruct/error_estimate.h"
 #include "reconstruct/reconstruct_frame.h"
 #include "render/combine.h"
 #include "render/denoise_and_bill.h"
@@ -140,6 +141,8 @@ void FrameMaker::reconstruct(MadeFrame* made) {
       std::move(part.components.begin(), part.components.end(), std::back_inserter(picture.components));
       add_image(std::move(part.image), &picture.image);
       add_image(std::move(part.error), &picture.error);
+      add_image(std::move(part.terms.noise), &picture.terms.noise);
+      add_image(std::move(part.terms.apart), &picture.terms.apart);
     }
   } catch (...) {
     sequence_.pictures_.clear();  // a window that was not solved has left no share in its frames
@@ -147,6 +150,7 @@ void FrameMaker::reconstruct(MadeFrame* made) {
   }
   sequence_.keep_pictures(groups);
   made->combined = crop_picture(frame, settings.reconstruction, picture.image, region);
+  if (!picture.terms.noise.empty()) picture.error = error_of_pixels(picture.terms, frame.region.width(), frame.region.height(), 3);
   if (with_error) made->error = crop_error(frame, picture.error, region);
   if (with_flow || wants_pictures(settings)) {
     made->components = crop_components(frame, settings.reconstruction, std::move(picture.components), region);
@@ -164,7 +168,7 @@ void FrameMaker::denoise(MadeFrame* made) {
   const uint32_t threads = threads_of(frame.settings, device);
   std::vector<float> rgba = denoise_and_bill(*library, frame, made->delivered(), threads, is_cancelled_, made->combined, &stats);
   if (rgba.empty()) return;
-  follow_picture(made->combined, rgba, &made->components);
+  arena_.execute([&] { follow_picture(made->combined, rgba, &made->components); });
   made->combined = std::move(rgba);
   for (float& value : made->error) value *= denoised_error(frame.settings.reconstruction);
 }

@@ -42,6 +42,14 @@ uint64_t solver_bytes(const Sizes& s, const SequenceMethod& method) {
 uint64_t held_bytes(const Sizes& s) { return (s.components * (2 * s.channels + 1) + 3) * kFloat; }
 uint64_t estimate_bytes(const Sizes& s) { return held_bytes(s) + (s.components * (s.channels + 1) + 2) * kFloat; }
 
+// Of a picture's pixels, which a window holds until it is asked for; parts: components. Each has a window of its own, and the terms of its
+// error, or all have one.
+uint64_t picture_bytes(const Sizes& s, uint64_t parts, const SequenceMethod& method) {
+  if (method.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) return ((parts > 1 ? 1 + parts : 1) * s.channels + 1) * kFloat;
+  const uint64_t terms = !method.with_error ? 0 : method.reconstruction == GRADUS_RECONSTRUCTION_L2 ? 1 : 2;
+  return (parts * (s.channels + 3 * terms) + 1) * kFloat;
+}
+
 // Of a frame's pixels: features of two and the regression of one of them, beside the samples of one frame.
 constexpr uint64_t kRegression = (2 * 14 + 63) * kFloat;
 
@@ -111,8 +119,8 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   const uint64_t all = uint64_t(count), in_window = keeps ? uint64_t(windows.frames) : std::min(all, uint64_t(windows.frames));
   const uint64_t ahead = std::min(all, uint64_t(2 * windows.frames - windows.overlap));
 
-  const uint64_t delivered = sizes.frame + 11 * kFloat, apart = sizes.components > 1 ? sizes.components : 0,
-                 pictures = in_window * ((1 + apart) * channels + 1) * kFloat;
+  const uint64_t delivered = sizes.frame + 11 * kFloat,
+                 pictures = in_window * picture_bytes(sizes, uint64_t(plan.components.count()), method);
   // Where components go by themselves: their ways, links, and what is sampled along them.
   const uint64_t own = plan.components.count() > 1 ? uint64_t(plan.components.count()) * (3 * kLink + sizeof(Vec2)) : 0;
   const uint64_t sampling = 2 * sizes.frame + 2 * 4 * kFloat + 2 * kLink + own;

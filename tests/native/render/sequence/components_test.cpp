@@ -95,8 +95,8 @@ TEST_P(SequenceComponents, AddUpToEveryFrame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceComponents,
-                         testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_WEIGHTED},
-                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+                         testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_L1},
+                                         uint32_t{GRADUS_RECONSTRUCTION_WEIGHTED}, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
 // The weights of L2 over time are the same for all, where all go the surfaces' ways.
 TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOne) {
@@ -108,6 +108,25 @@ TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOne) {
     const float scale = *std::max_element(b.begin(), b.end());
     for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-4f * scale) << frame;
   }
+}
+
+// A path of glass goes one way or the other: what one component has too much of the other lacks.
+TEST(ComponentsOfSequences, ErrorsOfWhatMakesUpForEachOtherAreNotAddedUp) {
+  const auto errors = [](const char* components) {
+    Pan pan(1.0f, Scenario::Glass);
+    const auto sequence = make_sequence(0, kLast);
+    for (int32_t frame = 0; frame <= kLast; ++frame) {
+      GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, components);
+      settings.component_replays = 0;  // all go the surfaces' ways, and the sum is the picture without components
+      settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+      sample(sequence.get(), pan.at(frame), settings);
+    }
+    return read(*delivered(sequence.get(), 1), GRADUS_PASS_ERROR, 1);
+  };
+  const std::vector<float> many = errors(""), one = errors(nullptr);
+  const float largest = *std::max_element(one.begin(), one.end());
+  ASSERT_GT(largest, 0.0f);
+  for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(many[i], one[i], 1e-3f * largest) << i;
 }
 
 // A camera that moves past balls of glass: what they show goes other ways than they do. The replay of such a component is of where it was.

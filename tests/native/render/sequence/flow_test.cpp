@@ -45,13 +45,14 @@ Mat4 shining_along(const Vec3& direction) {
 // A floor that rests, seen from above, with the shadow of a ball beside the picture: it goes by kShift from frame to frame.
 class MovingShadow {
  public:
-  // angle: by which it is seen from the side.
-  std::shared_ptr<const Snapshot> at(int32_t frame, float angle = 0.0f) {
+  // angle: by which it is seen from the side. with_mirror: one that shows the floor stands in a corner of the picture.
+  std::shared_ptr<const Snapshot> at(int32_t frame, float angle = 0.0f, bool with_mirror = false) {
     PathScene& scene = scenes_[frame];
     const uint64_t matte_floor = scene.material(matte(Rgb(0.6f)));
     scene.quad(Vec3(-4, -4, 0), Vec3(8, 0, 0), Vec3(0, 8, 0), matte_floor);
     const Vec2 middle = kPixel * (float(frame) - 1.5f) * kShift;
     scene.ball(Vec3(middle, 0.0f) - 2.4f * kDirection, 0.3f, matte_floor, 24, true);
+    if (with_mirror) scene.quad(Vec3(0.8f, 0.6f, 0.01f), Vec3(0.2f, 0, 0.45f), Vec3(0, 0.4f, 0), scene.material(glossy(0.0f)));
     GradusLight sun = make_light(GRADUS_LIGHT_SUN, shining_along(kDirection), Rgb(3.0f));
     sun.angle = 0.08f;
     scene.light(sun);
@@ -239,6 +240,23 @@ TEST(SequenceFlow, UnderACutNothingIsTracked) {
   EXPECT_EQ(flow.count(float(Tracking::Cut)), kPixels);
 }
 
+// Those that are on one side alone are not tracked there.
+TEST(SequenceFlow, AMirrorThatAppearsTakesNoFlowFromOthers) {
+  const auto sequence = flow_sequence(3);
+  MovingShadow scene;
+  for (const int32_t frame : {0, 1, 2, 3}) test::run(sequence->sample(scene.at(frame, 0.0f, frame >= 2), flow_settings(frame)).get());
+  for (const int32_t frame : {0, 1, 2}) {
+    const auto task = delivered(sequence.get(), frame);
+    ASSERT_EQ(find_component(*task->frame(), "Reflection") >= 0, frame == 2) << frame;
+    if (frame == 0) continue;
+    EXPECT_GT(read_flow(*task, "Diffuse").count(kTracked), kPixels / 2) << frame;
+    if (frame == 1) continue;
+    const Flow reflected = read_flow(*task, "Reflection");
+    EXPECT_EQ(reflected.count(kTracked), 0u);
+    EXPECT_GT(reflected.count(kNoNeighbour), 20u);
+  }
+}
+
 // Frames come as they would without: what is made ahead is delivered in its turn.
 TEST(SequenceFlow, PicturesAreThoseWithoutFlow) {
   const auto with = flow_sequence(3), without = flow_sequence(3, false);
@@ -270,6 +288,35 @@ TEST(SequenceFlow, AFrameThatWasMadeAheadObeysItsOwnSettings) {
   }
   EXPECT_GT(read_flow(*task, "Diffuse").count(kTracked), kPixels / 2);
 }
+
+// Files that are loaded to deliver frames 0 to 2, each as it was sampled for, but for what `change` does.
+template <class Change>
+uint64_t loads_by(float alpha_by_frame, const Change& change, bool with_flow = true) {
+  const auto sequence = flow_sequence(2, with_flow);
+  MovingShadow scene;
+  const auto settings_at = [&](int32_t frame) {
+    GradusSettings settings = flow_settings(frame);
+    settings.reconstruction_alpha = alpha_by_frame * float(1 + frame);
+    return settings;
+  };
+  for (const int32_t frame : {0, 1, 2}) test::run(sequence->sample(scene.at(frame), settings_at(frame)).get());
+  const uint64_t before = sequence->folder().loads();
+  for (const int32_t frame : {0, 1, 2}) {
+    GradusSettings settings = settings_at(frame);
+    change(&settings);
+    test::run(sequence->deliver(frame, &settings).get());
+  }
+  return sequence->folder().loads() - before;
+}
+
+void as_it_is(GradusSettings*) {}
+
+TEST(SequenceFlow, FramesOfAnotherExposureAreMadeOnce) {
+  EXPECT_EQ(loads_by(0.0f, [](GradusSettings* settings) { settings->film_exposure = 2.0f; }), loads_by(0.0f, as_it_is));
+}
+
+// Its windows are those of each frame alone, with flow or without, and no frame is made twice.
+TEST(SequenceFlow, AKeyedAlphaIsThatOfTheFrameItself) { EXPECT_EQ(loads_by(0.2f, as_it_is, true), loads_by(0.2f, as_it_is, false)); }
 
 TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
   const Folder asked, not_asked;
