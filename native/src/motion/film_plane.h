@@ -2,10 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 
+#include "base/cubic_weights.h"
 #include "base/types.h"
 
 namespace gradus {
@@ -31,12 +31,6 @@ inline Vec2 bounded(const Vec2& vector, int width, int height) {
   return is_finite(vector.x) && is_finite(vector.y) ? glm::clamp(vector, -most, most) : Vec2(0.0f);
 }
 
-// Catmull and Rom's, of the four pixels around.
-inline std::array<float, 4> cubic_weights(float u) {
-  return {u * (-0.5f + u * (1.0f - 0.5f * u)), 1.0f + u * u * (-2.5f + 1.5f * u), u * (0.5f + u * (2.0f - 1.5f * u)),
-          u * u * (-0.5f + 0.5f * u)};
-}
-
 template <class T>
 T linear_at(const FilmPlane<T>& plane, const Vec2& position) {
   const Vec2 p = clamped_to(position, plane.width, plane.height), first = glm::floor(p), u = p - first;
@@ -49,7 +43,7 @@ T linear_at(const FilmPlane<T>& plane, const Vec2& position) {
 template <class T>
 T cubic_at(const FilmPlane<T>& plane, const Vec2& position) {
   const Vec2 p = clamped_to(position, plane.width, plane.height), first = glm::floor(p);
-  const std::array<float, 4> across = cubic_weights(p.x - first.x), down = cubic_weights(p.y - first.y);
+  const auto across = cubic_weights(p.x - first.x), down = cubic_weights(p.y - first.y);
   T result(0.0f);
   for (int j = 0; j < 4; ++j) {
     T row(0.0f);

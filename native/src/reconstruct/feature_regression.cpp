@@ -132,10 +132,6 @@ Field difference(const Field& a, const Field& b) {
   return result;
 }
 
-void add(const Field& other, Field* to) {
-  for_values(to, [&](float& value, int x, int y, int c) { value += other.row(y, c)[x]; });
-}
-
 void scale_by(const Field& factors, Field* to) {
   for_values(to, [&](float& value, int x, int y, int) { value *= factors.row(y)[x]; });
 }

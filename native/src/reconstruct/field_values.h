@@ -1,6 +1,8 @@
 // Every value of a field, row by row over the threads.
 #pragma once
 
+#include <algorithm>
+
 #include "reconstruct/field.h"
 #include "reconstruct/rows.h"
 
@@ -15,6 +17,25 @@ void for_values(Field* field, const Function& function) {
       for (int x = 0; x < field->width(); ++x) function(row[x], x, y, c);
     }
   });
+}
+
+// Whether any value is such.
+template <class Test>
+bool any_value(const Field& field, const Test& is_such) {
+  for (int y = 0; y < field.height(); ++y) {
+    for (int c = 0; c < field.channels(); ++c) {
+      const float* row = field.row(y, c);
+      if (std::any_of(row, row + field.width(), is_such)) return true;
+    }
+  }
+  return false;
+}
+inline bool is_black(const Field& field) {
+  return !any_value(field, [](float value) { return value != 0.0f; });
+}
+
+inline void add(const Field& term, Field* sum) {
+  for_values(sum, [&](float& value, int x, int y, int c) { value += term.row(y, c)[x]; });
 }
 
 // Over the channels of a pixel.

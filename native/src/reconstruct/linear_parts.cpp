@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reconstruct/field_values.h"
 #include "reconstruct/rows.h"
 
 namespace gradus {
@@ -30,16 +29,6 @@ size_t brightest(const std::vector<Field>& parts) {
   std::vector<double> light;
   for (const Field& part : parts) light.push_back(light_of(part));
   return size_t(std::max_element(light.begin(), light.end()) - light.begin());
-}
-
-bool is_black(const Field& field) {
-  for (int y = 0; y < field.height(); ++y) {
-    for (int c = 0; c < field.channels(); ++c) {
-      const float* row = field.row(y, c);
-      if (std::any_of(row, row + field.width(), [](float value) { return value != 0.0f; })) return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace gradus

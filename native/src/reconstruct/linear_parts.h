@@ -4,14 +4,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "reconstruct/field.h"
+#include "reconstruct/field_values.h"
 
 namespace gradus {
 
 void subtract(const Field& part, Field* from);
 // The part with most light; of several with as much the first.
 size_t brightest(const std::vector<Field>& parts);
-bool is_black(const Field& field);
 
 // Each part becomes what apply(part's number, part) makes of it, which is not asked about black ones. The brightest is what the others
 // leave of `whole`, what the operator makes of the sum: so parts add up whatever the rounding, and the dearest costs nothing.

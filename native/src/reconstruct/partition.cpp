@@ -13,19 +13,6 @@ namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-bool is_anywhere(const Field& field, bool (*is_such)(float)) {
-  for (int y = 0; y < field.height(); ++y) {
-    for (int c = 0; c < field.channels(); ++c) {
-      const float* row = field.row(y, c);
-      if (std::any_of(row, row + field.width(), is_such)) return true;
-    }
-  }
-  return false;
-}
-
-bool is_not_zero(float value) { return value != 0.0f; }
-bool is_negative(float value) { return value < 0.0f; }
-
 // What was sampled there errs by no more, and where nothing of a part was met there is nothing to be wrong.
 void limit_by_noise(const Field& half_difference, Field* error) {
   const int w = error->width(), h = error->height();
@@ -74,8 +61,8 @@ void settle(double whole, std::vector<Share>& shares) {
 
 PartPicture regress_part(const Features& guides, HalvedImage sampled, const CancelTest& cancel) {
   PartPicture part;
-  part.may_be_negative = is_anywhere(sampled.mean, is_negative);
-  if (!is_anywhere(sampled.half_difference, is_not_zero)) {
+  part.may_be_negative = any_value(sampled.mean, [](float value) { return value < 0.0f; });
+  if (is_black(sampled.half_difference)) {
     part.error = Field(sampled.mean.width(), sampled.mean.height(), 1);
     part.image = std::move(sampled.mean);
     return part;

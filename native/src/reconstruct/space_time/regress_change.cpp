@@ -97,10 +97,6 @@ ComponentChange read_change(const HalvedWindowSource& source, int t, const Links
   return change;
 }
 
-void add(const Field& term, Field* sum) {
-  for_values(sum, [&](float& value, int x, int y, int c) { value += term.row(y, c)[x]; });
-}
-
 // In units of the picture, and with what the rounding makes.
 Field join(const Field& colours, const Field& alpha, const Field& rounding, float scale) {
   Field joined(colours.width(), colours.height(), alpha.width() > 0 ? 4 : 3);

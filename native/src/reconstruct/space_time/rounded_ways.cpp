@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/cubic_weights.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/rows.h"
@@ -39,13 +40,6 @@ Ways read_ways(const Links& links, const HalvedWindowSource& source, int t) {
   return ways;
 }
 
-// Of the pixels -1, 0, 1 and 2 from the one before the position, 0 <= x < 1 from that (Keys 1981, "Cubic convolution interpolation for
-// digital image processing", equation 15).
-std::array<float, kTaps> cubic(float x) {
-  const float x2 = x * x, x3 = x2 * x;
-  return {0.5f * (-x3 + 2.0f * x2 - x), 0.5f * (3.0f * x3 - 5.0f * x2 + 2.0f), 0.5f * (-3.0f * x3 + 4.0f * x2 + x), 0.5f * (x3 - x2)};
-}
-
 // Weights of the pixels around one, by which the picture there is that of a place beside its middle.
 struct Lookup {
   std::array<size_t, kTaps * kTaps> x{}, y{};
@@ -55,7 +49,7 @@ struct Lookup {
 Lookup look_up(const Ways& ways, int x, int y, int width, int height) {
   const size_t here = size_t(y) * size_t(width) + size_t(x);
   const Vec2 from = -ways.off_centre[here], before = glm::floor(from);
-  const std::array<float, kTaps> wx = cubic(from.x - before.x), wy = cubic(from.y - before.y);
+  const std::array<float, kTaps> wx = cubic_weights(from.x - before.x), wy = cubic_weights(from.y - before.y);
   Lookup lookup;
   for (size_t k = 0; k < size_t(kTaps * kTaps); ++k) {
     const int column = std::clamp(x + int(before.x) + int(k % kTaps) - 1, 0, width - 1),
