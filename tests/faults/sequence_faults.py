@@ -133,8 +133,8 @@ SEQUENCES = (
         LINK,
         "a mesh of other triangles is the same",
         MOTION,
-        "if (a.topology_hash == b.topology_hash)",
-        "if (a.topology_hash == b.topology_hash || true)",
+        "if (from.instances[i].mesh->topology_hash !=",
+        "if (false && from.instances[i].mesh->topology_hash !=",
         (native("LinkedFrames.WhatVanishesOrBecomesAnotherMeshHasNoPartner"),),
     ),
     Fault(
@@ -142,8 +142,8 @@ SEQUENCES = (
         LINK,
         "objects are counted, not known",
         MOTION,
-        "instance_[i] = found->second;",
-        "instance_[i] = uint32_t(std::min(i, to.instances.size() - 1));",
+        "matches.push_back(found != by_id.end() ? found->second : kNoInstance);",
+        "matches.push_back(uint32_t(std::min(matches.size(), to.instances.size() - 1)));",
         (animation("c6_what_stays"),),
     ),
     Fault(
