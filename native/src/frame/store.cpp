@@ -11,6 +11,7 @@
 #include "base/stop_if.h"
 #include "frame/block_file.h"
 #include "frame/block_rows.h"
+#include "frame/check_planes.h"
 #include "frame/exr_problem.h"
 #include "frame/exr_stream.h"
 #include "frame/store_header.h"
@@ -128,6 +129,7 @@ Frame read_frame(const std::string& path, StoredContent content, const std::stri
   }
   read_blocks(&file, PartRows(parts, frame), numbers, cancel);
   check_sources(frame);
+  check_planes(frame);
   return frame;
 }
 

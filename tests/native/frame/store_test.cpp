@@ -440,6 +440,36 @@ TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
   EXPECT_GE(refused, 100);
 }
 
+// They were delivered as they were, and a number of an object that is none was cast to an integer.
+TEST_F(F6_Store, NumbersThatNoComponentHasAreRefused) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto sound = std::make_shared<Frame>(*rendered(small_settings(48, 40, 2)));
+  keep_of_components({true, true, true, true}, sound.get());
+  const auto refusal_with = [&](const std::function<void(ComponentPlanes*)>& damage) {
+    Frame frame = *sound;
+    damage(&frame.components[0]);
+    save_frame(frame, path());
+    return refusal_of([&] { load_frame(path()); });
+  };
+  const auto load_it = [&] { load_frame(path()); };
+  save_frame(*sound, path());
+  EXPECT_NO_THROW(load_it());
+  const std::pair<const char*, std::function<void(ComponentPlanes*)>> damages[] = {
+      {"motion", [&](ComponentPlanes* planes) { planes->motion[7].z = nan; }},
+      {"lost motion", [&](ComponentPlanes* planes) { planes->tracked[1900] = nan; }},
+      {"rough vertices", [&](ComponentPlanes* planes) { planes->rough[1][3].normal.y = nan; }},
+      {"details", [&](ComponentPlanes* planes) { planes->details[9].uv.x = nan; }},
+      {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].object = nan; }},
+      {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].object = 1e20f; }},
+      {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].depth = kInfinity; }},
+  };
+  for (const auto& [what, damage] : damages) {
+    const std::string refusal = refusal_with(damage);
+    EXPECT_NE(refusal.find(what), std::string::npos) << what << ": " << refusal;
+    EXPECT_NE(refusal.find(path()), std::string::npos) << refusal;
+  }
+}
+
 // OpenEXR allows a block of sixteen rows where the picture has three.
 TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
   save_frame(*rendered(small_settings(48, 3, 2)), path());

@@ -32,10 +32,23 @@ struct Pictures {
   std::vector<double> light;  // of each component, in the last frame
 };
 
-Pictures rendered(uint32_t reconstruction, const char* components, Scenario scenario = Scenario::Glass) {
+std::shared_ptr<Device> device_with_stand_in() {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  settings.threads = 2;
+  settings.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+  return std::make_shared<Device>(settings);
+}
+
+Pictures rendered(uint32_t reconstruction, const char* components, Scenario scenario = Scenario::Glass,
+                  uint32_t denoiser = GRADUS_DENOISER_NONE) {
   Pan pan(1.0f, scenario);
-  const auto sequence = make_sequence(0, kLast);
-  for (int32_t frame = 0; frame <= kLast; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, reconstruction, components));
+  const auto sequence = std::make_shared<Sequence>(device_with_stand_in(), SequenceSettings{0, kLast, 1, {}, ""});
+  for (int32_t frame = 0; frame <= kLast; ++frame) {
+    GradusSettings settings = settings_for(frame, reconstruction, components);
+    settings.denoiser = denoiser;
+    sample(sequence.get(), pan.at(frame), settings);
+  }
   Pictures pictures;
   for (int32_t frame = 0; frame <= kLast; ++frame) {
     const auto task = delivered(sequence.get(), frame);
@@ -85,13 +98,21 @@ TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
 
 class SequenceComponents : public testing::TestWithParam<uint32_t> {};
 
-TEST_P(SequenceComponents, AddUpToEveryFrame) {
-  const Pictures pictures = rendered(GetParam(), "");
+void expect_to_add_up(const Pictures& pictures) {
   EXPECT_GE(std::count_if(pictures.light.begin(), pictures.light.end(), [](double light) { return light > 1.0; }), 3);
   for (size_t frame = 0; frame <= size_t(kLast); ++frame) {
     const std::vector<float>&sum = pictures.sums[frame], &rgba = pictures.combined[frame];
     for (size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(sum[i], rgba[i / 3 * 4 + i % 3], 1e-5f * (std::fabs(sum[i]) + 1.0f)) << frame;
   }
+}
+
+TEST_P(SequenceComponents, AddUpToEveryFrame) { expect_to_add_up(rendered(GetParam(), "")); }
+
+// The stand-in adds light everywhere, also where no component has any.
+TEST_P(SequenceComponents, AddUpBehindADenoiser) {
+  const Pictures denoised = rendered(GetParam(), "", Scenario::Glass, GRADUS_DENOISER_OIDN);
+  expect_to_add_up(denoised);
+  EXPECT_GT(denoised.combined[1][0], rendered(GetParam(), "").combined[1][0] + 0.5f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceComponents,

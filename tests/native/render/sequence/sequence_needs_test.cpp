@@ -74,6 +74,22 @@ TEST(PlannedMemory, APartOfAStoreHasWholeWindows) {
   }
 }
 
+// Each component has windows of its own, whose pictures wait for their frames, and was planned as if it waited in none.
+TEST(PlannedMemory, ComponentsWaitInWindowsOfTheirOwn) {
+  Plan plan;
+  plan.sampled = {0, 0, 100, 100};
+  plan.gradients = true;
+  const auto kept = [&](bool with_error) { return planned_bytes(plan, {GRADUS_RECONSTRUCTION_L2, 0.0f, with_error}, {}, 20, false).kept; };
+  const uint64_t one = kept(false), one_with_error = kept(true);
+  plan.components = ComponentSet::parse("");
+  const auto components = uint64_t(plan.components.count()),
+             pictures = uint64_t(WindowShape{}.frames) * plan.sampled.area() * 3 * sizeof(float);
+  ASSERT_GT(components, 3u);
+  EXPECT_EQ(one_with_error, one + pictures);
+  EXPECT_EQ(kept(false), one + (components - 1) * pictures);
+  EXPECT_EQ(kept(true), one + (2 * components - 1) * pictures);
+}
+
 TEST(PlannedMemory, FlowHoldsTheFrameThatIsMadeAhead) {
   Plan plan;
   plan.sampled = {0, 0, 100, 100};
