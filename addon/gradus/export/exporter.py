@@ -151,7 +151,7 @@ class _Sync:
         return states_of(self._cameras, self._depsgraph, self._engine, self.size)
 
     def _fill_camera(self, view: str, now: camera.CameraState, moments: motion.Moments) -> None:
-        around = [moments[time].cameras[view] for time in motion.AROUND] if self._wanted.vectors else [None, None]
+        around = [motion.camera_at(view, moments[time]) for time in motion.AROUND] if self._wanted.vectors else [None, None]
         shutter = self._wanted.shutter
         keys = motion.camera_blur(view, self._cameras[view], now, shutter, moments) if shutter is not None else []
         self.filled[view] = camera.fill_camera(now, *around, shutter, keys)
@@ -190,7 +190,7 @@ class _Sync:
                 keys[shape] = 0
                 arrays = self._read_mesh(entry, wanted)
                 if arrays is not None and self._wanted.any() and motion.may_deform(entry):
-                    deforming[shape] = Deforming(shape, arrays, entry.name)
+                    deforming[shape] = Deforming(shape, arrays, entry.name, arrays.motion is not None)
                 elif arrays is not None:
                     keys[shape] = self._set_mesh(arrays)
             if shape in deforming:
@@ -225,11 +225,18 @@ class _Sync:
         arrays = instances.instance_arrays(collected, mesh_keys, self._ids.key)
         if self._wanted.vectors:
             around = (moments[time] for time in motion.AROUND)
-            arrays.previous, arrays.following = (motion.instance_motion(arrays.entries, arrays.matrices, moment) for moment in around)
+            arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)
         if self._wanted.shutter is not None:
             arrays.blur = motion.instance_blur(arrays.entries, arrays.matrices, self._wanted.shutter, moments)
         struct, _keep = instances.fill_instances(arrays)
         self._target.set_instances(struct)
+
+    def _matrices_at(self, entries: list[Entry], moment: motion.Moment) -> array:
+        def is_another_mesh(entry: Entry) -> bool:
+            found = self._deforming.get(entry.key)
+            return found is not None and found.shape in moment.other_topology and not found.by_velocity
+
+        return motion.instance_motion(entries, moment, is_another_mesh)
 
     # Lights and the world
 

@@ -10,14 +10,14 @@ import math
 from array import array
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from .camera import CameraState
 from .collect import Entry, InstanceKey, collect
 from .mesh import MeshArrays, corner_vertices, read_positions
 from .shutter import Blur, Shutter, blur_of
-from .views import Cameras, States, states_of
+from .views import Cameras, States, bound_camera, states_of
 
 AROUND = (-1.0, 1.0)
 _BECOME_MESHES = frozenset({"CURVE", "SURFACE", "FONT", "META"})
@@ -34,6 +34,7 @@ class Deforming:
     shape: Shape
     arrays: MeshArrays  # at the rendered frame
     name: str  # of the object that it belongs to
+    by_velocity: bool = False  # its motion is known, whatever its topology at other moments
 
 
 @dataclass
@@ -44,6 +45,7 @@ class Moment:
     positions: dict[Shape, array] = field(default_factory=dict)
     other_topology: set[Shape] = field(default_factory=set)
     cameras: States = field(default_factory=dict)
+    is_cut: bool = False  # seen by another camera, which a marker binds
 
 
 Moments = dict[float, Moment]
@@ -114,12 +116,15 @@ def read_moments(
 ) -> Moments:
     """Visits the times in order. deforming: by all instances. cameras: the frame's."""
     moments: Moments = {}
+    scene = depsgraph.scene.original
+    now = scene.frame_current
     with other_frames(depsgraph.scene, engine) as step:
         for time in times:
             poll()
             step(time)
             moments[time] = _read_moment(depsgraph, deforming, poll)
             moments[time].cameras = states_of(cameras, depsgraph, engine, size)
+            moments[time].is_cut = bound_camera(scene, math.floor(now + time)) != bound_camera(scene, now)
     return moments
 
 
@@ -188,12 +193,22 @@ def velocity_motion(mesh: Any, arrays: MeshArrays, frames_per_second: float) -> 
     return None if moved is None else (moved[0], moved[1])
 
 
-def instance_motion(entries: list[Entry], matrices: array, moment: Moment) -> array:
-    """Matrices of the entries at another moment; those that are not there stay where they are."""
+_NOWHERE = array("f", [math.nan] * 16)
+
+
+def instance_motion(entries: list[Entry], moment: Moment, gone: Callable[[Entry], bool]) -> array:
+    """Matrices of the entries at another moment, not a number where they are not there. gone: whether one is there as another mesh."""
     moved = array("f")
-    for position, entry in enumerate(entries):
-        moved.extend(moment.matrices.get(entry.key) or matrices[16 * position : 16 * position + 16])
+    for entry in entries:
+        found = moment.matrices.get(entry.key)
+        moved.extend(_NOWHERE if found is None or gone(entry) else found)
     return moved
+
+
+def camera_at(view: str, moment: Moment) -> CameraState:
+    """A view's camera; over a cut it is nowhere."""
+    state = moment.cameras[view]
+    return replace(state, matrix=tuple(_NOWHERE)) if moment.is_cut else state
 
 
 # ------------------------------------------------------------------------------------------------ for motion blur

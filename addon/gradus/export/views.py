@@ -25,6 +25,14 @@ def states_of(cameras: Cameras, depsgraph: Any, engine: Any, size: tuple[int, in
     return {view: camera_state(cameras[view].evaluated_get(depsgraph), scene, *size, engine) for view in _each(cameras, engine)}
 
 
+def bound_camera(scene: Any, frame: int) -> Any:
+    """The camera that a marker binds to the scene at a frame: that of the last marker before it, or else of the first one. None: no
+    marker binds any."""
+    bound = sorted((marker for marker in scene.timeline_markers if marker.camera is not None), key=lambda marker: marker.frame)
+    before = [marker for marker in bound if marker.frame <= frame]
+    return (before[-1] if before else bound[0]).camera if bound else None
+
+
 def _each(views: Iterable[str], engine: Any) -> Iterator[str]:
     """In turn, when it is the engine's."""
     for view in views:

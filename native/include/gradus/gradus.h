@@ -154,7 +154,7 @@ typedef struct GradusInstances {
   const uint64_t* meshes;            /* mesh keys */
   const uint64_t* ids;               /* stable identity over frames; NULL = index */
   const float* matrices;             /* 16 each */
-  const float* matrices_previous;    /* one frame before; NULL = at rest */
+  const float* matrices_previous;    /* one frame before; NULL = at rest; not finite: it is not there, or as another mesh */
   const float* matrices_next;
   const uint32_t* visibility;        /* GradusVisibility bits; NULL = all */
   const uint32_t* random_ids;        /* Object Info > Random is random_id / 2^32 */
@@ -232,7 +232,7 @@ typedef struct GradusCamera {
   uint32_t struct_size;
   uint32_t type;                   /* GradusCameraType */
   float matrix[16];                /* looks along -Z, y up; normalised */
-  float matrix_previous[16];       /* one frame before and after, for vectors; equal to matrix if at rest */
+  float matrix_previous[16];       /* one frame before and after, for vectors; equal to matrix if at rest; not finite: a cut */
   float matrix_next[16];
   float window[4];                 /* left, right, bottom, top of the FULL frame on the plane at distance 1
                                       (perspective), in metres (orthographic) or as GradusPanorama says, shift included */

@@ -12,7 +12,7 @@ std::vector<uint32_t> matching_instances(const Snapshot& from, const Snapshot& t
   std::vector<uint32_t> matches;
   matches.reserve(from.instances.size());
   for (const InstanceData& instance : from.instances) {
-    const auto found = by_id.find(instance.id);
+    const auto found = instance.id != kNobody ? by_id.find(instance.id) : by_id.end();
     matches.push_back(found != by_id.end() ? found->second : kNoInstance);
   }
   return matches;

@@ -236,7 +236,7 @@ ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Reg
   motion.film.reserve(pixels);
   for (int32_t y = part.y0; y < part.y1; ++y)
     for (int32_t x = part.x0; x < part.x1; ++x) motion.film.push_back(pixel_centre(x, y));
-  if (is_cut(from.centres->snapshot->camera, to.snapshot().camera)) {
+  if (to.snapshot().is_other_shot || is_cut(from.centres->snapshot->camera, to.snapshot().camera)) {
     std::fill(motion.tracking.begin(), motion.tracking.end(), Tracking::Cut);
     motion.counts.pixels[size_t(-int(Tracking::Cut))] = pixels;
     return motion;

@@ -22,7 +22,7 @@ bool lies_in_top_level(const InstanceData& instance, const UserCounts& users) {
 // By what the frame itself tells of those around it: a picture must not depend on what was rendered before.
 bool rests(const InstanceData& instance) {
   return !instance.moves() && (instance.visibility & GRADUS_MAY_MOVE) == 0 && instance.to_world_previous == instance.to_world &&
-         instance.to_world_next == instance.to_world && instance.mesh->key_times.size() < 2;
+         instance.to_world_next == instance.to_world && instance.was_there && instance.will_be_there && instance.mesh->key_times.size() < 2;
 }
 
 // Embree asks for triangles and for blurred instances one after the other: there a box around all that moves costs rays nothing.

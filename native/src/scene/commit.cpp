@@ -36,9 +36,19 @@ void move_matrix(float* matrix, const Vec3& origin) {
   for (int i = 0; i < 3; ++i) matrix[12 + i] = float(double(matrix[12 + i]) - double(origin[i]));
 }
 
+// A camera that is elsewhere in the frame around, and no longer or not yet the same one, is said to be nowhere. Told; and then it rests.
+bool take_out_cut(const GradusCamera& now, float* matrix, float* window) {
+  if (std::all_of(matrix, matrix + 16, [](float value) { return is_finite(value); })) return false;
+  std::copy_n(now.matrix, 16, matrix);
+  std::copy_n(now.window, 4, window);
+  return true;
+}
+
 void place_camera(const Scene::State& state, Snapshot* snapshot) {
   snapshot->has_camera = state.has_camera;
-  snapshot->camera = state.camera;
+  GradusCamera& camera = snapshot->camera = state.camera;
+  snapshot->cut_before = take_out_cut(camera, camera.matrix_previous, camera.window_previous);
+  snapshot->cut_after = take_out_cut(camera, camera.matrix_next, camera.window_next);
   for (float* matrix : {snapshot->camera.matrix, snapshot->camera.matrix_previous, snapshot->camera.matrix_next})
     move_matrix(matrix, snapshot->origin);
   auto keys = std::make_shared<CameraKeys>(state.camera_keys);

@@ -37,6 +37,11 @@ std::shared_ptr<const MeshData> moved_mesh(const std::shared_ptr<const MeshData>
 
 // True: it is not what it was.
 bool move_instance(const Step& step, Meshes* meshes, InstanceData* instance) {
+  if (!(step.is_next() ? instance->will_be_there : instance->was_there)) {
+    instance->id = kNobody;
+    instance->visibility = GRADUS_MAY_MOVE;
+    return true;
+  }
   const Mat4 matrix = step.matrix(instance->to_world, step.is_next() ? instance->to_world_next : instance->to_world_previous);
   const auto mesh = moved_mesh(instance->mesh, step.frames(), meshes);
   if (mesh == instance->mesh && matrix == instance->to_world && !instance->moves()) return false;
@@ -74,6 +79,7 @@ std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment 
   const Step step{when, share};
   auto moved = std::make_shared<Snapshot>(snapshot);
   moved->features.has_motion = false;
+  moved->is_other_shot = step.is_next() ? snapshot.cut_after : snapshot.cut_before;
   move_camera(step, &moved->camera);
   if (!move_instances(step, moved.get())) return moved;
   add_tangents(&snapshot, moved.get());

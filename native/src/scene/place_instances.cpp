@@ -89,6 +89,8 @@ void set_matrices(const InstanceArrays& a, size_t i, const Vec3& origin, Instanc
   out->mirrored = glm::determinant(glm::dmat3(m)) < 0.0;
   const bool previous = !a.matrices_previous.empty() && is_usable(a.matrices_previous[i]);
   const bool next = !a.matrices_next.empty() && is_usable(a.matrices_next[i]);
+  out->was_there = a.matrices_previous.empty() || previous;
+  out->will_be_there = a.matrices_next.empty() || next;
   out->to_world_previous = previous ? moved(a.matrices_previous[i], origin) : out->to_world;
   out->to_world_next = next ? moved(a.matrices_next[i], origin) : out->to_world;
 }

@@ -27,6 +27,8 @@ struct Rays4;         // scene/rays4.h
 struct FlatTriangle;  // scene/flat_triangle.h
 
 // Placed as in the frame rendered. Geometric normals point to where the corners run counter-clockwise in the mesh, mirrored or not.
+inline constexpr uint64_t kNobody = UINT64_MAX;
+
 struct InstanceData : Placement {
   std::shared_ptr<const MeshData> mesh;
   const FlatTriangle* flat_triangles = nullptr;  // where the mesh lies in the top level; owned by the accelerator
@@ -34,9 +36,10 @@ struct InstanceData : Placement {
   bool deforms = false;                          // its mesh has positions of its own for that time
   Mat4 to_world_previous{1.0f};
   Mat4 to_world_next{1.0f};
+  bool was_there = true, will_be_there = true;  // in the frames around
   bool mirrored = false;
   uint32_t visibility = GRADUS_VISIBLE_ALL;
-  uint64_t id = 0;  // the same in every frame
+  uint64_t id = 0;  // the same in every frame; kNobody: of none
   uint32_t random_id = 0;
   int32_t pass_index = 0;
   Vec4 color{1.0f};
@@ -102,6 +105,8 @@ class Snapshot {
   std::shared_ptr<const Accelerator> accelerator;
   GradusCamera camera{};  // in internal space; its arrays are camera_keys'
   std::shared_ptr<const CameraKeys> camera_keys;
+  bool cut_before = false, cut_after = false;  // the frame around is seen by another camera
+  bool is_other_shot = false;                  // of moved_snapshot() over such a cut
   Shutter shutter;
   bool has_camera = false;
   GradusWorld world{};

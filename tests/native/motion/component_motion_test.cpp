@@ -114,6 +114,32 @@ TEST_F(ComponentMotionTest, OfWhatIsRoughIsSurfaceMotion) {
   EXPECT_EQ(found.tracked[above], 1.0f);
 }
 
+// It was taken to rest, and to be known.
+TEST_F(ComponentMotionTest, OfWhatWasNotThereIsGone) {
+  add_ball(grey());
+  key(Mat4(NAN), Mat4(1.0f), Mat4(1.0f));
+  const ComponentMotion found = find(frame("Diffuse")->context, "Diffuse");
+  const size_t middle = size_t(kSize) * kSize / 2 + kSize / 2;
+  EXPECT_EQ(found.tracked[middle], float(Tracking::Gone));
+  EXPECT_EQ(found.vectors[middle], Vec4(0.0f));
+  EXPECT_EQ(found.tracked[0], float(Tracking::Tracked));
+}
+
+TEST_F(ComponentMotionTest, OverACutIsNone) {
+  add_ball(grey());
+  std::fill_n(scene_.camera_desc.matrix_next, 16, NAN);
+  const MotionFrame* middle = frame("Diffuse");
+  auto snapshot = std::make_shared<Snapshot>(*middle->context.snapshot);
+  EXPECT_TRUE(std::isfinite(snapshot->camera.matrix_next[0]));
+  EXPECT_FALSE(snapshot->cut_before);
+  EXPECT_TRUE(snapshot->cut_after);
+  const ComponentMotion found = find(middle->context, "Diffuse");
+  for (size_t i = 0; i < found.tracked.size(); ++i) {
+    if (found.tracked[i] == kNothingToTrack) continue;
+    ASSERT_EQ(found.tracked[i], float(Tracking::Cut)) << i;
+  }
+}
+
 TEST_F(ComponentMotionTest, OnlyWhatIsAskedForIsFound) {
   add_room();
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);

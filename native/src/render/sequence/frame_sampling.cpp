@@ -106,7 +106,7 @@ std::optional<FrameHeader> FrameSampling::stored(FramePart part) const {
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // that of the first of several frames that are alike
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = frame->settings.integrator;  // what it came to
-  require_same(*frame, folder.path(number, part), settings, input_.snapshot->content_key);
+  require_same(*frame, part, folder.path(number, part), settings, input_.snapshot->content_key);
   return frame;
 }
 

@@ -35,13 +35,14 @@ bool lacks_surfaces(const KeptOfComponents& held, const GradusSettings& settings
 }
 
 // What makes a stored frame another one than is asked for; "" if it fits.
-std::string difference(const FrameHeader& stored, const GradusSettings& settings, uint64_t scene_key) {
+std::string difference(const FrameHeader& stored, FramePart part, const GradusSettings& settings, uint64_t scene_key) {
   const GradusSettings& other = stored.settings;
   if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
   const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
   if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
   if (lacks_surfaces(stored.of_components, settings)) return "was sampled without the surfaces of components";
-  if (wants_flow(settings) && !stored.of_components.shown) return "was sampled without the motion of components";
+  if (part == FramePart::kBase && wants_flow(settings) && !stored.of_components.shown)
+    return "was sampled without the motion of components";
   if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
   if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
   if (stored.scene_key != scene_key) return "shows another scene";
@@ -51,8 +52,8 @@ std::string difference(const FrameHeader& stored, const GradusSettings& settings
 
 }  // namespace
 
-void require_same(const FrameHeader& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
-  const std::string why = difference(stored, settings, scene_key);
+void require_same(const FrameHeader& stored, FramePart part, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
+  const std::string why = difference(stored, part, settings, scene_key);
   if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kWayOut);
 }
 

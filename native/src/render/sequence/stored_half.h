@@ -5,13 +5,14 @@
 
 #include "base/error.h"
 #include "frame/frame_header.h"
+#include "render/sequence/sequence_folder.h"
 
 namespace gradus {
 
 inline constexpr const char* kWayOut = ": remove it, or choose another frame store";
 
 // Throws invalid_argument that says what differs, where a half was sampled otherwise than these settings ask for, but for its samples.
-void require_same(const FrameHeader& stored, const std::string& path, const GradusSettings& settings, uint64_t scene_key);
+void require_same(const FrameHeader& stored, FramePart part, const std::string& path, const GradusSettings& settings, uint64_t scene_key);
 // Throws invalid_argument where it lacks what REGULARIZED reads.
 void require_features(const FrameHeader& stored, const std::string& path);
 

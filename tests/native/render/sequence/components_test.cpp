@@ -96,6 +96,25 @@ TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
   EXPECT_THROW(sample(make_sequence(0, 2, folder.path()).get(), pan.at(0), settings_with(0, GRADUS_COMPONENT_NORMAL)), Error);
 }
 
+// Motion is kept with a frame's own half, and was asked of the other one, too: no store with it could be gone on with.
+TEST(SequenceDetails, AStoreWithMotionIsGoneOnWith) {
+  const Folder folder;
+  const auto settings_with_motion = [](int32_t frame) {
+    GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
+    settings.component_passes |= 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_IRRADIANCE_MOTION;
+    return settings;
+  };
+  std::vector<std::vector<float>> pictures;
+  for (const int32_t last : {1, 2, 2}) {
+    Pan pan(1.0f);
+    const auto sequence = make_sequence(0, last, folder.path());
+    for (int32_t frame = 0; frame <= last; ++frame) sample(sequence.get(), pan.at(frame), settings_with_motion(frame));
+    for (int32_t frame = 0; frame < last; ++frame) delivered(sequence.get(), frame);
+    pictures.push_back(read(*delivered(sequence.get(), last), GRADUS_PASS_COMBINED, 4));
+  }
+  EXPECT_EQ(pictures[1], pictures[2]);
+}
+
 class SequenceComponents : public testing::TestWithParam<uint32_t> {};
 
 void expect_to_add_up(const Pictures& pictures) {
