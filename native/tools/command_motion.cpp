@@ -60,6 +60,7 @@ ordered_json measure(const Snapshot& snapshot, const GradusSettings& settings, c
   const ChainTracer next(*moved, camera, settings);
   Change change(snapshot);
   change.add(*moved);
+  if (!change.any()) std::fprintf(stderr, "warning: nothing moves to the next frame; was the scene saved with passes of motion?\n");
   const int followed = components.count() - 1;  // no path stands for all that is left over
   const std::vector<ChainView> views = billed([&] {
     return view_chains(

@@ -13,6 +13,8 @@ class Change {
   explicit Change(const Snapshot& now);
   void add(const Snapshot& other);
 
+  // Of anything.
+  bool any() const { return all_ || any_; }
   // The camera, or pictures on surfaces.
   bool of_all() const { return all_; }
   bool of_instance(uint32_t index) const { return instances_[index]; }
