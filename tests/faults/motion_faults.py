@@ -210,8 +210,8 @@ MOTION = (
         VECTORS,
         "that of the camera, where blur is read, too",
         EXPORTER,
-        "around = [moments[time].cameras[view] for time in motion.AROUND]",
-        "around = [moments[time].cameras[view] for time in sorted(moments)[:2]]",
+        "around = [motion.camera_at(view, moments[time]) for time in motion.AROUND]",
+        "around = [motion.camera_at(view, moments[time]) for time in sorted(moments)[:2]]",
         OF_VECTORS,
     ),
     Fault(
