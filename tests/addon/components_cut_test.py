@@ -1,4 +1,4 @@
-"""Motion of components where a frame is not one shot with those around it, or shows what these do not: flagged, with its cause (issue 7)."""
+"""Motion of components where a frame is no shot with those around it, or shows what these do not: flagged with its cause (issue 7)."""
 
 from __future__ import annotations
 
