@@ -118,13 +118,14 @@ def read_moments(
     moments: Moments = {}
     scene = depsgraph.scene.original
     now = scene.frame_current
+    bound = bound_camera(scene, now)
     with other_frames(depsgraph.scene, engine) as step:
         for time in times:
             poll()
             step(time)
             moments[time] = _read_moment(depsgraph, deforming, poll)
             moments[time].cameras = states_of(cameras, depsgraph, engine, size)
-            moments[time].is_cut = bound_camera(scene, math.floor(now + time)) != bound_camera(scene, now)
+            moments[time].is_cut = bound_camera(scene, math.floor(now + time)) != bound
     return moments
 
 
