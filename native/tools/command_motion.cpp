@@ -4,7 +4,7 @@
 
 #include "api/recorder.h"
 #include "base/bill.h"
-#include "base/device.h"
+#include "scene/device.h"
 #include "base/error.h"
 #include "common.h"
 #include "motion_check.h"

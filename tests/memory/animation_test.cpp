@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "memory/allocations.h"
 #include "render/fake_integrator.h"
 #include "render/sequence/sequence.h"

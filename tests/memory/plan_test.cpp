@@ -1,7 +1,7 @@
 // Memory that the plan asks of the machine against what a render takes.
 #include <gtest/gtest.h>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "memory/allocations.h"
 #include "plan/plan.h"
 #include "render/fake_integrator.h"

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <string>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "render/render.h"
 #include "render/sequence/sequence.h"
 #include "support/path_scene.h"

@@ -1,5 +1,5 @@
 // gradus_device_*
-#include "base/device.h"
+#include "scene/device.h"
 
 #include "api/arrays.h"
 #include "api/guard.h"

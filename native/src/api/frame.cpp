@@ -6,6 +6,7 @@
 #include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
+#include "base/threads.h"
 #include "base/fpu.h"
 #include "frame/features.h"
 #include "frame/store.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "api/registry.h"
-#include "base/device.h"
+#include "scene/device.h"
 #include "frame/frame.h"
 #include "render/light_passes.h"
 #include "render/render.h"

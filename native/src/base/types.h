@@ -41,4 +41,7 @@ struct Ray {
 constexpr Ray kNoRay{Vec3(0.0f), 1.0f, Vec3(0.0f), 0.0f};
 inline bool is_none(const Ray& ray) { return ray.direction == Vec3(0.0f); }
 
+// The rendered frame of an animation, the one before it and the one after it.
+enum class Moment { Now, Previous, Next };
+
 }  // namespace gradus

@@ -194,4 +194,12 @@ class Closures {
   Vec3 smooth_normal_ = Vec3(0.0f);
 };
 
+// Returns whether a lobe scatters within a class: glass scatters within transmission and reflection.
+bool scatters_within(const Lobe& lobe, ScatterClass c);
+
+// Number of a Dirac lobe among those of its class, and the lobe with that number (-1: there is none): a Dirac event is replayed by the
+// lobe of equal rank, which is a one-to-one relation between two vertices.
+int dirac_rank(const Closures& closures, ScatterClass c, int lobe);
+int dirac_lobe(const Closures& closures, ScatterClass c, int rank);
+
 }  // namespace gradus

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/region.h"
 #include "base/types.h"
 #include "frame/sample_ranges.h"
 #include "frame/sample_sources.h"
@@ -26,19 +27,6 @@ enum Offset : int { kRight = 0, kUp = 1, kLeft = 2, kDown = 3, kOffsets = 4 };
 inline constexpr int kOffsetX[kOffsets] = {1, 0, -1, 0};
 inline constexpr int kOffsetY[kOffsets] = {0, 1, 0, -1};
 inline constexpr int kHalves = 2;
-
-// Integer rectangle of film pixels, upper bounds exclusive.
-struct Region {
-  int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  int32_t width() const { return x1 - x0; }
-  int32_t height() const { return y1 - y0; }
-  int64_t area() const { return int64_t(width()) * height(); }
-  bool contains(int32_t x, int32_t y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
-  bool operator==(const Region&) const = default;
-};
-
-// Radiance (RGB) and, with a transparent film, alpha as the fourth channel; 0 otherwise.
-using Radiance = Vec4;
 
 // Of the first rough vertices of a component's paths: sums over the samples that have come to one.
 struct RoughVertices {

@@ -1,7 +1,7 @@
 // All pixels of a film, row by row over the threads.
 #pragma once
 
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 

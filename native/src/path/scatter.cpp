@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shift/half_vector.h"
-
 namespace gradus {
 
 bool choose_class(const Closures& closures, float u, ScatterClass* chosen) {

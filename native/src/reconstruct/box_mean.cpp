@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

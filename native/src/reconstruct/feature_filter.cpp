@@ -6,7 +6,7 @@
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 #include "reconstruct/solver_planes.h"
 
 namespace gradus {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "reconstruct/field.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 void reweight(const SolverPlanes& planes, const Field& x, float alpha, float scale, float floor, Field* data_weights, Stencil* matrix) {

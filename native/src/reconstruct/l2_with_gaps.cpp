@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 #include "reconstruct/weighted_least_squares.h"
 
 namespace gradus {

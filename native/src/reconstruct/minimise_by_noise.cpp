@@ -4,7 +4,7 @@
 
 #include "reconstruct/field_values.h"
 #include "reconstruct/noise_weights.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

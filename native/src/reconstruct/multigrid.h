@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "reconstruct/interpolation.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 

@@ -6,7 +6,7 @@
 #include "frame/features.h"
 #include "reconstruct/error_estimate.h"
 #include "reconstruct/regularized.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

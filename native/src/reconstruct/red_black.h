@@ -3,7 +3,7 @@
 #pragma once
 
 #include "reconstruct/interpolation.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 

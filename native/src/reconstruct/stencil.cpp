@@ -1,6 +1,6 @@
 #include "reconstruct/stencil.h"
 
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "base/types.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "base/types.h"
 #include "reconstruct/l2.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

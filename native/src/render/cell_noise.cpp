@@ -7,7 +7,7 @@
 #include "reconstruct/noise_left.h"
 #include "reconstruct/reconstruct_frame.h"
 #include "reconstruct/regularized.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

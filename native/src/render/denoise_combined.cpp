@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/device.h"
+#include "scene/device.h"
+#include "base/threads.h"
 #include "base/error.h"
 #include "base/types.h"
 #include "denoise/denoise.h"

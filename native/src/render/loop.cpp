@@ -2,8 +2,9 @@
 
 #include <cmath>
 
+#include "base/threads.h"
 #include "base/bill.h"
-#include "base/device.h"
+#include "scene/device.h"
 #include "base/error.h"
 #include "frame/pass_planes.h"
 #include "motion/component_motion.h"

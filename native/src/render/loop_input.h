@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "frame/frame.h"
 #include "frame/sample_sources.h"
 #include "render/component_replay.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "frame/frame.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <thread>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "base/error.h"
 #include "render/loop.h"
 #include "settings/pass_table.h"

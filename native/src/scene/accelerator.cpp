@@ -59,7 +59,7 @@ Split split_instances(const AcceleratorInput& input) {
 // Builds groups that the accelerator before does not have.
 class Builder {
  public:
-  Builder(const std::shared_ptr<Device>& device, const Accelerator* before) : device_(device) {
+  Builder(const EmbreeDevice& device, const Accelerator* before) : device_(device) {
     if (!before) return;
     for (const Accelerator::Part* part : {&before->resting, &before->moving}) {
       if (!part->group) continue;
@@ -83,7 +83,7 @@ class Builder {
     return build_group(device_, input, key, progress, &mesh_scenes_);
   }
 
-  const std::shared_ptr<Device>& device_;
+  const EmbreeDevice& device_;
   std::vector<std::shared_ptr<const GeometryGroup>> groups_;
   MeshScenes mesh_scenes_;
 };
@@ -92,7 +92,7 @@ bool same(const Accelerator::Part& a, const Accelerator::Part& b) { return a.gro
 
 }  // namespace
 
-std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Device>& device, const AcceleratorInput& input,
+std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device, const AcceleratorInput& input,
                                                      const BuildProgress& progress, const std::shared_ptr<const Accelerator>& before) {
   constexpr float kRestingShare = 0.5f;  // of the progress
   const Split split = split_instances(input);

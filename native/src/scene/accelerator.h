@@ -7,11 +7,9 @@
 
 #include "base/types.h"
 #include "scene/geometry_group.h"
-#include "scene/snapshot.h"
+#include "scene/geometry.h"
 
 namespace gradus {
-
-class Device;
 
 // Bits of Embree's ray masks beside GradusVisibility's.
 inline constexpr uint32_t kMaskVisibility = GRADUS_VISIBLE_ALL;
@@ -35,7 +33,7 @@ struct AcceleratorInput {
 
 // before: of the last snapshot, or nullptr; what is the same is taken from it, and it is given back if nothing changed.
 // Throws Error CANCELLED or OUT_OF_MEMORY. The instances' flat_triangles are left to the caller.
-std::shared_ptr<const Accelerator> build_accelerator(const std::shared_ptr<Device>& device, const AcceleratorInput& input,
+std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device, const AcceleratorInput& input,
                                                      const BuildProgress& progress, const std::shared_ptr<const Accelerator>& before);
 
 // Queries with a mask of the bits above. Rays that are not finite miss.

@@ -9,9 +9,6 @@
 
 namespace gradus {
 
-// The frame rendered, and those around it.
-enum class Moment { Now, Previous, Next };
-
 // What a camera ray is a function of.
 struct CameraSample {
   Vec2 film;               // pixels of the full frame, origin at the lower left corner, pixel centres at +0.5

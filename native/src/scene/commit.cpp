@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "base/error.h"
 #include "base/fpu.h"
 #include "scene/affected_objects.h"
@@ -10,7 +10,7 @@
 #include "scene/lamp_scene.h"
 #include "scene/scene_state.h"
 #include "scene/snapshot_geometry.h"
-#include "scene/tangent_field.h"
+#include "scene/snapshot_tangents.h"
 #include "shading/material.h"
 
 namespace gradus {
@@ -102,7 +102,7 @@ void warn_beyond_limit(const InstanceArrays& arrays, const std::vector<size_t>& 
   objects.warn("is not sampled as a light", "are not sampled as lights", "too many triangles emit light", &snapshot->warnings);
 }
 
-void build_lights(const std::shared_ptr<Device>& device, std::vector<Lamp> lamps, const std::vector<size_t>& chosen,
+void build_lights(const EmbreeDevice& device, std::vector<Lamp> lamps, const std::vector<size_t>& chosen,
                   const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
   const auto lamp_scene = std::make_shared<const LampScene>(device, lamps);
   SceneFeatures& features = snapshot->features;
@@ -147,25 +147,6 @@ void find_what_shines(Snapshot* snapshot) {
 
 }  // namespace
 
-void CommitMonitor::check() const {
-  if (!go_on()) throw cancelled();
-}
-
-void CommitMonitor::report(float fraction) const {
-  if (!progress_) return;
-  std::atomic_ref<float> shared(*progress_);
-  // Embree reports from several threads: never let it fall.
-  float before = shared.load();
-  while (before < fraction && !shared.compare_exchange_weak(before, fraction)) continue;
-}
-
-BuildProgress CommitMonitor::step(float first, float last) const {
-  return [this, first, last](float fraction) {
-    report(first + (last - first) * std::clamp(fraction, 0.0f, 1.0f));
-    return go_on();
-  };
-}
-
 void Scene::commit(const volatile int32_t* cancel, float* progress) {
   if (progress) *progress = 0.0f;
   const std::lock_guard<std::mutex> lock(state_->mutex);
@@ -183,12 +164,12 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     add_tangents(state_->current.get(), snapshot.get());
     monitor.check();
     const auto exact = [&](size_t k) { return internal_matrix(state_->instances.matrices[chosen[k]], snapshot->origin); };
-    build_geometry(device_, exact, monitor.step(0.25f, 0.8f), state_->accelerator, snapshot.get());
+    build_geometry(device_->embree(), exact, monitor.step(0.25f, 0.8f), state_->accelerator, snapshot.get());
     state_->accelerator = snapshot->accelerator;
     place_camera(*state_, snapshot.get());
     find_motion(snapshot.get());
     place_world(*state_, materials, snapshot.get());
-    build_lights(device_, place_lamps(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
+    build_lights(device_->embree(), place_lamps(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
     find_holdouts(snapshot.get());
     find_what_shines(snapshot.get());

@@ -7,8 +7,8 @@
 #include "scene/emitter_table.h"
 #include "scene/light_bounds.h"
 #include "scene/mesh.h"
-#include "scene/scene_state.h"
-#include "scene/snapshot.h"
+#include "base/commit_monitor.h"
+#include "scene/lit_scene.h"
 #include "scene/world_map.h"
 #include "shading/material.h"
 #include "shading/shade.h"
@@ -24,26 +24,26 @@ constexpr size_t kMaxMeasured = 1u << 19;
 
 bool is_light(const MaterialData* material) { return material && material->emits && material->sample_as_light; }
 
-bool any_light(const Snapshot& snapshot, const InstanceData& instance) {
-  if (instance.materials.empty()) return is_light(snapshot.materials[0].get());
+bool any_light(const LitScene& scene, const InstanceData& instance) {
+  if (instance.materials.empty()) return is_light(scene.materials[0].get());
   return std::any_of(instance.materials.begin(), instance.materials.end(),
-                     [&](uint32_t m) { return is_light(snapshot.materials[m].get()); });
+                     [&](uint32_t m) { return is_light(scene.materials[m].get()); });
 }
 
-void find_triangles(const Snapshot& snapshot, const CommitMonitor& monitor, EmitterTable* table) {
+void find_triangles(const LitScene& scene, const CommitMonitor& monitor, EmitterTable* table) {
   std::vector<EmissiveTriangle>& triangles = table->triangles;
-  for (uint32_t i = 0; i < snapshot.instances.size(); ++i) {
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     table->first_triangle.push_back(uint32_t(triangles.size()));
-    const InstanceData& instance = snapshot.instances[i];
-    if (!any_light(snapshot, instance)) continue;
+    const InstanceData& instance = scene.instances[i];
+    if (!any_light(scene, instance)) continue;
     if (triangles.size() + instance.mesh->triangle_count > kMaxTriangles) {
       table->beyond_limit.push_back(i);
       continue;
     }
     monitor.check();
     for (uint32_t t = 0; t < instance.mesh->triangle_count; ++t) {
-      if (instance.mesh->is_dropped(t) || !is_light(snapshot.materials[snapshot.material_of(i, t)].get())) continue;
-      const std::array<Vec3, 3> p = snapshot.corners(i, t, 0.5f);
+      if (instance.mesh->is_dropped(t) || !is_light(scene.materials[scene.material_of(i, t)].get())) continue;
+      const std::array<Vec3, 3> p = scene.corners(i, t, 0.5f);
       const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
       if (area > 0.0f && is_finite(area)) triangles.push_back({i, t, area});
     }
@@ -52,7 +52,7 @@ void find_triangles(const Snapshot& snapshot, const CommitMonitor& monitor, Emit
 }
 
 // Mean radiance of a triangle over four points and both sides.
-float measure_radiance(const Snapshot& snapshot, const EmissiveTriangle& triangle) {
+float measure_radiance(const LitScene& scene, const EmissiveTriangle& triangle) {
   constexpr float kPoints[4][2] = {{1 / 3.0f, 1 / 3.0f}, {0.15f, 0.15f}, {0.7f, 0.15f}, {0.15f, 0.7f}};
   RayState state;
   state.flags = 0;
@@ -62,21 +62,21 @@ float measure_radiance(const Snapshot& snapshot, const EmissiveTriangle& triangl
     hit.instance = triangle.instance;
     hit.triangle = triangle.triangle;
     hit.barycentric = Vec2(b[0], b[1]);
-    const SurfacePoint point = snapshot.surface_point(hit);
+    const SurfacePoint point = scene.surface_point(hit);
     for (const float side : {1.0f, -1.0f}) {
-      const float value = mean_component(glm::abs(shade_emission(snapshot, point, point.geometric_normal * side, state)));
+      const float value = mean_component(glm::abs(shade_emission(scene, point, point.geometric_normal * side, state)));
       if (is_finite(value)) sum += std::min(value, 1e30f);
     }
   }
   return sum / 8.0f;
 }
 
-float radiance_estimate(const Snapshot& snapshot, const EmissiveTriangle& triangle, bool measure) {
-  const MaterialData& material = *snapshot.materials[snapshot.material_of(triangle.instance, triangle.triangle)];
+float radiance_estimate(const LitScene& scene, const EmissiveTriangle& triangle, bool measure) {
+  const MaterialData& material = *scene.materials[scene.material_of(triangle.instance, triangle.triangle)];
   if (material.emission_is_constant) return mean_component(glm::abs(material.constant_emission));
   if (!measure) return std::max(material.emission_estimate, 1e-6f);
   // The points may all lie on dark texels: keep a part of the estimate for the whole material.
-  return measure_radiance(snapshot, triangle) + 0.05f * std::max(material.emission_estimate, 0.0f) + 1e-6f;
+  return measure_radiance(scene, triangle) + 0.05f * std::max(material.emission_estimate, 0.0f) + 1e-6f;
 }
 
 // Without its power.
@@ -92,17 +92,17 @@ LightBounds bounds_of_corners(const std::array<Vec3, 3>& p) {
 }
 
 // All places where it is while the shutter is open, as far as a few moments tell: only the choice among lights depends on them.
-LightBounds triangle_bounds(const Snapshot& snapshot, const EmissiveTriangle& triangle, bool measure) {
+LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& triangle, bool measure) {
   constexpr int kMoments = 5;
-  const bool moves = snapshot.instances[triangle.instance].moves();
-  LightBounds b = bounds_of_corners(snapshot.corners(triangle.instance, triangle.triangle, 0.0f));
+  const bool moves = scene.instances[triangle.instance].moves();
+  LightBounds b = bounds_of_corners(scene.corners(triangle.instance, triangle.triangle, 0.0f));
   for (int i = 1; i < kMoments && moves; ++i)
-    b = unite(b, bounds_of_corners(snapshot.corners(triangle.instance, triangle.triangle, float(i) / (kMoments - 1))));
-  b.power = std::min(radiance_estimate(snapshot, triangle, measure) * triangle.area, 1e30f);
+    b = unite(b, bounds_of_corners(scene.corners(triangle.instance, triangle.triangle, float(i) / (kMoments - 1))));
+  b.power = std::min(radiance_estimate(scene, triangle, measure) * triangle.area, 1e30f);
   return b;
 }
 
-std::vector<LightBounds> all_bounds(const Snapshot& snapshot, const EmitterTable& table, const CommitMonitor& monitor) {
+std::vector<LightBounds> all_bounds(const LitScene& scene, const EmitterTable& table, const CommitMonitor& monitor) {
   std::vector<LightBounds> bounds;
   for (const uint32_t lamp : table.tree_lamps) bounds.push_back(lamp_bounds(table.lamps[lamp]));
   const size_t lamps = bounds.size();
@@ -110,7 +110,7 @@ std::vector<LightBounds> all_bounds(const Snapshot& snapshot, const EmitterTable
   const bool measure = table.triangles.size() <= kMaxMeasured;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, table.triangles.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
     if (!monitor.go_on()) return;
-    for (size_t i = range.begin(); i < range.end(); ++i) bounds[lamps + i] = triangle_bounds(snapshot, table.triangles[i], measure);
+    for (size_t i = range.begin(); i < range.end(); ++i) bounds[lamps + i] = triangle_bounds(scene, table.triangles[i], measure);
   });
   monitor.check();
   return bounds;
@@ -131,15 +131,15 @@ void sort_lamps(EmitterTable* table) {
 
 }  // namespace
 
-std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, WorldMap* world,
+std::shared_ptr<EmitterTable> build_emitters(const LitScene& scene, std::vector<Lamp> lamps, WorldMap* world,
                                              const CommitMonitor& monitor) {
   auto table = std::make_shared<EmitterTable>();
   table->lamps = std::move(lamps);
   sort_lamps(table.get());
-  find_triangles(snapshot, monitor, table.get());
-  table->tree.build(all_bounds(snapshot, *table, monitor), [&] { return !monitor.go_on(); });
+  find_triangles(scene, monitor, table.get());
+  table->tree.build(all_bounds(scene, *table, monitor), [&] { return !monitor.go_on(); });
   monitor.check();
-  table->world = build_world(snapshot, world, monitor);
+  table->world = build_world(scene, world, monitor);
   return table;
 }
 

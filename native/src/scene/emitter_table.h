@@ -1,4 +1,4 @@
-// All emitters of a snapshot, and the choice among them.
+// All emitters of a scene, and the choice among them.
 #pragma once
 
 #include <memory>
@@ -64,9 +64,9 @@ struct EmitterTable {
   double irradiance_of_suns(const Receiver& receiver) const;
 };
 
-// The snapshot is complete but for its emitters. lamps_with_extent is left to the caller. world: what the commit before left, which this
+// The scene is complete but for its emitters. lamps_with_extent is left to the caller. world: what the commit before left, which this
 // one brings up to date. Throws Error CANCELLED.
-std::shared_ptr<EmitterTable> build_emitters(const Snapshot& snapshot, std::vector<Lamp> lamps, WorldMap* world,
+std::shared_ptr<EmitterTable> build_emitters(const LitScene& scene, std::vector<Lamp> lamps, WorldMap* world,
                                              const CommitMonitor& monitor);
 
 }  // namespace gradus

@@ -10,7 +10,7 @@
 
 namespace gradus {
 
-class Snapshot;
+class LitScene;
 struct EmitterChoice;  // scene/emitter_table.h
 struct SurfacePoint;
 struct RayState;
@@ -65,20 +65,20 @@ struct Receiver {
 // view_emitter() would give, but cheaper, because the choice is made and its probability found in one go; only the radiance is left out,
 // as 0, where the light comes from behind a receiver that does not transmit. Both are written where the caller keeps them: copies of what
 // has just been written stall.
-void sample_emitter(const Snapshot& snapshot, const Receiver& receiver, float choice, const Vec2& u, EmitterPoint* point,
+void sample_emitter(const LitScene& scene, const Receiver& receiver, float choice, const Vec2& u, EmitterPoint* point,
                     EmitterView* view);
 // The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine there.
-EmitterView view_emitter(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
+EmitterView view_emitter(const LitScene& scene, const EmitterPoint& point, const Receiver& receiver);
 // Radiance of a triangle or the world towards the receiver, for a ray of this kind.
-Rgb emitter_radiance(const Snapshot& snapshot, const EmitterPoint& point, const EmitterView& view, const RayState& ray);
+Rgb emitter_radiance(const LitScene& scene, const EmitterPoint& point, const EmitterView& view, const RayState& ray);
 // The density of view_emitter() alone: for weights, where the radiance is known or not needed.
-float emitter_pdf(const Snapshot& snapshot, const EmitterPoint& point, const Receiver& receiver);
+float emitter_pdf(const LitScene& scene, const EmitterPoint& point, const Receiver& receiver);
 // The segment from a surface to an emitter, both ends off their surfaces; start: of the ray, beside `from`.
 Ray ray_to_emitter(const Vec3& start, const SurfacePoint& from, const EmitterPoint& to, const EmitterView& view);
 // The emitter point of a surface that a ray hit (kind None if it is not sampled as a light).
-EmitterPoint emitter_of_surface(const Snapshot& snapshot, const SurfacePoint& point);
+EmitterPoint emitter_of_surface(const LitScene& scene, const SurfacePoint& point);
 // The emitter point of a ray that left the scene.
-EmitterPoint emitter_of_world(const Snapshot& snapshot, const Vec3& direction);
+EmitterPoint emitter_of_world(const LitScene& scene, const Vec3& direction);
 
 // Lamps do not stop rays: a ray sees all that it crosses before its hit. Calls visit(EmitterPoint, distance) for each
 // lamp with extent between ray.t_min and ray.t_max, and for each sun with extent, at infinity, if ray.t_max is infinite.
@@ -87,6 +87,6 @@ struct LampHit {
   float distance;
 };
 // Fills `hits`, sorted by distance.
-void intersect_lamps(const Snapshot& snapshot, const Ray& ray, std::vector<LampHit>* hits);
+void intersect_lamps(const LitScene& scene, const Ray& ray, std::vector<LampHit>* hits);
 
 }  // namespace gradus

@@ -6,7 +6,6 @@
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
 
-#include "base/device.h"
 #include "base/error.h"
 #include "base/hash.h"
 
@@ -68,16 +67,16 @@ void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mas
   rtcReleaseGeometry(geometry);
 }
 
-std::shared_ptr<const MeshScene> build_mesh_scene(const std::shared_ptr<Device>& device, const std::shared_ptr<const MeshData>& mesh,
+std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device, const std::shared_ptr<const MeshData>& mesh,
                                                   const BuildProgress& progress, float at) {
   auto built = std::make_shared<MeshScene>();
   built->device = device;
   built->mesh = mesh;
-  built->scene = rtcNewScene(device->embree());
+  built->scene = rtcNewScene(device.get());
   const bool deforms = mesh->shutter_keys > 0;
-  attach_triangles(device->embree(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->rest_positions(),
+  attach_triangles(device.get(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->rest_positions(),
                    deforms ? mesh->shutter_keys : 1);
-  commit_scene(device->embree(), built->scene, progress, at, at);
+  commit_scene(device.get(), built->scene, progress, at, at);
   return built;
 }
 
@@ -103,11 +102,11 @@ RayBox bounds_of(RTCScene scene) {
 
 class GroupBuild {
  public:
-  GroupBuild(const std::shared_ptr<Device>& device, uint64_t key, const BuildProgress& progress, MeshScenes* known)
+  GroupBuild(const EmbreeDevice& device, uint64_t key, const BuildProgress& progress, MeshScenes* known)
       : device_(device), progress_(progress), known_(*known) {
     group_->device = device;
     group_->key = key;
-    group_->scene = rtcNewScene(device->embree());
+    group_->scene = rtcNewScene(device.get());
   }
 
   std::shared_ptr<const GeometryGroup> run(const GroupInput& input) {
@@ -121,7 +120,7 @@ class GroupBuild {
       else
         add_instance(input.instance(member), unsigned(i), member.mask, done);
     }
-    commit_scene(device_->embree(), group_->scene, progress_, kMeshShare, 1.0f);
+    commit_scene(device_.get(), group_->scene, progress_, kMeshShare, 1.0f);
     group_->box = bounds_of(group_->scene);
     size_t flat = 0;
     for (const GroupInput::Member& member : input.members) {
@@ -136,16 +135,16 @@ class GroupBuild {
  private:
   void add_flat(const MeshData& mesh, const glm::dmat4& to_internal, unsigned id, unsigned mask) {
     group_->flat_positions.push_back(transform_positions(mesh, to_internal));
-    attach_triangles(device_->embree(), group_->scene, id, mask, mesh, group_->flat_positions.back()->data(), 1);
+    attach_triangles(device_.get(), group_->scene, id, mask, mesh, group_->flat_positions.back()->data(), 1);
   }
   void add_instance(const InstanceData& instance, unsigned id, unsigned mask, float done) {
     std::shared_ptr<const MeshScene>& scene = known_[instance.mesh.get()];
     if (!scene) scene = build_mesh_scene(device_, instance.mesh, progress_, done);
     if (used_.insert(instance.mesh.get()).second) group_->mesh_scenes.push_back(scene);
-    attach_instance(device_->embree(), group_->scene, id, mask, scene->scene, instance);
+    attach_instance(device_.get(), group_->scene, id, mask, scene->scene, instance);
   }
 
-  const std::shared_ptr<Device>& device_;
+  const EmbreeDevice& device_;
   const BuildProgress& progress_;
   MeshScenes& known_;
   std::unordered_set<const MeshData*> used_;
@@ -179,7 +178,7 @@ uint64_t GroupInput::key() const {
   return hash.result();
 }
 
-std::shared_ptr<const GeometryGroup> build_group(const std::shared_ptr<Device>& device, const GroupInput& input, uint64_t key,
+std::shared_ptr<const GeometryGroup> build_group(const EmbreeDevice& device, const GroupInput& input, uint64_t key,
                                                  const BuildProgress& progress, MeshScenes* known) {
   return GroupBuild(device, key, progress, known).run(input);
 }

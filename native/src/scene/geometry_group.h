@@ -7,24 +7,21 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/commit_monitor.h"
 #include "base/types.h"
+#include "scene/embree_device.h"
 #include "scene/flat_triangle.h"
 #include "scene/mesh.h"
 #include "scene/ray_box.h"
-#include "scene/snapshot.h"
+#include "scene/geometry.h"
 
 struct RTCSceneTy;
 
 namespace gradus {
 
-class Device;
-
-// Called while building with the fraction done; false: stop.
-using BuildProgress = std::function<bool(float)>;
-
 // The acceleration structure of one mesh in its own space.
 struct MeshScene {
-  std::shared_ptr<Device> device;
+  EmbreeDevice device;
   std::shared_ptr<const MeshData> mesh;
   RTCSceneTy* scene = nullptr;
   ~MeshScene();
@@ -52,7 +49,7 @@ struct GroupInput {
 
 // Immutable. Embree's geometry ids are places in the list of members: which instances these are may change from snapshot to snapshot.
 struct GeometryGroup {
-  std::shared_ptr<Device> device;
+  EmbreeDevice device;
   uint64_t key = 0;  // of its input
   RTCSceneTy* scene = nullptr;
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;
@@ -64,7 +61,7 @@ struct GeometryGroup {
 };
 
 // key: the input's. known: mesh scenes that exist; those that are built are added. Throws Error CANCELLED or OUT_OF_MEMORY.
-std::shared_ptr<const GeometryGroup> build_group(const std::shared_ptr<Device>& device, const GroupInput& input, uint64_t key,
+std::shared_ptr<const GeometryGroup> build_group(const EmbreeDevice& device, const GroupInput& input, uint64_t key,
                                                  const BuildProgress& progress, MeshScenes* known);
 
 }  // namespace gradus

@@ -6,7 +6,7 @@
 #include "scene/frame_basis.h"
 #include "scene/lamp.h"
 #include "scene/lamp_scene.h"
-#include "scene/snapshot.h"
+#include "scene/lit_scene.h"
 
 namespace gradus {
 
@@ -97,10 +97,10 @@ bool intersect_lamp(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float
   return false;
 }
 
-void intersect_lamps(const Snapshot& snapshot, const Ray& ray, std::vector<LampHit>* hits) {
+void intersect_lamps(const LitScene& scene, const Ray& ray, std::vector<LampHit>* hits) {
   hits->clear();
-  const LampScene* lamps = snapshot.emitters->lamps_with_extent.get();
-  if (lamps) lamps->intersect(snapshot.emitters->lamps, ray, hits);
+  const LampScene* lamps = scene.emitters->lamps_with_extent.get();
+  if (lamps) lamps->intersect(scene.emitters->lamps, ray, hits);
 }
 
 }  // namespace gradus

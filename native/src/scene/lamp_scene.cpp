@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "base/device.h"
 #include "base/error.h"
 
 namespace gradus {
@@ -55,7 +54,7 @@ void meet_lamp(const RTCIntersectFunctionNArguments* args) {
 
 }  // namespace
 
-LampScene::LampScene(const std::shared_ptr<Device>& device, const std::vector<Lamp>& lamps) : device_(device) {
+LampScene::LampScene(const EmbreeDevice& device, const std::vector<Lamp>& lamps) : device_(device) {
   for (uint32_t i = 0; i < lamps.size(); ++i)
     if (lamps[i].found_by_rays()) (lamps[i].at_infinity() ? listed_ : placed_).push_back(i);
   if (placed_.size() <= kMaxListed) {
@@ -64,8 +63,8 @@ LampScene::LampScene(const std::shared_ptr<Device>& device, const std::vector<La
     return;
   }
   Placed placed{&lamps, &placed_};
-  scene_ = rtcNewScene(device->embree());
-  const RTCGeometry geometry = rtcNewGeometry(device->embree(), RTC_GEOMETRY_TYPE_USER);
+  scene_ = rtcNewScene(device.get());
+  const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(placed_.size()));
   rtcSetGeometryUserData(geometry, &placed);
   rtcSetGeometryBoundsFunction(geometry, bound_lamp, nullptr);
@@ -74,7 +73,7 @@ LampScene::LampScene(const std::shared_ptr<Device>& device, const std::vector<La
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene_);
-  if (rtcGetDeviceError(device->embree()) != RTC_ERROR_NONE) {
+  if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) {
     rtcReleaseScene(scene_);
     throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed to build the lamps");
   }

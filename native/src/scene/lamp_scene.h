@@ -4,17 +4,16 @@
 #include <memory>
 #include <vector>
 
+#include "scene/embree_device.h"
 #include "scene/lamp.h"
 
 struct RTCSceneTy;
 
 namespace gradus {
 
-class Device;
-
 class LampScene {
  public:
-  LampScene(const std::shared_ptr<Device>& device, const std::vector<Lamp>& lamps);
+  LampScene(const EmbreeDevice& device, const std::vector<Lamp>& lamps);
   ~LampScene();
   LampScene(const LampScene&) = delete;
   LampScene& operator=(const LampScene&) = delete;
@@ -23,7 +22,7 @@ class LampScene {
 
  private:
   void trace_placed(const std::vector<Lamp>& lamps, const Ray& ray, std::vector<LampHit>* hits) const;
-  std::shared_ptr<Device> device_;
+  EmbreeDevice device_;
   std::vector<uint32_t> listed_;  // suns, and all lamps while they are few
   std::vector<uint32_t> placed_;  // primitives of the scene
   RTCSceneTy* scene_ = nullptr;

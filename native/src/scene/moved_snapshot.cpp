@@ -8,7 +8,7 @@
 #include "scene/matrix_keys.h"
 #include "scene/mesh_at.h"
 #include "scene/snapshot_geometry.h"
-#include "scene/tangent_field.h"
+#include "scene/snapshot_tangents.h"
 
 namespace gradus {
 
@@ -84,7 +84,7 @@ std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment 
   if (!move_instances(step, moved.get())) return moved;
   add_tangents(&snapshot, moved.get());
   const auto exact = [&](size_t i) { return glm::dmat4(moved->instances[i].to_world); };
-  const std::shared_ptr<Device>& device = snapshot.accelerator->resting.group->device;
+  const EmbreeDevice& device = snapshot.accelerator->resting.group->device;
   build_geometry(
       device, exact, [&](float) { return !is_cancelled(); }, snapshot.accelerator, moved.get());
   return moved;

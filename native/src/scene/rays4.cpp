@@ -8,10 +8,6 @@ namespace {
 
 using Bits = int32_t __attribute__((vector_size(16)));
 
-Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Lanes3 operator-(const Lanes3& a) { return {-a.x, -a.y, -a.z}; }
-Lanes3 operator*(const Lanes3& a, const Lanes& b) { return {a.x * b, a.y * b, a.z * b}; }
 Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 constexpr int32_t kSign = INT32_MIN;
@@ -22,13 +18,6 @@ Lanes step_away(const Lanes& v, const Lanes& up) {
   const Bits bits = v == 0.0f ? up_bits & kSign : (Bits)v;
   const Bits away = bits + (((bits ^ up_bits) >> 31) | 1);
   return up == 0.0f ? v : (Lanes)away;
-}
-
-Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& direction, float time) {
-  const Lanes3 line = end - start;
-  const Lanes length = _mm_sqrt_ps(dot(line, line));
-  const Bits ahead = (length > 0.0f) & (dot(line, direction) > 0.0f);
-  return {start, line * (1.0f / length), ahead ? length * (1.0f - 1e-6f) : same(-1.0f), time};
 }
 
 Points4 gather(const SurfacePoint& p) { return {same(p.position), same(p.geometric_normal), same(p.error), p.hit.time}; }
@@ -52,13 +41,11 @@ Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfaceP
   return rays_between(offset_origins(from, direction), offset_origins(gather(to), -direction), direction, from.time);
 }
 
-Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to) {
-  if (to.at_infinity()) return {start, direction, same(kInfinity), from.time};
-  if (to.kind == EmitterKind::Triangle) {
-    const Points4 end{same(to.position), same(to.normal), same(to.error), from.time};
-    return rays_between(start, offset_origins(end, -direction), direction, from.time);
-  }
-  return rays_between(start, from.position + direction * distance, direction, from.time);
+Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& direction, float time) {
+  const Lanes3 line = end - start;
+  const Lanes length = _mm_sqrt_ps(dot(line, line));
+  const Bits ahead = (length > 0.0f) & (dot(line, direction) > 0.0f);
+  return {start, line * (1.0f / length), ahead ? length * (1.0f - 1e-6f) : same(-1.0f), time};
 }
 
 }  // namespace gradus

@@ -1,7 +1,6 @@
 // Four rays to one point, one in each lane: the same arithmetic as for one (surface.h, emitters.h), up to rounding.
 #pragma once
 
-#include "scene/emitters.h"
 #include "scene/surface.h"
 
 namespace gradus {
@@ -14,6 +13,10 @@ struct Lanes3 {
 
 inline Lanes same(float v) { return Lanes{v, v, v, v}; }
 inline Lanes3 same(const Vec3& v) { return {same(v.x), same(v.y), same(v.z)}; }
+inline Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Lanes3 operator-(const Lanes3& a) { return {-a.x, -a.y, -a.z}; }
+inline Lanes3 operator*(const Lanes3& a, const Lanes& b) { return {a.x * b, a.y * b, a.z * b}; }
 // Written at once: lanes that are stored one by one and loaded together stall.
 inline Lanes3 lanes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return {Lanes{a.x, b.x, c.x, d.x}, Lanes{a.y, b.y, c.y, d.y}, Lanes{a.z, b.z, c.z, d.z}};
@@ -44,7 +47,7 @@ Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint&
 Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfacePoint& to);
 // offset_origin() of each.
 Lanes3 offset_origins(const Points4& points, const Lanes3& direction);
-// Those of ray_to_emitter(); direction and distance: of the emitter's point, as seen from each.
-Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to);
+// ray_between() of each, for ends that lie off their surfaces. direction: unit, from start towards end.
+Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& direction, float time);
 
 }  // namespace gradus

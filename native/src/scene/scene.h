@@ -12,7 +12,7 @@
 
 namespace gradus {
 
-class Device;  // base/device.h: Embree device, thread arena, colour, warnings
+class Device;  // scene/device.h: Embree device, thread arena, colour, warnings
 
 class Scene {
  public:

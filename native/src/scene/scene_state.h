@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/commit_monitor.h"
 #include "base/hash.h"
 #include "scene/accelerator.h"
 #include "scene/camera_keys.h"
@@ -64,21 +65,6 @@ struct Scene::State {
   std::map<uint64_t, CompiledMaterial> compiled;
   std::shared_ptr<const Accelerator> accelerator;
   WorldMap world_map;
-};
-
-// Progress of a commit: tells the caller, and whether to go on. Called from Embree's threads, too.
-class CommitMonitor {
- public:
-  CommitMonitor(const volatile int32_t* cancel, float* progress) : cancel_(cancel), progress_(progress) {}
-  bool go_on() const { return !cancel_ || *cancel_ == 0; }
-  void check() const;  // throws Error CANCELLED
-  // fraction of the step that runs from `first` to `last`.
-  BuildProgress step(float first, float last) const;
-  void report(float fraction) const;
-
- private:
-  const volatile int32_t* cancel_;
-  float* progress_;
 };
 
 // Exact matrix of an instance in internal space.

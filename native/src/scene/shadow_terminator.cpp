@@ -24,10 +24,10 @@ float bulge(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& n, const Ve
 
 }  // namespace
 
-Vec3 shadow_origin(const Snapshot& scene, const SurfacePoint& point, const Vec3& direction) {
+Vec3 shadow_origin(const Geometry& geometry, const SurfacePoint& point, const Vec3& direction) {
   const float share = terminator_share(point, direction);
   if (share == 0.0f) return offset_origin(point, direction);
-  const InstanceData& instance = scene.instances[point.hit.instance];
+  const InstanceData& instance = geometry.instances[point.hit.instance];
   std::array<Vec3, 3> normals{};
   triangle_normals_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time,
                               &normals);  // it has them: without, the point's offset is 0

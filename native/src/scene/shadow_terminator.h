@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/snapshot.h"
+#include "scene/geometry.h"
 
 namespace gradus {
 
@@ -28,6 +28,6 @@ inline float terminator_share(const SurfacePoint& point, const Vec3& direction) 
 inline bool leaves_facet(const SurfacePoint& point, const Vec3& direction) { return terminator_share(point, direction) == 0.0f; }
 
 // Where a shadow ray towards a light begins.
-Vec3 shadow_origin(const Snapshot& scene, const SurfacePoint& point, const Vec3& direction);
+Vec3 shadow_origin(const Geometry& geometry, const SurfacePoint& point, const Vec3& direction);
 
 }  // namespace gradus

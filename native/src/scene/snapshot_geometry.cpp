@@ -33,7 +33,7 @@ void refer_to_triangles(const Accelerator::Part& part, Snapshot* snapshot) {
 
 }  // namespace
 
-void build_geometry(const std::shared_ptr<Device>& device, const ExactMatrices& to_internal, const BuildProgress& progress,
+void build_geometry(const EmbreeDevice& device, const ExactMatrices& to_internal, const BuildProgress& progress,
                     const std::shared_ptr<const Accelerator>& before, Snapshot* snapshot) {
   std::vector<uint32_t> masks(snapshot->instances.size());
   for (size_t k = 0; k < masks.size(); ++k) {

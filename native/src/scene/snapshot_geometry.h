@@ -10,7 +10,7 @@ namespace gradus {
 
 // Fills accelerator, the instances' flat triangles and has_transparent_shadows. before: of another snapshot, or nullptr.
 // Throws Error CANCELLED or OUT_OF_MEMORY.
-void build_geometry(const std::shared_ptr<Device>& device, const ExactMatrices& to_internal, const BuildProgress& progress,
+void build_geometry(const EmbreeDevice& device, const ExactMatrices& to_internal, const BuildProgress& progress,
                     const std::shared_ptr<const Accelerator>& before, Snapshot* snapshot);
 
 }  // namespace gradus

@@ -3,7 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "base/error.h"
 #include "scene/scene_state.h"
 #include "shading/material.h"

@@ -7,7 +7,7 @@
 
 #include "scene/flat_triangle.h"
 #include "scene/mesh.h"
-#include "scene/snapshot.h"
+#include "scene/geometry.h"
 
 namespace gradus {
 
@@ -87,13 +87,13 @@ const Placement& InstanceData::placement(float time, Placement* room) const {
   return *room;
 }
 
-uint32_t Snapshot::material_of(uint32_t index, uint32_t triangle) const {
+uint32_t Geometry::material_of(uint32_t index, uint32_t triangle) const {
   const InstanceData& instance = instances[index];
   const bool flat = instance.flat_triangles != nullptr;
   return material_of_slot(instance, flat ? instance.flat_triangles[triangle].slot : instance.mesh->material_slot(triangle));
 }
 
-void Snapshot::place(const Hit& hit, SurfacePoint* point) const {
+void Geometry::place(const Hit& hit, SurfacePoint* point) const {
   const InstanceData& instance = instances[hit.instance];
   point->hit = hit;
   if (!instance.keys) return place_at(instance, instance, hit, point);
@@ -101,17 +101,17 @@ void Snapshot::place(const Hit& hit, SurfacePoint* point) const {
   place_at(instance, instance.placement(hit.time, &room), hit, point);
 }
 
-void Snapshot::prefetch(const Hit& hit) const {
+void Geometry::prefetch(const Hit& hit) const {
   if (hit.valid() && instances[hit.instance].flat_triangles) __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.triangle]);
 }
 
-SurfacePoint Snapshot::surface_point(const Hit& hit) const {
+SurfacePoint Geometry::surface_point(const Hit& hit) const {
   SurfacePoint point;
   place(hit, &point);
   return point;
 }
 
-std::array<Vec3, 3> Snapshot::corners(uint32_t index, uint32_t triangle, float time) const {
+std::array<Vec3, 3> Geometry::corners(uint32_t index, uint32_t triangle, float time) const {
   const InstanceData& instance = instances[index];
   if (instance.flat_triangles) return instance.flat_triangles[triangle].corners;
   std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, triangle, time);
@@ -120,7 +120,7 @@ std::array<Vec3, 3> Snapshot::corners(uint32_t index, uint32_t triangle, float t
   return p;
 }
 
-float Snapshot::curvature(const Hit& hit) const {
+float Geometry::curvature(const Hit& hit) const {
   const InstanceData& instance = instances[hit.instance];
   std::array<Vec3, 3> n;
   if (!triangle_normals_in_shutter(*instance.mesh, hit.triangle, hit.time, &n)) return 0.0f;
@@ -137,7 +137,7 @@ float Snapshot::curvature(const Hit& hit) const {
   return largest;
 }
 
-Vec3 Snapshot::position_at(const Hit& hit, Moment when) const {
+Vec3 Geometry::position_at(const Hit& hit, Moment when) const {
   const InstanceData& instance = instances[hit.instance];
   const Mat4& to_world = when == Moment::Now    ? instance.to_world
                          : when == Moment::Next ? instance.to_world_next

@@ -10,8 +10,6 @@
 #include <tbb/parallel_for.h>
 
 #include "base/fpu.h"
-#include "scene/snapshot.h"
-#include "shading/material.h"
 
 namespace gradus {
 
@@ -119,41 +117,6 @@ std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const Me
   for (Vec4& t : field->tangents) t = Vec4(unit_or_zero(Vec3(t)), t.w);
   field->tangents.shrink_to_fit();
   return field;
-}
-
-namespace {
-
-using Fields = std::map<const MeshAttribute*, std::shared_ptr<const TangentField>>;
-
-// The UV maps of a mesh for which a material asks.
-template <class Visit>
-void for_each_wanted(const Snapshot& snapshot, const InstanceData& instance, const Visit& visit) {
-  const auto of_material = [&](uint32_t material) {
-    for (const std::string& name : snapshot.materials[material]->tangent_maps) {
-      const MeshAttribute* uv = name.empty() ? default_uv_map(*instance.mesh) : find_attribute(*instance.mesh, name);
-      if (uv) visit(*uv);
-    }
-  };
-  if (instance.materials.empty()) of_material(0);
-  for (const uint32_t material : instance.materials) of_material(material);
-}
-
-}  // namespace
-
-void add_tangents(const Snapshot* before, Snapshot* snapshot) {
-  Fields fields;
-  if (before) {
-    for (const InstanceData& instance : before->instances)
-      for (const auto& field : instance.tangents) fields[field->uv] = field;
-  }
-  for (InstanceData& instance : snapshot->instances) {
-    for_each_wanted(*snapshot, instance, [&](const MeshAttribute& uv) {
-      auto& field = fields[&uv];
-      if (!field) field = make_tangents(instance.mesh, uv);
-      if (std::find(instance.tangents.begin(), instance.tangents.end(), field) == instance.tangents.end())
-        instance.tangents.push_back(field);
-    });
-  }
 }
 
 }  // namespace gradus

@@ -9,8 +9,6 @@
 
 namespace gradus {
 
-class Snapshot;
-
 // At each vertex the mean of the triangles' directions of increasing u, weighed by their angles there; apart for corners that differ in
 // normal or UV coordinates or see the map from its other side. Source: M. Mikkelsen, Simulation of Wrinkled Surfaces Revisited (2008),
 // 3.3, whose convention (MikkTSpace) Blender, Cycles and bakers share.
@@ -24,8 +22,5 @@ struct TangentField {
 };
 
 std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh, const MeshAttribute& uv);
-
-// Gives the instances of a snapshot the tangents that their materials ask for; fields that `before` has are shared.
-void add_tangents(const Snapshot* before, Snapshot* snapshot);
 
 }  // namespace gradus

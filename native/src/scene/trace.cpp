@@ -7,7 +7,7 @@
 
 #include "scene/accelerator.h"
 #include "scene/rays4.h"
-#include "scene/snapshot.h"
+#include "scene/geometry.h"
 
 namespace gradus {
 
@@ -123,15 +123,15 @@ bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask
 
 bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask) { return blocked_by(accelerator, ray, mask); }
 
-bool Snapshot::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
+bool Geometry::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
   return trace_nearest(*accelerator, ray, visibility & kMaskVisibility, hit);
 }
 
-bool Snapshot::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }
+bool Geometry::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }
 
-bool Snapshot::meets(const Ray& ray, uint32_t visibility) const { return blocked_by(*accelerator, ray, visibility & kMaskVisibility); }
+bool Geometry::meets(const Ray& ray, uint32_t visibility) const { return blocked_by(*accelerator, ray, visibility & kMaskVisibility); }
 
-void Snapshot::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const {
+void Geometry::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const {
   alignas(16) int valid[4];
   RTCRayHit4 query;
   for (int i = 0; i < 4; ++i) {
@@ -160,7 +160,7 @@ void Snapshot::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) c
   if (keep_lanes_that_meet_moving(*accelerator, query.ray, valid)) take(accelerator->moving);
 }
 
-void Snapshot::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const {
+void Geometry::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const {
   const Lanes3 &o = rays.origin, &d = rays.direction;
   const Lanes length2 = d.x * d.x + d.y * d.y + d.z * d.z;
   const Lanes sum = o.x + o.y + o.z + length2;

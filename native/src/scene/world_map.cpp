@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "scene/image_store.h"
-#include "scene/scene_state.h"
-#include "scene/snapshot.h"
+#include "base/commit_monitor.h"
+#include "scene/lit_scene.h"
 #include "shading/material.h"
 #include "shading/shade.h"
 
@@ -24,15 +24,15 @@ std::vector<uint32_t> image_indices(const Program& program, const ImageStore& im
   return found;
 }
 
-WorldMap describe(const Snapshot& snapshot) {
+WorldMap describe(const LitScene& scene) {
   WorldMap map;
-  if (snapshot.world_material == UINT32_MAX || snapshot.world.importance == 0) return map;
-  const auto& material = snapshot.materials[snapshot.world_material];
+  if (scene.world_material == UINT32_MAX || scene.world.importance == 0) return map;
+  const auto& material = scene.materials[scene.world_material];
   if (!material || !material->emits) return map;
   map.material = material;
-  map.importance = snapshot.world.importance;
-  map.map_size = map.importance == kManual ? snapshot.world.map_size : 0;
-  for (const uint32_t i : image_indices(material->emission, *snapshot.images)) map.images.push_back(snapshot.images->image(i));
+  map.importance = scene.world.importance;
+  map.map_size = map.importance == kManual ? scene.world.map_size : 0;
+  for (const uint32_t i : image_indices(material->emission, *scene.images)) map.images.push_back(scene.images->image(i));
   return map;
 }
 
@@ -50,9 +50,9 @@ void look_for_sun(float half_angle, uint32_t map_size, Environment::Resolution* 
 
 // One point in each cell sees every texel of an image that is no wider than the map: look-ups are interpolated. Otherwise 2×2, so that a
 // small sun is not missed between cell centres.
-Environment::Resolution resolution(const Snapshot& snapshot, const WorldMap& map) {
+Environment::Resolution resolution(const LitScene& scene, const WorldMap& map) {
   uint32_t widest = 0;
-  for (const uint32_t i : image_indices(map.material->emission, *snapshot.images)) widest = std::max(widest, snapshot.images->width(i));
+  for (const uint32_t i : image_indices(map.material->emission, *scene.images)) widest = std::max(widest, scene.images->width(i));
   Environment::Resolution result;
   result.width = map.map_size > 0 ? map.map_size : widest > 0 ? std::min(widest, kWidest) : kWidthOfNodes;
   result.points = widest > 0 && widest <= result.width ? 1 : 2;
@@ -70,25 +70,25 @@ std::vector<Cone> sun_cones(const MaterialData& material) {
   return cones;
 }
 
-Environment measure_world(const Snapshot& snapshot, const WorldMap& map, const CommitMonitor& monitor) {
+Environment measure_world(const LitScene& scene, const WorldMap& map, const CommitMonitor& monitor) {
   if (!map.material) return {};
   if (map.material->emission_is_constant) return Environment::uniform(mean_component(glm::max(map.material->constant_emission, Rgb(0.0f))));
   RayState state;
   state.flags = 0;
   Environment world;
-  const auto radiance = [&](const Vec3& direction) { return shade_world(snapshot, direction, state); };
-  world.build(radiance, sun_cones(*map.material), resolution(snapshot, map), [&] { return !monitor.go_on(); });
+  const auto radiance = [&](const Vec3& direction) { return shade_world(scene, direction, state); };
+  world.build(radiance, sun_cones(*map.material), resolution(scene, map), [&] { return !monitor.go_on(); });
   monitor.check();
   return world;
 }
 
 }  // namespace
 
-Environment build_world(const Snapshot& snapshot, WorldMap* map, const CommitMonitor& monitor) {
-  WorldMap wanted = describe(snapshot);
+Environment build_world(const LitScene& scene, WorldMap* map, const CommitMonitor& monitor) {
+  WorldMap wanted = describe(scene);
   if (same_world(*map, wanted)) return map->environment;
   *map = {};
-  wanted.environment = measure_world(snapshot, wanted, monitor);
+  wanted.environment = measure_world(scene, wanted, monitor);
   *map = std::move(wanted);
   return map->environment;
 }

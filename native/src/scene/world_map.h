@@ -10,7 +10,7 @@ namespace gradus {
 
 class CommitMonitor;
 class Image;
-class Snapshot;
+class LitScene;
 struct MaterialData;
 
 // The map of a commit, and all that it was measured from: the next one keeps it where none of that changed.
@@ -24,6 +24,6 @@ struct WorldMap {
 
 // Measures the world's radiance, if it differs from that of `map`; black without a world, or where it is not to be sampled. An automatic
 // map is as wide as the largest image, as in Cycles, but at most 1024 cells. Throws Error CANCELLED, and then `map` is empty.
-Environment build_world(const Snapshot& snapshot, WorldMap* map, const CommitMonitor& monitor);
+Environment build_world(const LitScene& scene, WorldMap* map, const CommitMonitor& monitor);
 
 }  // namespace gradus

@@ -31,7 +31,7 @@ void object_info(const ShadeContext& c, Vec4* out) {
     for (int i = 0; i < 5; i++) out[i] = Vec4(0.0f);
     return;
   }
-  const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
+  const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   Placement room;
   out[0] = value(Vec3(placement_of(c, &room).to_world[3]) + origin);
   out[1] = Vec4(Vec3(c.instance->color), 1.0f);

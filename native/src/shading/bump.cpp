@@ -14,11 +14,11 @@ constexpr float kSmallestStep = 2e-5f;
 
 float step_length(const ShadeContext& c, float filter_width) {
   const Vec3 p = glm::abs(c.position);
-  float distance = c.snapshot->radius;
-  if (c.snapshot->has_camera) {
-    const float* m = c.snapshot->camera.matrix;
+  float distance = c.scene->radius;
+  if (c.scene->has_camera) {
+    const float* m = c.scene->camera.matrix;
     distance = glm::distance(c.position, Vec3(m[12], m[13], m[14]));
-    if (c.snapshot->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC) distance = c.snapshot->camera.window[1] - c.snapshot->camera.window[0];
+    if (c.scene->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC) distance = c.scene->camera.window[1] - c.scene->camera.window[0];
   }
   return std::max(std::max(distance * kPixelAngle * filter_width, kSmallestStep * max_component(p)), 1e-7f);
 }
@@ -30,7 +30,7 @@ Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const Shad
   const Vec3 own = safe_normalize(args.v(3));
   const Vec3 normal = own == Vec3(0.0f) ? c.normal : own;
   const float strength = std::max(args.f(0), 0.0f);
-  if (!c.instance || !c.snapshot || strength == 0.0f || block == 0) return normal;
+  if (!c.instance || !c.scene || strength == 0.0f || block == 0) return normal;
   const float step = step_length(c, std::clamp(args.f(4), 0.1f, 10.0f));
   const Vec3 ng = c.geometric_normal;
   const Vec3 helper = std::fabs(ng.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0);

@@ -7,11 +7,11 @@
 
 namespace gradus {
 
-ShadeContext surface_context(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+ShadeContext surface_context(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
   ShadeContext c;
-  c.snapshot = &snapshot;
-  c.images = snapshot.images.get();
-  c.instance = &snapshot.instances[point.hit.instance];
+  c.scene = &scene;
+  c.images = scene.images.get();
+  c.instance = &scene.instances[point.hit.instance];
   c.hit = point.hit;
   c.position = point.position;
   c.backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
@@ -22,10 +22,10 @@ ShadeContext surface_context(const Snapshot& snapshot, const SurfacePoint& point
   return c;
 }
 
-ShadeContext background_context(const Snapshot& snapshot, const Vec3& direction, const RayState& ray) {
+ShadeContext background_context(const ShadedScene& scene, const Vec3& direction, const RayState& ray) {
   ShadeContext c;
-  c.snapshot = &snapshot;
-  c.images = snapshot.images.get();
+  c.scene = &scene;
+  c.images = scene.images.get();
   c.position = direction;
   c.normal = c.geometric_normal = c.wo = -direction;
   c.ray = ray;
@@ -33,10 +33,10 @@ ShadeContext background_context(const Snapshot& snapshot, const Vec3& direction,
   return c;
 }
 
-ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, const RayState& ray) {
+ShadeContext lamp_context(const ShadedScene& scene, const LampPoint& point, const RayState& ray) {
   ShadeContext c;
-  c.snapshot = &snapshot;
-  c.images = snapshot.images.get();
+  c.scene = &scene;
+  c.images = scene.images.get();
   c.position = point.position;
   c.normal = c.geometric_normal = point.normal;
   c.wo = point.wo;
@@ -48,9 +48,9 @@ ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, cons
 
 const Placement& placement_of(const ShadeContext& c, Placement* room) { return c.instance->placement(c.hit.time, room); }
 
-Vec3 world_position(const ShadeContext& c) { return c.is_background || !c.snapshot ? c.position : c.position + c.snapshot->origin; }
+Vec3 world_position(const ShadeContext& c) { return c.is_background || !c.scene ? c.position : c.position + c.scene->origin; }
 
-std::array<Vec3, 3> world_corners(const ShadeContext& c) { return c.snapshot->corners(c.hit.instance, c.hit.triangle, c.hit.time); }
+std::array<Vec3, 3> world_corners(const ShadeContext& c) { return c.scene->corners(c.hit.instance, c.hit.triangle, c.hit.time); }
 
 ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& p, const Vec3& step) {
   ShadeContext c = context;

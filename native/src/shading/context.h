@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/types.h"
-#include "scene/snapshot.h"
+#include "shading/shaded_scene.h"
 #include "scene/surface.h"
 #include "shading/shade.h"
 
@@ -13,7 +13,7 @@ namespace gradus {
 class ImageStore;
 
 struct ShadeContext {
-  const Snapshot* snapshot = nullptr;  // nullptr: estimates without a scene
+  const ShadedScene* scene = nullptr;  // nullptr: estimates without a scene
   const ImageStore* images = nullptr;
   const InstanceData* instance = nullptr;  // nullptr: world and lamps
   Hit hit;
@@ -29,9 +29,9 @@ struct ShadeContext {
   bool mean_textures = false;  // estimates: images give their mean colour
 };
 
-ShadeContext surface_context(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
-ShadeContext background_context(const Snapshot& snapshot, const Vec3& direction, const RayState& ray);
-ShadeContext lamp_context(const Snapshot& snapshot, const LampPoint& point, const RayState& ray);
+ShadeContext surface_context(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+ShadeContext background_context(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
+ShadeContext lamp_context(const ShadedScene& scene, const LampPoint& point, const RayState& ray);
 
 // Of the instance at the time of the hit.
 const Placement& placement_of(const ShadeContext& context, Placement* room);

@@ -8,8 +8,8 @@
 namespace gradus {
 namespace {
 
-const MaterialData& material_of(const Snapshot& snapshot, uint32_t index) {
-  return *snapshot.materials[index < snapshot.materials.size() ? index : 0];
+const MaterialData& material_of(const ShadedScene& scene, uint32_t index) {
+  return *scene.materials[index < scene.materials.size() ? index : 0];
 }
 
 void clear(ShadeResult* result) {
@@ -55,70 +55,70 @@ Rgb emission_of(const MaterialData& material, const ShadeContext& context) {
 
 }  // namespace
 
-void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+void shade_surface(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                    ShadeResult* result) {
-  const MaterialData& material = material_of(snapshot, point.material);
+  const MaterialData& material = material_of(scene, point.material);
   clear(result);
   result->fallback = material.uses_fallback;
   // Nothing is recorded: from this side it looks the same from everywhere, and from the other it is worked out as quickly again.
   if (material.is_lambert) return shade_lambert(material, point, wo, roughness_threshold, result);
-  const ShadeContext context = surface_context(snapshot, point, wo, ray);
+  const ShadeContext context = surface_context(scene, point, wo, ray);
   run_program(material.surface, context, result);
   if (result->tape) result->tape->finish();
   complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
-void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
+void shade_again(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
                  const RayState& ray, float roughness_threshold, ShadeResult* result) {
-  const MaterialData& material = material_of(snapshot, point.material);
-  const ShadeContext context = surface_context(snapshot, point, wo, ray);
+  const MaterialData& material = material_of(scene, point.material);
+  const ShadeContext context = surface_context(scene, point, wo, ray);
   const bool same_side = context.backfacing == (glm::dot(point.geometric_normal, known_wo) < 0.0f);
   clear(result);
   if (material.values_look_at_ray || !same_side || !tape.replay(context, result)) {
-    shade_surface(snapshot, point, wo, ray, roughness_threshold, result);
+    shade_surface(scene, point, wo, ray, roughness_threshold, result);
     return;
   }
   result->fallback = material.uses_fallback;
   complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
-void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+void shade_seen(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                 ShadeResult* result) {
-  const MaterialData& material = material_of(snapshot, point.material);
+  const MaterialData& material = material_of(scene, point.material);
   if (material.may_be_transparent || material.has_holdout) {
-    shade_surface(snapshot, point, wo, ray, roughness_threshold, result);
+    shade_surface(scene, point, wo, ray, roughness_threshold, result);
     return;
   }
   clear(result);
   result->fallback = material.uses_fallback;
-  result->emission = shade_emission(snapshot, point, wo, ray);
+  result->emission = shade_emission(scene, point, wo, ray);
 }
 
-Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
-  const MaterialData& material = material_of(snapshot, point.material);
+Rgb shade_emission(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+  const MaterialData& material = material_of(scene, point.material);
   if (!material.emits) return Rgb(0.0f);
   if (material.emission_is_constant) return material.constant_emission;
-  return emission_of(material, surface_context(snapshot, point, wo, ray));
+  return emission_of(material, surface_context(scene, point, wo, ray));
 }
 
-Rgb shade_transparency(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
-  const MaterialData& material = material_of(snapshot, point.material);
+Rgb shade_transparency(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+  const MaterialData& material = material_of(scene, point.material);
   if (!material.may_be_transparent || ((ray.flags & kRayShadow) && !material.transparent_shadow)) return Rgb(0.0f);
   if (material.transparency_is_constant) return material.constant_transparency;
   ShadeResult* result = scratch();
-  run_program(material.transparency, surface_context(snapshot, point, wo, ray), result);
+  run_program(material.transparency, surface_context(scene, point, wo, ray), result);
   return result->transparency;
 }
 
-Rgb shade_world(const Snapshot& snapshot, const Vec3& direction, const RayState& ray) {
-  if (snapshot.world_material >= snapshot.materials.size()) return Rgb(0.0f);
-  const MaterialData& material = *snapshot.materials[snapshot.world_material];
-  return emission_of(material, background_context(snapshot, direction, ray));
+Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray) {
+  if (scene.world_material >= scene.materials.size()) return Rgb(0.0f);
+  const MaterialData& material = *scene.materials[scene.world_material];
+  return emission_of(material, background_context(scene, direction, ray));
 }
 
-Rgb shade_lamp(const Snapshot& snapshot, uint32_t material, const LampPoint& point, const RayState& ray) {
-  if (material >= snapshot.materials.size()) return Rgb(1.0f);
-  return emission_of(*snapshot.materials[material], lamp_context(snapshot, point, ray));
+Rgb shade_lamp(const ShadedScene& scene, uint32_t material, const LampPoint& point, const RayState& ray) {
+  if (material >= scene.materials.size()) return Rgb(1.0f);
+  return emission_of(*scene.materials[material], lamp_context(scene, point, ray));
 }
 
 }  // namespace gradus

@@ -7,7 +7,7 @@
 
 namespace gradus {
 
-class Snapshot;
+class ShadedScene;
 class ClosureTape;
 
 // Kind of ray that arrives: what the Light Path node sees.
@@ -43,23 +43,23 @@ struct ShadeResult {
 };
 
 // wo: towards the previous vertex. roughness_threshold: alpha that separates classes.
-void shade_surface(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+void shade_surface(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                    ShadeResult* result);
 // What a ray sees before anything is scattered, which a path that ends here needs alone: without closures where the surface is opaque.
 // shade_surface() adds them.
-void shade_seen(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+void shade_seen(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                 ShadeResult* result);
 // As shade_surface(), for a point that was shaded with a tape for `known_wo`.
-void shade_again(const Snapshot& snapshot, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
+void shade_again(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
                  const RayState& ray, float roughness_threshold, ShadeResult* result);
 // Emission alone, for emitter points that light sampling chose.
-Rgb shade_emission(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+Rgb shade_emission(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
 // Transparency alone, for shadow rays.
-Rgb shade_transparency(const Snapshot& snapshot, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+Rgb shade_transparency(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
 // Background radiance from a direction (pointing away from the scene).
-Rgb shade_world(const Snapshot& snapshot, const Vec3& direction, const RayState& ray);
+Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 
-// A point of a lamp: what the lamp's program multiplies its strength by. material: index in the snapshot. uv: on its surface.
+// A point of a lamp: what the lamp's program multiplies its strength by. material: index in the scene. uv: on its surface.
 struct LampPoint {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0, 0, 1);
@@ -67,6 +67,6 @@ struct LampPoint {
   Vec2 uv = Vec2(0.0f);
   Mat3 axes{1.0f};  // of the lamp, without scale
 };
-Rgb shade_lamp(const Snapshot& snapshot, uint32_t material, const LampPoint& point, const RayState& ray);
+Rgb shade_lamp(const ShadedScene& scene, uint32_t material, const LampPoint& point, const RayState& ray);
 
 }  // namespace gradus

@@ -31,8 +31,8 @@ Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
 
 // 0…1 over the picture.
 Vec3 window(const ShadeContext& c) {
-  if (!c.snapshot || !c.snapshot->has_camera) return Vec3(0.0f);
-  const GradusCamera& camera = c.snapshot->camera;
+  if (!c.scene || !c.scene->has_camera) return Vec3(0.0f);
+  const GradusCamera& camera = c.scene->camera;
   const Vec3 p = to_camera(c, c.position);
   Vec2 plane(p);
   if (camera.type == GRADUS_CAMERA_PERSPECTIVE) plane = p.z != 0.0f ? plane / p.z : Vec2(0.0f);
@@ -51,15 +51,15 @@ enum Space : uint32_t { kWorld = 0, kObject = 1, kCamera = 2 };
 
 Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
-  const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
+  const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
     Placement room;
     const Placement& placement = placement_of(c, &room);
     if (kind == GRADUS_TRANSFORM_NORMAL) return placement.normal_to_world * v;
     return Vec3(placement.to_world * Vec4(v, w)) + origin * w;
   }
-  if (space == kCamera && c.snapshot && c.snapshot->has_camera) {
-    const Mat4 camera = matrix(c.snapshot->camera.matrix);
+  if (space == kCamera && c.scene && c.scene->has_camera) {
+    const Mat4 camera = matrix(c.scene->camera.matrix);
     return direction_from_camera(camera, v) + (Vec3(camera[3]) + origin) * w;
   }
   return v;
@@ -67,15 +67,15 @@ Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& 
 
 Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
-  const Vec3 origin = c.snapshot ? c.snapshot->origin : Vec3(0.0f);
+  const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
     Placement room;
     const Placement& placement = placement_of(c, &room);
     if (kind == GRADUS_TRANSFORM_NORMAL) return glm::transpose(Mat3(placement.to_world)) * v;
     return Vec3(placement.to_local * Vec4(v - origin * w, w));
   }
-  if (space == kCamera && c.snapshot && c.snapshot->has_camera) {
-    const Mat4 camera = matrix(c.snapshot->camera.matrix);
+  if (space == kCamera && c.scene && c.scene->has_camera) {
+    const Mat4 camera = matrix(c.scene->camera.matrix);
     return direction_to_camera(camera, v - (Vec3(camera[3]) + origin) * w);
   }
   return v;
@@ -85,8 +85,8 @@ Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext
 
 // p: internal space; backgrounds: a direction.
 Vec3 to_camera(const ShadeContext& c, const Vec3& p) {
-  if (!c.snapshot || !c.snapshot->has_camera) return p;
-  const Mat4 camera = matrix(c.snapshot->camera.matrix);
+  if (!c.scene || !c.scene->has_camera) return p;
+  const Mat4 camera = matrix(c.scene->camera.matrix);
   return direction_to_camera(camera, c.is_background ? p : p - Vec3(camera[3]));
 }
 

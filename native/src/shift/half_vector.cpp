@@ -100,45 +100,11 @@ ShiftedDirection copy_half_vector(const HalfVectorFrame& base, const Vec3& wi, c
   return result;
 }
 
-namespace {
-
-bool is_dirac(const Lobe& lobe) {
-  return lobe.type == LobeType::DiracReflection || lobe.type == LobeType::DiracRefraction || lobe.type == LobeType::DiracGlass;
-}
-
-// Whether a lobe scatters within the class.
-bool belongs(const Lobe& lobe, ScatterClass c) {
-  const bool glass = lobe.type == LobeType::GgxGlass || lobe.type == LobeType::DiracGlass;
-  if (c == ScatterClass::Transmission && glass) {
-    return lobe.scatter_class != ScatterClass::Diffuse;
-  }
-  return lobe.scatter_class == c;
-}
-
-}  // namespace
-
-int dirac_rank(const Closures& closures, ScatterClass c, int lobe) {
-  int rank = 0;
-  for (int i = 0; i < lobe; ++i) {
-    rank += is_dirac(closures.lobe(i)) && belongs(closures.lobe(i), c) ? 1 : 0;
-  }
-  return rank;
-}
-
-int dirac_lobe(const Closures& closures, ScatterClass c, int rank) {
-  for (int i = 0; i < closures.count(); ++i) {
-    if (is_dirac(closures.lobe(i)) && belongs(closures.lobe(i), c) && rank-- == 0) {
-      return i;
-    }
-  }
-  return -1;
-}
-
 float class_width(const Closures& closures, ScatterClass c) {
   float width = kInfinity;
   for (int i = 0; i < closures.count(); ++i) {
     const Lobe& lobe = closures.lobe(i);
-    if (!is_dirac(lobe) && belongs(lobe, c)) {
+    if (!is_dirac(lobe.type) && scatters_within(lobe, c)) {
       width = std::min({width, lobe.alpha_x, lobe.alpha_y});
     }
   }
@@ -148,7 +114,7 @@ float class_width(const Closures& closures, ScatterClass c) {
 HalfVectorFrame class_frame(const Closures& closures, ScatterClass c, const Vec3& wo) {
   for (int i = 0; i < closures.count(); ++i) {
     const Lobe& lobe = closures.lobe(i);
-    if (!is_dirac(lobe) && belongs(lobe, c)) {
+    if (!is_dirac(lobe.type) && scatters_within(lobe, c)) {
       return {wo, lobe.normal, lobe.ior};
     }
   }

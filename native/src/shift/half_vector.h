@@ -33,11 +33,6 @@ ShiftedDirection copy_half_vector(const HalfVectorFrame& base, const Vec3& wi, c
 // Smallest rotation that takes unit vector `from` to `to`, applied to v. Its inverse exchanges from and to.
 Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& v);
 
-// Number of a Dirac lobe among those of its class, and the lobe with that number (-1: there is none): a Dirac event is replayed by the
-// lobe of equal rank, which is a one-to-one relation between two vertices.
-int dirac_rank(const Closures& closures, ScatterClass c, int lobe);
-int dirac_lobe(const Closures& closures, ScatterClass c, int rank);
-
 // Roughness (alpha) of the class's sharpest lobe that is not Dirac; infinite where it has none.
 float class_width(const Closures& closures, ScatterClass c);
 // The frame of a class's half-vectors at a vertex: that of its first lobe that is not Dirac.

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "denoise/oidn_library.h"
 #include "frame/features.h"
 #include "reconstruct/feature_filter.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "base/error.h"
 #include "render/scene_render.h"
 #include "settings/pass_table.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "plan/plan.h"
 #include "render/enlarge.h"
 #include "render/fake_integrator.h"

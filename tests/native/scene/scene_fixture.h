@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/device.h"
+#include "scene/device.h"
 #include "gradus/gradus_nodes.h"
 #include "scene/scene.h"
 #include "scene/snapshot.h"

@@ -1,6 +1,7 @@
 // Light samples of the base, for its offsets. The weights are explained in offset_emission.cpp.
 #include "integrator/gradient/offset_paths.h"
 #include "scene/shadow_terminator.h"
+#include "scene/emitter_rays4.h"
 
 namespace gradus {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "reconstruct/field.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 #include "reconstruct/space_time/links.h"
 #include "reconstruct/space_time/screened_laplacian.h"
 

@@ -8,7 +8,7 @@
 #include "base/cubic_weights.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

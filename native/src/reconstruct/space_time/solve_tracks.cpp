@@ -1,6 +1,6 @@
 #include "reconstruct/space_time/solve_tracks.h"
 
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "reconstruct/field.h"
-#include "reconstruct/rows.h"
+#include "base/rows.h"
 
 namespace gradus {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/threads.h"
 #include "base/bill.h"
 #include "base/error.h"
 #include "render/component_read.h"

@@ -2,6 +2,7 @@
 
 #include <iterator>
 
+#include "base/threads.h"
 #include "base/bill.h"
 #include "base/error.h"
 #include "frame/features.h"

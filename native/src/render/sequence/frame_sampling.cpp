@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/threads.h"
 #include "base/bill.h"
 #include "base/error.h"
 #include "render/sequence/halves.h"

@@ -9,15 +9,11 @@
 #include "base/claims.h"
 #include "base/warnings.h"
 #include "gradus/gradus.h"
-
-struct RTCDeviceTy;
+#include "scene/embree_device.h"
 
 namespace gradus {
 
 class ColorManager;  // color/color.h
-
-// Concurrency of an arena for so many threads: no more than TBB has, which would print a warning.
-int arena_size(uint32_t threads);
 
 class Device {
  public:
@@ -27,7 +23,7 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  RTCDeviceTy* embree() const { return embree_; }
+  const EmbreeDevice& embree() const { return embree_; }
   // Tasks that run in it flush denormals; threads of our own that compute outside of it take FlushDenormals (base/fpu.h).
   tbb::task_arena& arena() { return arena_; }
   uint32_t threads() const { return threads_; }
@@ -40,7 +36,7 @@ class Device {
  private:
   Warnings warnings_;
   Claims claims_;
-  RTCDeviceTy* embree_ = nullptr;
+  EmbreeDevice embree_;
   uint32_t threads_ = 0;
   tbb::task_arena arena_;
   std::unique_ptr<ColorManager> color_;

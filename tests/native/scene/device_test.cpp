@@ -1,4 +1,4 @@
-#include "base/device.h"
+#include "scene/device.h"
 
 #include <atomic>
 

@@ -1,25 +1,16 @@
-#include "base/device.h"
+#include "scene/embree_device.h"
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include <embree3/rtcore.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/version.h>
 
 #include "base/error.h"
-#include "base/fpu.h"
-#include "color/color.h"
 
 namespace gradus {
 
 namespace {
-
-void check_tbb() {
-  if (TBB_runtime_interface_version() < TBB_INTERFACE_VERSION)
-    throw unsupported("the TBB in this process is older than the one that Gradus was built with");
-}
 
 // A foreign Embree that took over our symbols answers with another version, or its rays miss: Blender has one, too.
 void check_embree(RTCDevice device) {
@@ -72,38 +63,18 @@ bool trace_test_ray(RTCDevice device) {
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID && query.ray.tfar > 1.99f && query.ray.tfar < 2.01f;
 }
 
-uint32_t thread_count(uint32_t wanted) {
-  constexpr uint32_t kMaxThreads = 1024;
-  const auto all = uint32_t(std::max(1, tbb::info::default_concurrency()));
-  return std::min(wanted == 0 ? all : wanted, kMaxThreads);
-}
-
 }  // namespace
 
-int arena_size(uint32_t threads) {
-  const size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return int(std::clamp<size_t>(threads, 1, std::max<size_t>(most, 1)));
+EmbreeDevice make_embree_device(uint32_t threads) {
+  const std::string config = "threads=" + std::to_string(threads) + ",set_affinity=0,start_threads=0";
+  EmbreeDevice device(rtcNewDevice(config.c_str()), [](RTCDevice d) {
+    if (d) rtcReleaseDevice(d);
+  });
+  if (!device) throw failure_of(nullptr, "Embree cannot start on this processor (AVX2 is needed)");
+  check_embree(device.get());
+  if (!trace_test_ray(device.get()))
+    throw failure_of(device.get(), "Embree's test ray missed: another Embree in this process has taken its place");
+  return device;
 }
-
-Device::Device(const GradusDeviceSettings& settings)
-    : threads_(thread_count(settings.threads)), denoiser_path_(settings.denoiser_path ? settings.denoiser_path : "") {
-  check_tbb();
-  color_ = std::make_unique<ColorManager>(settings.color_config ? settings.color_config : "",
-                                          [this](const std::string& text) { warnings_.add(text); });
-  embree_ = rtcNewDevice(("threads=" + std::to_string(threads_) + ",set_affinity=0,start_threads=0").c_str());
-  if (!embree_) throw failure_of(nullptr, "Embree cannot start on this processor (AVX2 is needed)");
-  try {
-    check_embree(embree_);
-    if (!trace_test_ray(embree_)) throw failure_of(embree_, "Embree's test ray missed: another Embree in this process has taken its place");
-    // TBB gives all tasks of an arena the floating-point state of the thread that initialised it.
-    const FlushDenormals flush;
-    arena_.initialize(int(threads_), 1);
-  } catch (...) {
-    rtcReleaseDevice(embree_);
-    throw;
-  }
-}
-
-Device::~Device() { rtcReleaseDevice(embree_); }
 
 }  // namespace gradus

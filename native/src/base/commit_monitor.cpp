@@ -1,0 +1,29 @@
+#include "base/commit_monitor.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/error.h"
+
+namespace gradus {
+
+void CommitMonitor::check() const {
+  if (!go_on()) throw cancelled();
+}
+
+void CommitMonitor::report(float fraction) const {
+  if (!progress_) return;
+  std::atomic_ref<float> shared(*progress_);
+  // Embree reports from several threads: never let it fall.
+  float before = shared.load();
+  while (before < fraction && !shared.compare_exchange_weak(before, fraction)) continue;
+}
+
+BuildProgress CommitMonitor::step(float first, float last) const {
+  return [this, first, last](float fraction) {
+    report(first + (last - first) * std::clamp(fraction, 0.0f, 1.0f));
+    return go_on();
+  };
+}
+
+}  // namespace gradus

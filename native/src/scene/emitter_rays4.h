@@ -1,0 +1,12 @@
+// Four shadow rays towards one emitter point.
+#pragma once
+
+#include "scene/emitters.h"
+#include "scene/rays4.h"
+
+namespace gradus {
+
+// ray_to_emitter() from each of four points. direction and distance: of the emitter point, as seen from each.
+Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to);
+
+}  // namespace gradus

@@ -1,0 +1,25 @@
+// What shading needs of a scene: its geometry, the materials on it, images, camera and world.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scene/geometry.h"
+
+namespace gradus {
+
+struct MaterialData;  // shading/material.h: compiled node program and flags
+class ImageStore;     // scene/image_store.h
+
+// Geometry with materials and images. Functions that run node programs take this part of a snapshot.
+class ShadedScene : public Geometry {
+ public:
+  std::vector<std::shared_ptr<const MaterialData>> materials;  // 0: the default grey
+  std::shared_ptr<const ImageStore> images;
+  GradusCamera camera{};  // in internal space; its arrays are those of Snapshot::camera_keys
+  bool has_camera = false;
+  GradusWorld world{};
+  uint32_t world_material = UINT32_MAX;
+};
+
+}  // namespace gradus
