@@ -50,9 +50,9 @@ def test_anchors_are_those_of_the_headings() -> None:
 
 
 def test_a_link_that_leads_nowhere_is_found(tmp_path: Path) -> None:
-    page = tmp_path / "page.md"
-    page.write_text("# Title\n[a](#title) [b](#other) [c](page.md#title) [d](missing.md) [e](https://example.org) ![f](missing.png)\n")
-    assert broken_links(page) == ["#other", "missing.md", "missing.png"]
+    page = tmp_path / "README.md"
+    page.write_text("# Title\n[a](#title) [b](#other) [c](README.md#title) [d](method.md) [e](https://a.org) ![f](missing.png)\n")
+    assert broken_links(page) == ["#other", "method.md", "missing.png"]
 
 
 def test_links_of_all_documents_lead_somewhere() -> None:
