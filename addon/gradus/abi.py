@@ -46,7 +46,6 @@ class Visibility(IntFlag):
     VISIBLE_SHADOW = 32
     VISIBLE_ALL = 63
     HOLDOUT = 64
-    SHADOW_CATCHER = 128
     MAY_MOVE = 256
 
 
@@ -129,8 +128,6 @@ class Integrator(IntEnum):
     AUTO = 0
     PATH = 1
     GRADIENT = 2
-    BIDIRECTIONAL = 3
-    METROPOLIS = 4
 
 
 class Reconstruction(IntEnum):
@@ -519,7 +516,6 @@ class Settings(Struct):
         ("noise_threshold", c_float),
         ("time_limit", c_float),
         ("seed", c_uint32),
-        ("use_animated_seed", c_uint32),
         ("frame", c_int32),
         ("integrator", c_uint32),
         ("reconstruction", c_uint32),
@@ -528,7 +524,6 @@ class Settings(Struct):
         ("diffuse_bounces", c_uint32),
         ("glossy_bounces", c_uint32),
         ("transmission_bounces", c_uint32),
-        ("volume_bounces", c_uint32),
         ("transparent_max_bounces", c_uint32),
         ("clamp_direct", c_float),
         ("clamp_indirect", c_float),

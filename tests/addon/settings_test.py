@@ -1,81 +1,14 @@
-"""One table of settings: Blender's properties, the library's options and the documentation agree (contract 5)."""
+"""Settings: Blender's properties have the limits of the table, and their values reach the library."""
 
 from __future__ import annotations
 
 import ctypes
 from ctypes import byref
-from pathlib import Path
 
 import bpy
 import pytest
 from gradus import native, options, passes, renderer, settings
 from gradus.failure import Failure
-
-DOCUMENTED = {
-    "samples": 64,
-    "noise_threshold": 0.01,
-    "time_limit": 0.0,
-    "seed": 0,
-    "use_animated_seed": True,
-    "integrator": "AUTO",
-    "reconstruction": "AUTO",
-    "reconstruction_alpha": 0.0,
-    "denoiser": "NONE",
-    "max_bounces": 12,
-    "diffuse_bounces": 4,
-    "glossy_bounces": 4,
-    "transmission_bounces": 12,
-    "volume_bounces": 0,
-    "transparent_max_bounces": 8,
-    "clamp_direct": 0.0,
-    "clamp_indirect": 0.0,
-    "frame_store": "",
-    "pixel_filter": "BLACKMAN_HARRIS",
-    "filter_width": 1.5,
-    "film_exposure": 1.0,
-    "min_samples": 0,
-    "roughness_threshold": 0.1,
-    "strict": False,
-    "preview_samples": 32,
-    "vector_with_motion_blur": False,
-    "use_decomposition": False,
-    "components": "",
-    "component_replays": True,
-}
-"""Names that tests and users rely on, and their defaults."""
-
-
-def library_options() -> dict[str, native.OptionInfo]:
-    return {info.name.decode(): info for info in native.load().options()}
-
-
-def test_documented_defaults() -> None:
-    properties = bpy.context.scene.gradus
-    for name, default in DOCUMENTED.items():
-        value = getattr(properties, name)
-        assert value == (pytest.approx(default) if isinstance(default, float) else default), name
-
-
-def test_every_option_of_the_library_has_a_home() -> None:
-    known = {setting.name for setting in settings.native_settings()} | set(settings.FROM_BLENDER) | set(settings.TEST_SWITCHES)
-    assert set(library_options()) == known
-
-
-@pytest.mark.parametrize("setting", list(settings.native_settings()), ids=lambda setting: setting.name)
-def test_equals_the_library_s_table(setting: settings.Setting) -> None:
-    info = library_options()[setting.name]
-    kind = {settings.INT: 0, settings.FLOAT: 1, settings.BOOL: 2, settings.ENUM: 3, settings.TEXT: 4}[setting.kind]
-    assert info.type == kind
-    if setting.kind == settings.ENUM:
-        names = info.choices.decode().split()
-        assert [names[choice[3]].upper() for choice in setting.choices] == [choice[0] for choice in setting.choices]
-        assert setting.value_of(setting.default) == info.default_value
-    elif setting.kind == settings.TEXT:
-        assert (setting.default, setting.maximum) == ("", info.maximum)
-    else:
-        assert float(setting.default) == pytest.approx(info.default_value)
-        assert (setting.minimum, setting.maximum) == (pytest.approx(info.minimum), pytest.approx(info.maximum))
-
 
 def test_properties_have_the_limits_of_the_table() -> None:
     described = bpy.context.scene.gradus.bl_rna.properties
@@ -150,33 +83,3 @@ def test_region_rounds_as_blender_does() -> None:
 def test_groups_name_planes_of_the_table() -> None:
     planes = {info.plane for info in passes.TABLE}
     assert all(set(group) <= planes for group in passes.GROUPS.values())
-
-
-def test_the_manual_lists_every_pass_by_the_name_that_options_take() -> None:
-    """It had the names of the window only: `Gradient X`, and no way to guess `gradient_x`."""
-    manual = (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text()
-    kinds = ("diffuse", "glossy", "transmission")
-    for info in passes.TABLE:
-        first, _, rest = info.plane.name.lower().partition("_")
-        names = (f"`{first}_`", f"`{rest}`") if first in kinds else (f"`{info.plane.name.lower()}`",)
-        assert info.plane == passes.Pass.COMBINED or all(name in manual for name in names), info.plane
-
-
-def test_the_manual_lists_every_setting_with_its_default() -> None:
-    rows = {}
-    for line in (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text().splitlines():
-        cells = [cell.strip() for cell in line.split("|")]
-        if len(cells) > 3 and cells[1].startswith("`"):
-            rows |= dict(zip((name.strip("` ") for name in cells[1].split(",")), cells[2].split(","), strict=False))
-    words = {True: "on", False: "off", "": "empty"}
-    for setting in settings.SETTINGS:
-        assert setting.name in rows, setting.name
-        default = words[setting.default] if setting.kind in (settings.BOOL, settings.FOLDER, settings.TEXT) else f"{setting.default}"
-        manual = rows[setting.name].strip() or "0"
-        assert manual == default or float(manual) == float(setting.default), setting.name
-
-
-def test_the_manual_lists_every_pass_of_a_component() -> None:
-    manual = (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text()
-    for part in passes.PARTS:
-        assert f"| `Path NAME{part.suffix}` | `component_{part.plane.name.lower()}` |" in manual

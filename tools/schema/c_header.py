@@ -101,5 +101,6 @@ def functions() -> list[tuple[str, str, list[str]]]:
     text = re.sub(r"/\*.*?\*/", "", (FOLDER / "gradus.h.in").read_text(encoding="utf-8"), flags=re.S)
     result = []
     for kind, name, arguments in re.findall(r"GRADUS_API\s+([\w\s*]+?)\s*\b(gradus_\w+)\((.*?)\);", text, re.S):
-        result.append((kind, name, [] if arguments == "void" else [plain(argument) for argument in arguments.split(",")]))
+        items = [] if arguments == "void" else arguments.split(",")
+        result.append((kind, name, [plain(item) for item in items]))
     return result

@@ -13,6 +13,9 @@ FOLDER = ROOT / "schema"
 SCALARS = frozenset(("int32", "uint32", "uint64", "size", "float", "double", "bool", "text", "bytes"))
 """Types of fields besides enums and structs."""
 
+OPTION_TYPES = frozenset(("int", "float", "bool", "text", "folder", "plain"))
+"""Types of options besides enums."""
+
 MAX_INT = 2147483647
 MAX_FLOAT = 3.4e38
 
@@ -137,6 +140,30 @@ class Switch:
 
 
 @dataclass(frozen=True)
+class Op:
+    """An operation of the node program. `parameters`: what its mode, floats and resource are."""
+
+    name: str
+    number: int
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    doc: str
+    parameters: str
+
+    @property
+    def is_closure(self) -> bool:
+        return self.outputs == ("closure",)
+
+
+@dataclass(frozen=True)
+class Section:
+    """Operations that belong together."""
+
+    title: str
+    ops: tuple[Op, ...]
+
+
+@dataclass(frozen=True)
 class Schema:
     enums: tuple[Enum, ...]
     structs: tuple[Struct, ...]
@@ -144,6 +171,8 @@ class Schema:
     passes: tuple[Pass, ...]
     component_passes: tuple[Pass, ...]
     switches: tuple[Switch, ...]
+    sections: tuple[Section, ...]
+    node_enums: tuple[Enum, ...]
 
     def enum(self, name: str) -> Enum:
         return _find(self.enums, name, "enum")
@@ -156,6 +185,10 @@ class Schema:
 
     def has_struct(self, name: str) -> bool:
         return any(struct.name == name for struct in self.structs)
+
+    @property
+    def ops(self) -> tuple[Op, ...]:
+        return tuple(op for section in self.sections for op in section.ops)
 
     @property
     def native_options(self) -> tuple[Option, ...]:
@@ -201,6 +234,19 @@ def _pass_values(passes: tuple[Pass, ...], count: str) -> tuple[Value, ...]:
     return (*values, Value(count, len(ordered), "Number of passes."))
 
 
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(plain(name) for name in text.split(",") if name.strip())
+
+
+def _op(name: str, number: int, shape: str, doc: str, parameters: str = "") -> Op:
+    inputs, _, outputs = shape.partition("->")
+    return Op(name, number, _names(inputs), _names(outputs), plain(doc), plain(parameters))
+
+
+def _enum(row: dict[str, Any], values: tuple[Value, ...]) -> Enum:
+    return Enum(row["name"], row["prefix"], plain(row["doc"]), values, row.get("flags", False), row.get("python", ""))
+
+
 def _read(name: str) -> dict[str, Any]:
     with (FOLDER / name).open("rb") as file:
         return tomllib.load(file)
@@ -226,14 +272,18 @@ def load() -> Schema:
     enums = []
     for row in _read("enums.toml")["enum"]:
         values = made[row["name"]] if "from" in row else _values(row["values"])
-        enums.append(Enum(row["name"], row["prefix"], plain(row["doc"]), values, row.get("flags", False)))
+        enums.append(_enum(row, values))
     options = tuple(_make(Option, row, {"from": "source"}) for row in _read("options.toml")["option"])
     structs = []
     for row in _read("structs.toml")["struct"]:
         fields = settings_fields(options) if "from" in row else tuple(parse_field(*item) for item in row["fields"])
         flags = (row.get("sized", True), row.get("archive", False))
         structs.append(Struct(row["name"], plain(row["doc"]), fields, *flags))
-    schema = Schema(tuple(enums), tuple(structs), options, passes, component_passes, switches)
+    nodes = _read("nodes.toml")
+    sections = tuple(Section(plain(row["title"]), tuple(_op(*op) for op in row["ops"])) for row in nodes["section"])
+    node_enums = tuple(_enum(row, _values(row["values"])) for row in nodes["enum"])
+    pictures = (passes, component_passes, switches)
+    schema = Schema(tuple(enums), tuple(structs), options, *pictures, sections, node_enums)
     check(schema)
     return schema
 
@@ -256,7 +306,12 @@ def check(schema: Schema) -> None:
     for struct in schema.structs:
         for item in struct.fields:
             _check_type(schema, item)
-    tables = (schema.enums, schema.structs, schema.options, schema.passes, schema.component_passes, schema.switches)
+    for option in schema.options:
+        if option.type not in OPTION_TYPES:
+            schema.enum(option.type).number_of(option.default)
+    pictures = (schema.passes, schema.component_passes, schema.switches)
+    tables = (schema.enums, schema.structs, schema.options, *pictures, schema.ops, schema.node_enums)
+    tables += tuple(item.values for item in (*schema.enums, *schema.node_enums))
     for items in tables:
         names = [item.name for item in items]
         for name in names:

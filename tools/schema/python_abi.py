@@ -159,6 +159,7 @@ def module(schema: Schema, note: str, version: tuple[int, int, int]) -> str:
         lines += struct_class(schema, item)
     lines += ["", "", "STRUCTS: tuple[type[Struct], ...] = (", *(f"    {item.name}," for item in schema.structs)]
     lines += [")", "", "ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = ("]
-    lines += [*(f"    {item.name}," for item in schema.enums), ")", "", " = ".join(HANDLES) + " = c_uint64  # handles are values, never addresses", ""]
+    lines += [*(f"    {item.name}," for item in schema.enums), ")", ""]
+    lines += [" = ".join(HANDLES) + " = c_uint64  # handles are values, never addresses", ""]
     lines += ["FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {", *function_rows(schema), "}"]
     return "\n".join(lines) + TAIL

@@ -168,7 +168,6 @@ typedef enum GradusVisibility {
   GRADUS_VISIBLE_SHADOW = 32,      /* It casts shadows. */
   GRADUS_VISIBLE_ALL = 63,         /* All rays see it. */
   GRADUS_HOLDOUT = 64,             /* It cuts a transparent hole into the picture where the camera sees it. */
-  GRADUS_SHADOW_CATCHER = 128,     /* Unused. */
   GRADUS_MAY_MOVE = 256            /* A hint that other frames may show the object elsewhere or in another shape; an
                                       object without it is kept from frame to frame. */
 } GradusVisibility;
@@ -440,15 +439,12 @@ GRADUS_API GradusError gradus_scene_record(GradusScene scene, uint32_t enabled);
 
 /* How light paths are sampled. */
 typedef enum GradusIntegrator {
-  GRADUS_INTEGRATOR_AUTO = 0,          /* Traces plain paths. For the reconstructions L2 and L1 it also samples
-                                          differences between neighbouring pixels where a few test samples show that
-                                          they pay. */
-  GRADUS_INTEGRATOR_PATH = 1,          /* Traces plain paths. This is the reference that the other methods are
-                                          compared with. */
-  GRADUS_INTEGRATOR_GRADIENT = 2,      /* Traces four offset paths beside every path, which gives the differences
-                                          between neighbouring pixels. A sample takes 1.5 to 2 times as long. */
-  GRADUS_INTEGRATOR_BIDIRECTIONAL = 3, /* Unused. */
-  GRADUS_INTEGRATOR_METROPOLIS = 4     /* Unused. */
+  GRADUS_INTEGRATOR_AUTO = 0,    /* Traces plain paths. For the reconstructions L2 and L1 it also samples differences
+                                    between neighbouring pixels where a few test samples show that they pay. */
+  GRADUS_INTEGRATOR_PATH = 1,    /* Traces plain paths. This is the reference that the other methods are compared
+                                    with. */
+  GRADUS_INTEGRATOR_GRADIENT = 2 /* Traces four offset paths beside every path, which gives the differences between
+                                    neighbouring pixels. A sample takes 1.5 to 2 times as long. */
 } GradusIntegrator;
 
 /* How the picture is made from samples and gradients. */
@@ -457,7 +453,7 @@ typedef enum GradusReconstruction {
   GRADUS_RECONSTRUCTION_NONE = 1,       /* Delivers the sampled picture. */
   GRADUS_RECONSTRUCTION_L2 = 2,         /* Least squares of samples and gradients. It is unbiased; around very bright
                                            spots it can leave bright and dark halos. */
-  GRADUS_RECONSTRUCTION_WEIGHTED = 3,   /* Unused. */
+  GRADUS_RECONSTRUCTION_WEIGHTED = 3,   /* Least squares by the measured noise of every sample and difference. */
   GRADUS_RECONSTRUCTION_L1 = 4,         /* Least absolute deviations of samples and gradients. It has no halos, but
                                            can darken the picture. */
   GRADUS_RECONSTRUCTION_REGULARIZED = 5 /* Removes noise by the geometry, the samples and, where they were sampled,
@@ -500,7 +496,6 @@ typedef struct GradusSettings {
                                        taken so far are reconstructed and delivered. 0 = no limit. [s] */
   uint32_t seed;                    /* Seed of all random numbers. Another seed gives another noise pattern at the
                                        same cost. */
-  uint32_t use_animated_seed;       /* Unused. */
   int32_t frame;                    /* Number of the frame. Each frame has its own noise pattern. */
   uint32_t integrator;              /* GradusIntegrator: How light paths are sampled. */
   uint32_t reconstruction;          /* GradusReconstruction: How the picture is made from the samples and their
@@ -516,7 +511,6 @@ typedef struct GradusSettings {
                                        in mirrors turn dark. */
   uint32_t transmission_bounces;    /* Maximum transmission bounces of a path. Fewer render faster; glass behind
                                        glass turns dark. */
-  uint32_t volume_bounces;          /* Unused. */
   uint32_t transparent_max_bounces; /* Maximum transparent surfaces that a ray passes. Fewer render faster; layers of
                                        leaves or foliage cards turn dark. */
   float clamp_direct;               /* Maximum radiance that a sample adds by direct light. It removes fireflies and
