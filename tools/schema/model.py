@@ -309,6 +309,8 @@ def check(schema: Schema) -> None:
     for option in schema.options:
         if option.type not in OPTION_TYPES:
             schema.enum(option.type).number_of(option.default)
+        if not option.is_plain and option.moved in (None, option.default):
+            raise SchemaError(f"option {option.name} names no other value than its default in `moved`")
     pictures = (schema.passes, schema.component_passes, schema.switches)
     tables = (schema.enums, schema.structs, schema.options, *pictures, schema.ops, schema.node_enums)
     tables += tuple(item.values for item in (*schema.enums, *schema.node_enums))
