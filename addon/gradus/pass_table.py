@@ -86,102 +86,112 @@ SWITCHES: tuple[tuple[str, str, str, bool], ...] = (
         "use_pass_gradients",
         "Gradients",
         (
-            "Sampled differences to the pixels on the right and above: Gradient X, Gradient Y; in animations also "
-            "to the next frame: Gradient T, Gradient T Link. The integrator Automatic then samples gradients, which"
-            " takes 1.5 to 2 times as long"
+            "Adds the passes Gradient X and Gradient Y, the sampled differences to the right and upper neighbour. "
+            "In animations, adds Gradient T, the difference to the next frame, and Gradient T Link, the position of"
+            " the surface there. The integrator Automatic then samples gradients, which takes 1.5 to 2 times as "
+            "long"
         ),
         False,
     ),
     (
         "use_pass_variance",
         "Variance",
-        "Estimated variance of Noisy Image",
+        "Adds the estimated variance of Noisy Image",
         False,
     ),
     (
         "use_pass_error",
         "Error",
-        "Estimated squared error of Combined, mean over red, green and blue",
+        "Adds the estimated squared error of Combined, averaged over red, green and blue",
         False,
     ),
     (
         "use_pass_sample_count",
         "Sample Count",
-        "Samples of each pixel",
+        "Adds the number of samples of each pixel",
         False,
     ),
     (
         "use_pass_denoising",
         "Denoising Data",
-        "Denoising Normal, Albedo and Depth, which the compositor's Denoise node takes",
+        "Adds the passes Denoising Normal, Albedo and Depth, which the compositor's Denoise node uses",
         False,
     ),
     (
         "use_pass_components",
         "Color",
         (
-            "Each component of the picture, reconstructed by itself. They add up to Combined: Path Diffuse, Path "
-            "Reflection …"
+            "Adds one pass for each component: Path Diffuse, Path Reflection … Each is reconstructed separately, "
+            "and their sum is Combined"
         ),
         True,
     ),
     (
         "use_pass_component_reflectance",
         "Reflectance",
-        "Albedo of the first rough surface on the component's paths",
+        "Adds the albedo of the first non-specular surface on the paths of each component",
         False,
     ),
     (
         "use_pass_component_irradiance",
         "Irradiance",
-        "The component divided by its reflectance: light without texture",
+        "Adds each component divided by its reflectance: the light without textures",
         False,
     ),
     (
         "use_pass_component_normal",
         "Normal",
-        "Normal of the first rough surface on the component's paths",
+        "Adds the normal of the first non-specular surface on the paths of each component",
         False,
     ),
     (
         "use_pass_component_depth",
         "Depth",
-        "Length of the component's paths to their first rough surface; of a reflection, by way of the mirror",
+        (
+            "Adds the length of the paths of each component to their first non-specular surface. For reflections, "
+            "this includes the distance to the mirror"
+        ),
         False,
     ),
     (
         "use_pass_component_uv",
         "UV",
-        "Texture coordinates of the first rough surface on the component's paths",
+        "Adds the texture coordinates of the first non-specular surface on the paths of each component",
         False,
     ),
     (
         "use_pass_component_index",
         "Object and Face Index",
         (
-            "Pass index of the object, and number of the face, of the first rough surface on the component's paths:"
-            " masks of what a mirror shows"
+            "Adds the pass index of the object and the index of the face of the first non-specular surface on the "
+            "paths of each component"
         ),
         False,
     ),
     (
         "use_pass_component_emit",
         "Emit",
-        "Light that the first rough surface emits, before mirrors and glass colour it",
+        (
+            "Adds the emission of the first non-specular surface on the paths of each component, without the tint "
+            "of mirrors and glass"
+        ),
         False,
     ),
     (
         "use_pass_component_motion",
         "Motion",
-        "Motion of what the component shows, as pass Vector has that of surfaces, and Tracked: 1 where it is known",
+        (
+            "Adds the motion of each component to the previous and next frame, in the format of pass Vector, and "
+            "Tracked, which is 1 where the motion is known"
+        ),
         False,
     ),
     (
         "use_pass_component_irradiance_motion",
         "Irradiance Motion",
         (
-            "Motion of the light on the component's surfaces, such as of shadows. In animations, from the frames "
-            "before and after"
+            "Adds the motion of the light on the surfaces of each component, such as shadows. It is found by "
+            "optical flow, in animations only"
         ),
         False,
     ),

@@ -33,14 +33,16 @@ def text_lines(text: str, indent: str, start: str, end: str) -> list[str]:
     one = f"{indent}{start}{literal(text)}{end}"
     if len(one) <= 120:
         return [one]
-    parts = textwrap.wrap(text, 110 - len(indent), drop_whitespace=False, break_long_words=False, break_on_hyphens=False)
+    width = 110 - len(indent)
+    parts = textwrap.wrap(text, width, drop_whitespace=False, break_long_words=False, break_on_hyphens=False)
     return [f"{indent}{start}(", *(f"{indent}    {literal(part)}" for part in parts), f"{indent}){end}"]
 
 
 def _choices(item: Enum) -> list[str]:
     lines = [f"{INDENT}choices=("]
     for value in item.values:
-        lines += [f"{INDENT}    (", f"{INDENT}        {literal(value.name)},", f"{INDENT}        {literal(value.label)},"]
+        lines += [f"{INDENT}    (", f"{INDENT}        {literal(value.name)},"]
+        lines.append(f"{INDENT}        {literal(value.label)},")
         lines += text_lines(tooltip(value.doc), INDENT + "        ", "", ",")
         lines += [f"{INDENT}        {value.number},", f"{INDENT}    ),"]
     return [*lines, f"{INDENT}),"]
@@ -75,7 +77,8 @@ def _names(name: str, options: list[Option], doc: str) -> list[str]:
 def settings(schema: Schema, note: str) -> str:
     """The text of setting_table.py."""
     lines = ['"""The settings of the engine as rows of settings.Setting.', "", note, '"""', ""]
-    lines += ["from __future__ import annotations", "", "from typing import Any", "", "ROWS: tuple[dict[str, Any], ...] = ("]
+    lines += ["from __future__ import annotations", "", "from typing import Any", ""]
+    lines.append("ROWS: tuple[dict[str, Any], ...] = (")
     options = [option for option in schema.options if not option.is_plain]
     for option in options:
         if option.source == "scene":
