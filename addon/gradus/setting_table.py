@@ -217,8 +217,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=8,
         label="Transparent",
         doc=(
-            "Maximum transparent surfaces that a ray passes. Fewer render faster; layers of leaves or foliage cards"
-            " turn dark"
+            "Maximum transparent surfaces that a ray passes. Fewer render faster; layers of transparent leaves turn"
+            " dark"
         ),
         minimum=0,
         maximum=1024,
@@ -317,8 +317,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=False,
         label="Strict",
         doc=(
-            "A missing or broken image file ends the render with an error. Otherwise it is drawn in magenta, with a"
-            " warning"
+            "Ends the render with an error where Gradus would otherwise leave out or replace something and warn: "
+            "missing images, nodes and objects that it does not support"
         ),
     ),
     dict(
@@ -455,8 +455,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         label="Frame Store",
         doc=(
             "Folder that keeps the films of all frames: samples, gradients and half-buffers. An animation goes on "
-            "from there, and the command-line tool reconstructs from it. Empty: none is kept. A film takes up to "
-            "some 100 bytes per pixel"
+            "from there, and the command-line tool reconstructs from it. Empty: none is kept. Films take more space"
+            " than pictures"
         ),
         native=False,
     ),

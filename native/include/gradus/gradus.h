@@ -153,8 +153,7 @@ typedef struct GradusMesh {
   const char* name;                  /* Name that warnings use. */
   const float* shutter_positions;    /* 3 values a vertex, moment after moment, spaced evenly from the opening of the
                                         shutter to its closing. [m] */
-  uint32_t shutter_key_count;        /* Moments in shutter_positions, at least 2; 0 = static while the shutter is
-                                        open. */
+  uint32_t shutter_key_count;        /* Moments in shutter_positions, 2 to 129; 0 = static while the shutter is open. */
   uint32_t reserved;                 /* 0. */
 } GradusMesh;
 
@@ -200,7 +199,7 @@ typedef struct GradusInstances {
   size_t name_count;                      /* Number of names. */
   const char* const* names;               /* Names that warnings use. */
   const uint32_t* shutter_first;          /* First matrix of the instance in shutter_matrices; NULL = all are static. */
-  const uint32_t* shutter_count;          /* Matrices of the instance, at least 2, spaced evenly from the opening of
+  const uint32_t* shutter_count;          /* Matrices of the instance, 2 to 129, spaced evenly from the opening of
                                              the shutter to its closing; 0 = static. */
   size_t shutter_size;                    /* Number of matrices in shutter_matrices. */
   const float* shutter_matrices;          /* 16 values a matrix. */
@@ -297,7 +296,7 @@ typedef struct GradusCamera {
   float convergence_distance;    /* Distance at which the rays of both eyes meet; 0 = parallel. [m] */
   float pole_merge_from;         /* Altitude from which the eye offset fades out towards the pole. [rad] */
   float pole_merge_to;           /* Altitude at which the eye offset is 0; 0 = it does not fade out. [rad] */
-  uint32_t shutter_key_count;    /* Moments in shutter_matrices, at least 2, spaced evenly from the opening of the
+  uint32_t shutter_key_count;    /* Moments in shutter_matrices, 2 to 129, spaced evenly from the opening of the
                                     shutter to its closing; 0 = static. */
   float shutter_open;            /* Opening of the shutter relative to the frame. [frames] */
   float shutter_close;           /* Closing of the shutter; the frame is a moment if it is not after the opening.
@@ -512,7 +511,7 @@ typedef struct GradusSettings {
   uint32_t transmission_bounces;    /* Maximum transmission bounces of a path. Fewer render faster; glass behind
                                        glass turns dark. */
   uint32_t transparent_max_bounces; /* Maximum transparent surfaces that a ray passes. Fewer render faster; layers of
-                                       leaves or foliage cards turn dark. */
+                                       transparent leaves turn dark. */
   float clamp_direct;               /* Maximum radiance that a sample adds by direct light. It removes fireflies and
                                        darkens the picture, since clamping is biased. 0 = off. */
   float clamp_indirect;             /* Maximum radiance that a sample adds by indirect light. It removes fireflies
@@ -526,8 +525,9 @@ typedef struct GradusSettings {
   float roughness_threshold;        /* Surfaces whose roughness squared is below this count as mirrors and clear
                                        glass: the passes of surfaces look through them, and light path expressions
                                        see R or T. 0.1 is a roughness of 0.316. */
-  uint32_t strict;                  /* A missing or broken image file ends the render with an error. Otherwise it is
-                                       drawn in magenta, with a warning. */
+  uint32_t strict;                  /* Ends the render with an error where Gradus would otherwise leave out or
+                                       replace something and warn: missing images, nodes and objects that it does not
+                                       support. */
   uint32_t threads;                 /* Threads that render. 0 = those of the device. The picture does not depend on
                                        it. */
   float alpha_threshold;            /* Data passes ignore surfaces with less alpha and show what is behind them. */

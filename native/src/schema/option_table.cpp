@@ -85,8 +85,8 @@ constexpr Option kOptions[] = {
     OPTION(transmission_bounces, GRADUS_OPTION_INT, 12, 0, 1024, {}, true,
            "Maximum transmission bounces of a path. Fewer render faster; glass behind glass turns dark."),
     OPTION(transparent_max_bounces, GRADUS_OPTION_INT, 8, 0, 1024, {}, true,
-           "Maximum transparent surfaces that a ray passes. Fewer render faster; layers of leaves or foliage cards "
-           "turn dark."),
+           "Maximum transparent surfaces that a ray passes. Fewer render faster; layers of transparent leaves turn "
+           "dark."),
     OPTION(clamp_direct, GRADUS_OPTION_FLOAT, 0, 0, 3.4e+38, {}, true,
            "Maximum radiance that a sample adds by direct light. It removes fireflies and darkens the picture, since "
            "clamping is biased. 0 = off."),
@@ -107,8 +107,8 @@ constexpr Option kOptions[] = {
            "Surfaces whose roughness squared is below this count as mirrors and clear glass: the passes of surfaces "
            "look through them, and light path expressions see R or T. 0.1 is a roughness of 0.316."),
     OPTION(strict, GRADUS_OPTION_BOOL, 0, 0, 1, {}, false,
-           "A missing or broken image file ends the render with an error. Otherwise it is drawn in magenta, with a "
-           "warning."),
+           "Ends the render with an error where Gradus would otherwise leave out or replace something and warn: "
+           "missing images, nodes and objects that it does not support."),
     OPTION(threads, GRADUS_OPTION_INT, 0, 0, 1024, {}, false,
            "Threads that render. 0 = those of the device. The picture does not depend on it."),
     OPTION(alpha_threshold, GRADUS_OPTION_FLOAT, 0.5, 0, 1, {}, true,
