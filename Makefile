@@ -7,7 +7,7 @@ COMPONENTS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build render render-animation test test-full test-native test-addon stress faults compilers package format lint clean
+.PHONY: help build render render-animation test test-full test-native test-addon stress faults compilers package schema format lint clean
 .PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-motion bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture picture-components
 
 help:           ## this list
@@ -99,6 +99,9 @@ picture-components: ## docs/images/components.webp, a frame taken apart, of the 
 
 package:        ## dist/gradus-<version>.zip, for Blender 3.4 to 5.0
 	@tools/build.sh package
+
+schema:         ## what schema/*.toml determine: headers, tables of the library and of the add-on, tables of the user guide
+	@/usr/bin/python3 tools/schema/generate.py
 
 format:         ## clang-format and ruff format
 	@tools/lint.sh format

@@ -1,5 +1,5 @@
-"""THE table of passes: Blender's names, channels and switches, and the native plane. Registration, the settings mask and the upload
-are all made from list_passes(). No Blender here."""
+"""The passes: Blender's names, channels and switches, and the native plane. Registration, the settings mask and the upload are
+all made from list_passes(). The rows are generated: pass_table.py. This module does not use Blender."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from . import pass_table
 from .abi import ComponentPass, Pass
 
 LONG_NAMES_SINCE = (5, 0, 0)
@@ -56,45 +57,7 @@ def _same(plane: Pass | Part, name: str, ids: str, kind: str, switch: str) -> Pa
     return PassInfo(plane, name, name, ids, kind, switch)
 
 
-def _light(plane: Pass, name: str, long_name: str, switch: str) -> PassInfo:
-    return PassInfo(plane, name, long_name, "RGB", "COLOR", switch)
-
-
-TABLE: tuple[PassInfo, ...] = (
-    _same(Pass.COMBINED, "Combined", "RGBA", "COLOR", ""),
-    _same(Pass.NOISY_IMAGE, "Noisy Image", "RGBA", "COLOR", "reconstructed"),
-    _same(Pass.DEPTH, "Depth", "Z", "VALUE", "use_pass_z"),
-    _same(Pass.MIST, "Mist", "Z", "VALUE", "use_pass_mist"),
-    _same(Pass.POSITION, "Position", "XYZ", "VECTOR", "use_pass_position"),
-    _same(Pass.NORMAL, "Normal", "XYZ", "VECTOR", "use_pass_normal"),
-    _same(Pass.VECTOR, "Vector", "XYZW", "VECTOR", "use_pass_vector"),
-    _same(Pass.UV, "UV", "UVA", "VECTOR", "use_pass_uv"),
-    PassInfo(Pass.OBJECT_INDEX, "IndexOB", "Object Index", "X", "VALUE", "use_pass_object_index"),
-    PassInfo(Pass.MATERIAL_INDEX, "IndexMA", "Material Index", "X", "VALUE", "use_pass_material_index"),
-    _light(Pass.DIFFUSE_DIRECT, "DiffDir", "Diffuse Direct", "use_pass_diffuse_direct"),
-    _light(Pass.DIFFUSE_INDIRECT, "DiffInd", "Diffuse Indirect", "use_pass_diffuse_indirect"),
-    _light(Pass.DIFFUSE_COLOR, "DiffCol", "Diffuse Color", "use_pass_diffuse_color"),
-    _light(Pass.GLOSSY_DIRECT, "GlossDir", "Glossy Direct", "use_pass_glossy_direct"),
-    _light(Pass.GLOSSY_INDIRECT, "GlossInd", "Glossy Indirect", "use_pass_glossy_indirect"),
-    _light(Pass.GLOSSY_COLOR, "GlossCol", "Glossy Color", "use_pass_glossy_color"),
-    _light(Pass.TRANSMISSION_DIRECT, "TransDir", "Transmission Direct", "use_pass_transmission_direct"),
-    _light(Pass.TRANSMISSION_INDIRECT, "TransInd", "Transmission Indirect", "use_pass_transmission_indirect"),
-    _light(Pass.TRANSMISSION_COLOR, "TransCol", "Transmission Color", "use_pass_transmission_color"),
-    _light(Pass.EMISSION, "Emit", "Emission", "use_pass_emit"),
-    _light(Pass.ENVIRONMENT, "Env", "Environment", "use_pass_environment"),
-    _light(Pass.AMBIENT_OCCLUSION, "AO", "Ambient Occlusion", "use_pass_ambient_occlusion"),
-    _same(Pass.DENOISING_NORMAL, "Denoising Normal", "XYZ", "VECTOR", "gradus.use_pass_denoising"),
-    _same(Pass.DENOISING_ALBEDO, "Denoising Albedo", "RGB", "COLOR", "gradus.use_pass_denoising"),
-    _same(Pass.DENOISING_DEPTH, "Denoising Depth", "Z", "VALUE", "gradus.use_pass_denoising"),
-    _same(Pass.SAMPLE_COUNT, "Debug Sample Count", "X", "VALUE", "gradus.use_pass_sample_count"),
-    _same(Pass.GRADIENT_X, "Gradient X", "RGB", "COLOR", "gradus.use_pass_gradients"),
-    _same(Pass.GRADIENT_Y, "Gradient Y", "RGB", "COLOR", "gradus.use_pass_gradients"),
-    _same(Pass.GRADIENT_T, "Gradient T", "RGB", "COLOR", "gradus.use_pass_gradients"),
-    _same(Pass.GRADIENT_T_LINK, "Gradient T Link", "XYZ", "VECTOR", "gradus.use_pass_gradients"),
-    _same(Pass.VARIANCE, "Variance", "RGB", "COLOR", "gradus.use_pass_variance"),
-    _same(Pass.ERROR, "Error", "X", "VALUE", "gradus.use_pass_error"),
-    _same(Pass.FALLBACK, "Fallback", "X", "VALUE", "option"),
-)
+TABLE = tuple(PassInfo(*row) for row in pass_table.PASSES)
 
 
 @dataclass(frozen=True)
@@ -111,28 +74,10 @@ class PartInfo:
         return _same(Part(component, self.plane), f"Path {component}{self.suffix}", self.ids, self.kind, self.switch)
 
 
-PARTS: tuple[PartInfo, ...] = (
-    PartInfo(ComponentPass.COLOR, "", "RGB", "COLOR", "gradus.use_pass_components"),
-    PartInfo(ComponentPass.REFLECTANCE, " Reflectance", "RGB", "COLOR", "gradus.use_pass_component_reflectance"),
-    PartInfo(ComponentPass.IRRADIANCE, " Irradiance", "RGB", "COLOR", "gradus.use_pass_component_irradiance"),
-    PartInfo(ComponentPass.NORMAL, " Normal", "XYZ", "VECTOR", "gradus.use_pass_component_normal"),
-    PartInfo(ComponentPass.MOTION, " Motion", "XYZW", "VECTOR", "gradus.use_pass_component_motion"),
-    PartInfo(ComponentPass.TRACKED, " Tracked", "X", "VALUE", "gradus.use_pass_component_motion"),
-    PartInfo(ComponentPass.IRRADIANCE_MOTION, " Irradiance Motion", "XYZW", "VECTOR", "gradus.use_pass_component_irradiance_motion"),
-    PartInfo(ComponentPass.IRRADIANCE_TRACKED, " Irradiance Tracked", "X", "VALUE", "gradus.use_pass_component_irradiance_motion"),
-    PartInfo(ComponentPass.DEPTH, " Depth", "X", "VALUE", "gradus.use_pass_component_depth"),
-    PartInfo(ComponentPass.UV, " UV", "UVA", "VECTOR", "gradus.use_pass_component_uv"),
-    PartInfo(ComponentPass.OBJECT_INDEX, " Object Index", "X", "VALUE", "gradus.use_pass_component_index"),
-    PartInfo(ComponentPass.FACE_INDEX, " Face Index", "X", "VALUE", "gradus.use_pass_component_index"),
-    PartInfo(ComponentPass.EMIT, " Emit", "RGB", "COLOR", "gradus.use_pass_component_emit"),
-)
+PARTS = tuple(PartInfo(*row) for row in pass_table.COMPONENT_PASSES)
 """Passes of a component: Path NAME, Path NAME Reflectance … (contract 6.6)."""
 
-GROUPS: dict[str, tuple[Pass, ...]] = {
-    "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y, Pass.GRADIENT_T, Pass.GRADIENT_T_LINK),
-    "DENOISING": (Pass.DENOISING_NORMAL, Pass.DENOISING_ALBEDO, Pass.DENOISING_DEPTH),
-    "ALL": tuple(info.plane for info in TABLE),
-}
+GROUPS = {**pass_table.GROUPS, "ALL": tuple(info.plane for info in TABLE)}
 """Names that `--gradus-passes` takes besides those of single planes."""
 
 

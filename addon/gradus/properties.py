@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from . import native, settings
+from . import native, pass_table, settings
 from .settings import Setting
 
 CHANGE_PASSES = frozenset(("integrator", "reconstruction", "denoiser", "use_decomposition", "components"))
@@ -46,43 +46,14 @@ class GradusSceneSettings(bpy.types.PropertyGroup):
     __annotations__ = {setting.name: _property(setting) for setting in settings.SETTINGS}  # noqa: RUF012
 
 
-def _switch(name: str, description: str, default: bool = False) -> Any:
-    return BoolProperty(name=name, description=description, default=default, update=_show_passes)
+def _switch(label: str, description: str, default: bool) -> Any:
+    return BoolProperty(name=label, description=description, default=default, update=_show_passes)
 
 
 class GradusViewLayerSettings(bpy.types.PropertyGroup):
     """Passes of the engine that Blender has no switch for."""
 
-    use_pass_gradients: _switch(
-        "Gradients",
-        "Sampled differences to the right and the upper neighbour: Gradient X, Gradient Y; in animations to the next frame, "
-        "Gradient T, and where the surface is there: Gradient T Link",
-    )
-    use_pass_variance: _switch("Variance", "Estimated variance of the mean of Noisy Image")
-    use_pass_error: _switch("Error", "Estimated squared error of Combined, mean over red, green and blue")
-    use_pass_sample_count: _switch("Sample Count", "Samples that each pixel took")
-    use_pass_denoising: _switch("Denoising Data", "Denoising Normal, Albedo and Depth, as the compositor's Denoise node takes them")
-    use_pass_components: _switch(
-        "Color", "Each component of the picture, reconstructed by itself; they add up to Combined: Path Diffuse, Path Reflection …", True
-    )
-    use_pass_component_reflectance: _switch("Reflectance", "Albedo of the first rough surface on the component's paths")
-    use_pass_component_irradiance: _switch("Irradiance", "The component divided by its reflectance: light without texture")
-    use_pass_component_normal: _switch("Normal", "Normal of the first rough surface on the component's paths")
-    use_pass_component_depth: _switch(
-        "Depth", "Length of the component's paths to their first rough surface: of a reflection by way of the mirror"
-    )
-    use_pass_component_uv: _switch("UV", "Texture coordinates of that surface, as pass UV has them of what the camera sees")
-    use_pass_component_index: _switch(
-        "Object and Face Index", "Pass index of that surface's object, and the number of its face in the mesh: of what a mirror shows"
-    )
-    use_pass_component_emit: _switch("Emit", "Light that this surface sends out itself, before any mirror or glass has coloured it")
-    use_pass_component_motion: _switch(
-        "Motion", "Where the component comes from and goes to, as pass Vector tells it of surfaces, and Tracked: 1 where that is known"
-    )
-    use_pass_component_irradiance_motion: _switch(
-        "Irradiance Motion",
-        "Where the light on the component's surfaces comes from and goes to: its shadows. In animations, from the frames before and after",
-    )
+    __annotations__ = {name: _switch(*row) for name, *row in pass_table.SWITCHES}  # noqa: RUF012
 
 
 class GradusWindowState(bpy.types.PropertyGroup):

@@ -16,9 +16,7 @@ std::string describe(const GradusOptionInfo& info) {
   std::ostringstream text;
   text << info.doc;
   if (info.type == GRADUS_OPTION_ENUM) {
-    std::istringstream names(info.choices);
-    std::string name;
-    for (int i = 0; i <= int(info.default_value); ++i) names >> name;
+    const std::string name = choice_name(*find_option(info.name), static_cast<uint32_t>(info.default_value));
     text << " (" << info.choices << "; default " << name << ")";
   } else {
     text << " (default " << info.default_value << ")";

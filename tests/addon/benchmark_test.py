@@ -147,7 +147,7 @@ def test_every_mode_has_a_reference() -> None:
 
 def test_the_denoiser_is_measured_on_every_reconstruction() -> None:
     denoised = {mode.settings["reconstruction"] for mode in modes.MODES.values() if mode.settings.get("denoiser") == "OIDN"}
-    assert denoised == {name for name, *_ in settings.RECONSTRUCTIONS} - {"AUTO"}
+    assert denoised == {name for name, *_ in settings.BY_NAME["reconstruction"].choices} - {"AUTO"}
 
 
 def test_a_slider_offers_all_pictures_and_crops() -> None:

@@ -118,7 +118,3 @@ def test_bundled_libraries_hold_it_where_blender_brings_it_along() -> None:
     assert (folder != "") == getattr(bpy.app, "module", False)
     if folder:
         assert (Path(folder) / "libOpenImageDenoise.so.2").exists()
-
-
-def test_menu_names_what_the_library_knows() -> None:
-    assert [(name, value) for name, _, _, value in settings.DENOISERS] == [(kind.name, kind.value) for kind in native.Denoiser]

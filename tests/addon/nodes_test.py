@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import bpy
@@ -500,19 +499,6 @@ def test_the_distribution_of_a_smooth_lobe_does_not_matter() -> None:
     node.inputs["Roughness"].default_value = 0.0
     show(material, node.outputs[0])
     assert translate(material).warnings == []
-
-
-def test_operations_are_those_of_the_header() -> None:
-    sys.path.insert(0, str(ROOT / "tools" / "nodes"))
-    import generate_ops
-
-    header = generate_ops.HEADER.read_text(encoding="utf-8")
-    names = {name: value for name, value, _, _ in generate_ops.operations(header)}
-    from gradus.nodes import ops
-
-    assert names == {op.name: op.value for op in ops.Op}
-    for enum, (python, prefix) in generate_ops.ENUMS.items():
-        assert dict(generate_ops.enum_values(header, enum, prefix)) == {item.name: item.value for item in getattr(ops, python)}
 
 
 def test_programs_have_as_many_inputs_as_operations_take() -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
-from ctypes import byref
 from types import SimpleNamespace
 
 import bpy
 import pytest
-from gradus import native, passes
+from gradus import passes
 from gradus.abi import ComponentPass, Pass
 
 # Copied from Blender's documentation and source, not from our table.
@@ -61,14 +59,6 @@ def test_never_two_channels() -> None:
 def test_each_plane_once() -> None:
     planes = [info.plane for info in passes.TABLE]
     assert len(planes) == len(set(planes))
-
-
-def test_channels_are_those_of_the_library() -> None:
-    library = native.load()
-    for info in passes.TABLE:
-        name, channels = ctypes.c_char_p(), ctypes.c_uint32()
-        library.pass_info(info.plane, byref(name), byref(channels))
-        assert channels.value == info.channels, info.name
 
 
 def layer(**on: bool) -> SimpleNamespace:
@@ -139,15 +129,6 @@ def test_each_component_has_the_passes_that_are_switched_on() -> None:
     assert named(layer(gradus_use_pass_components=True), ()) == ["Combined"]
     wanted = passes.Extra(parts=frozenset((ComponentPass.NORMAL,)))
     assert named(layer(), ("A",), wanted) == ["Combined", "Path A Normal"]
-
-
-def test_channels_and_names_of_parts_are_those_of_the_library() -> None:
-    library = native.load()
-    assert [part.plane for part in passes.PARTS] == list(range(ComponentPass.PASS_COUNT))
-    for part in passes.PARTS:
-        name, channels = ctypes.c_char_p(), ctypes.c_uint32()
-        library.component_pass_info(part.plane, byref(name), byref(channels))
-        assert (part.suffix.strip() or "Color", len(part.ids)) == ((name.value or b"").decode(), channels.value)
 
 
 def test_names_of_the_longest_component_fit_into_blender_s_64_bytes() -> None:

@@ -1,4 +1,4 @@
-"""One table of settings: Blender's properties and the library's options agree, and are obeyed or refused."""
+"""Settings: Blender's properties have the limits of the table, and their values reach the library."""
 
 from __future__ import annotations
 
@@ -9,72 +9,6 @@ import bpy
 import pytest
 from gradus import native, options, passes, renderer, settings
 from gradus.failure import Failure
-
-DOCUMENTED = {
-    "samples": 64,
-    "noise_threshold": 0.01,
-    "time_limit": 0.0,
-    "seed": 0,
-    "use_animated_seed": True,
-    "integrator": "AUTO",
-    "reconstruction": "AUTO",
-    "reconstruction_alpha": 0.0,
-    "denoiser": "NONE",
-    "max_bounces": 12,
-    "diffuse_bounces": 4,
-    "glossy_bounces": 4,
-    "transmission_bounces": 12,
-    "volume_bounces": 0,
-    "transparent_max_bounces": 8,
-    "clamp_direct": 0.0,
-    "clamp_indirect": 0.0,
-    "frame_store": "",
-    "pixel_filter": "BLACKMAN_HARRIS",
-    "filter_width": 1.5,
-    "film_exposure": 1.0,
-    "min_samples": 0,
-    "roughness_threshold": 0.1,
-    "strict": False,
-    "preview_samples": 32,
-    "vector_with_motion_blur": False,
-    "use_decomposition": False,
-    "components": "",
-    "component_replays": True,
-}
-"""Names that tests and users rely on, and their defaults."""
-
-
-def library_options() -> dict[str, native.OptionInfo]:
-    return {info.name.decode(): info for info in native.load().options()}
-
-
-def test_documented_defaults() -> None:
-    properties = bpy.context.scene.gradus
-    for name, default in DOCUMENTED.items():
-        value = getattr(properties, name)
-        assert value == (pytest.approx(default) if isinstance(default, float) else default), name
-
-
-def test_every_option_of_the_library_has_a_home() -> None:
-    known = {setting.name for setting in settings.native_settings()} | set(settings.FROM_BLENDER) | set(settings.TEST_SWITCHES)
-    assert set(library_options()) == known
-
-
-@pytest.mark.parametrize("setting", list(settings.native_settings()), ids=lambda setting: setting.name)
-def test_equals_the_library_s_table(setting: settings.Setting) -> None:
-    info = library_options()[setting.name]
-    kind = {settings.INT: 0, settings.FLOAT: 1, settings.BOOL: 2, settings.ENUM: 3, settings.TEXT: 4}[setting.kind]
-    assert info.type == kind
-    if setting.kind == settings.ENUM:
-        names = info.choices.decode().split()
-        assert [names[choice[3]].upper() for choice in setting.choices] == [choice[0] for choice in setting.choices]
-        assert setting.value_of(setting.default) == info.default_value
-    elif setting.kind == settings.TEXT:
-        assert (setting.default, setting.maximum) == ("", info.maximum)
-    else:
-        assert float(setting.default) == pytest.approx(info.default_value)
-        assert (setting.minimum, setting.maximum) == (pytest.approx(info.minimum), pytest.approx(info.maximum))
-
 
 def test_properties_have_the_limits_of_the_table() -> None:
     described = bpy.context.scene.gradus.bl_rna.properties

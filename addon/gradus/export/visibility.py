@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME, SHADOW = 1, 2, 4, 8, 16, 32
-ALL_RAYS = 63
-HOLDOUT, SHADOW_CATCHER = 64, 128
-MAY_MOVE = 256
+from ..abi import Visibility
+
+CAMERA = int(Visibility.VISIBLE_CAMERA)
+DIFFUSE = int(Visibility.VISIBLE_DIFFUSE)
+GLOSSY = int(Visibility.VISIBLE_GLOSSY)
+TRANSMISSION = int(Visibility.VISIBLE_TRANSMISSION)
+VOLUME = int(Visibility.VISIBLE_VOLUME)
+SHADOW = int(Visibility.VISIBLE_SHADOW)
+ALL_RAYS = int(Visibility.VISIBLE_ALL)
+HOLDOUT = int(Visibility.HOLDOUT)
+MAY_MOVE = int(Visibility.MAY_MOVE)
 
 RAY_SWITCHES = (
     ("visible_camera", CAMERA),
@@ -42,6 +49,4 @@ def visibility(obj: Any, parent: Any, view_layer: Any) -> int:
         bits &= ~CAMERA
     if obj.is_holdout or owner.holdout_get(view_layer=view_layer):
         bits |= HOLDOUT
-    if obj.is_shadow_catcher or owner.is_shadow_catcher:
-        bits |= SHADOW_CATCHER
     return bits

@@ -1,5 +1,5 @@
-// Layouts of the public structs and values of the public enums, in order of declaration: ONE table, from which gradus_struct_layout and
-// gradus_abi_hash answer and which a test compares with the header.
+// Layouts of the public structs and values of the public enums in order of declaration, which gradus_struct_layout and
+// gradus_abi_hash answer from. The tables are generated: schema/layout_table.cpp.
 #pragma once
 
 #include <cstddef>

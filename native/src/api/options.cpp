@@ -1,6 +1,8 @@
 // gradus_option*, gradus_settings_*, gradus_pass_info, gradus_component_pass_info
 #include "settings/options.h"
 
+#include <map>
+
 #include "api/guard.h"
 #include "api/structs.h"
 #include "settings/pass_table.h"
@@ -18,7 +20,13 @@ GradusOptionInfo describe(const Option& option) {
   info.default_value = option.default_value;
   info.minimum = option.minimum;
   info.maximum = option.maximum;
-  info.choices = option.choices;
+  // The caller may keep the text for as long as the library is loaded.
+  static const std::map<std::string_view, std::string> names = [] {
+    std::map<std::string_view, std::string> made;
+    for (const Option& item : options()) made[item.name] = choice_names(item);
+    return made;
+  }();
+  info.choices = names.at(option.name).c_str();
   return info;
 }
 

@@ -8,7 +8,7 @@
 
 namespace gradus::api {
 
-inline constexpr uint32_t kSceneFormat = 3;
+inline constexpr uint32_t kSceneFormat = 4;
 
 struct FileHeader {
   char magic[8] = {'G', 'R', 'A', 'D', 'U', 'S', 'S', '\n'};

@@ -47,10 +47,6 @@ void choose_automatically(const GradusSettings& settings, Plan* plan) {
 
 void choose_integrator(const GradusSettings& settings, Plan* plan) {
   switch (settings.integrator) {
-    case GRADUS_INTEGRATOR_BIDIRECTIONAL:
-      throw unsupported("integrator bidirectional does not work yet: use gradient, path or auto");
-    case GRADUS_INTEGRATOR_METROPOLIS:
-      throw unsupported("integrator metropolis does not work yet: use gradient, path or auto");
     case GRADUS_INTEGRATOR_AUTO:
       choose_automatically(settings, plan);
       break;

@@ -75,6 +75,7 @@ RenderLoop::RenderLoop(LoopInput input)
       live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
   require_memory("the frame", planned_bytes(plan_), "render fewer pixels or passes");
+  stats_.threads = static_cast<uint32_t>(arena_.max_concurrency());
   if (input_.resumed) resume(input_.resumed);
 }
 

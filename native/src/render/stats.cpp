@@ -85,6 +85,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["cpu_seconds"] = phases(stats.cpu_seconds);
   j["cpu_seconds"]["total"] = stats.cpu_seconds.total();
   j["process_cpu"] = stats.process_cpu;
+  if (stats.threads > 0) j["threads"] = stats.threads;
   j["rays"] = rays(frame.counters);
   j["shifts"] = shifts(frame.counters);
   j["nonfinite_dropped"] = {{"radiance", frame.counters.nonfinite_radiance},

@@ -42,6 +42,7 @@ struct RenderStats {
   PhaseTimes seconds, cpu_seconds;
   double total_seconds = 0.0;
   double process_cpu = 0.0;
+  uint32_t threads = 0;  // Threads that took the samples; 0 = unknown.
   std::string denoiser;  // name and version of the host's; empty: none was used
   std::string stopped;   // why sampling ended: samples, noise, time, cancelled
   SolveReport solve;

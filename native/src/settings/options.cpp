@@ -1,11 +1,11 @@
 #include "settings/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <vector>
 
 #include "base/error.h"
 
@@ -22,13 +22,6 @@ std::string canonical(std::string_view text) {
   return result;
 }
 
-std::vector<std::string> choices_of(const Option& option) {
-  std::istringstream stream(option.choices);
-  std::vector<std::string> names;
-  for (std::string name; stream >> name;) names.push_back(name);
-  return names;
-}
-
 std::string number(double value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
@@ -39,7 +32,12 @@ Error refused(const Option& option, std::string_view text, const std::string& al
   return invalid_argument(std::string(option.name) + " = " + std::string(text) + ": expected " + allowed);
 }
 
+bool has_choice(const Option& option, double value) {
+  return std::ranges::any_of(option.choices, [&](const Choice& choice) { return choice.value == value; });
+}
+
 void check_range(const Option& option, double value) {
+  if (option.type == GRADUS_OPTION_ENUM && !has_choice(option, value)) throw refused(option, number(value), "one of " + choice_names(option));
   if (value >= option.minimum && value <= option.maximum) return;  // NaN fails
   std::string allowed = "at least " + number(option.minimum);
   if (option.maximum < 2e9) allowed = number(option.minimum) + " to " + number(option.maximum);
@@ -68,11 +66,10 @@ double parse_value(const Option& option, std::string_view text) {
   const std::string value = canonical(text);
   if (option.type == GRADUS_OPTION_BOOL) return parse_bool(option, value);
   if (option.type != GRADUS_OPTION_ENUM) return parse_number(option, std::string(text));
-  const std::vector<std::string> names = choices_of(option);
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (value == names[i]) return double(i);
+  for (const Choice& choice : option.choices) {
+    if (value == choice.name) return choice.value;
   }
-  throw refused(option, text, "one of " + std::string(option.choices));
+  throw refused(option, text, "one of " + choice_names(option));
 }
 
 void check_length(const Option& option, size_t length) {
@@ -176,8 +173,16 @@ void check_settings(const GradusSettings& settings) {
 }
 
 std::string choice_name(const Option& option, uint32_t value) {
-  const std::vector<std::string> names = choices_of(option);
-  return value < names.size() ? names[value] : std::to_string(value);
+  for (const Choice& choice : option.choices) {
+    if (choice.value == value) return choice.name;
+  }
+  return std::to_string(value);
+}
+
+std::string choice_names(const Option& option) {
+  std::string names;
+  for (const Choice& choice : option.choices) names.append(names.empty() ? "" : " ").append(choice.name);
+  return names;
 }
 
 nlohmann::json settings_to_json(const GradusSettings& settings) {

@@ -1,5 +1,5 @@
-// THE table of render options: name, place, default, range, choices and meaning of every scalar of GradusSettings. The C API, the
-// command line, the add-on's properties and the stats take theirs from here.
+// The options of a render: name, place, default, range, choices and meaning of every scalar of GradusSettings. The table
+// is generated: schema/option_table.cpp.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,13 @@
 
 namespace gradus {
 
-// In the order in which one reads the table. NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
+// A value of an enum by its name in lower case.
+struct Choice {
+  const char* name;
+  uint32_t value;
+};
+
+// The fields are in the order in which one reads the table. NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct Option {
   const char* name;
   GradusOptionType type;
@@ -21,9 +27,9 @@ struct Option {
   double default_value;
   double minimum;
   double maximum;
-  const char* choices;  // enum: names in order of value, separated by spaces; "" otherwise
+  std::span<const Choice> choices;  // Values of an enum in order of their numbers.
+  bool sampling;                    // The option changes what is sampled and is part of the sampling key.
   const char* doc;
-  bool sampling;  // changes what is sampled: part of the sampling key (contract 7.2)
 };
 
 std::span<const Option> options();
@@ -47,8 +53,10 @@ void parse_option(const Option& option, std::string_view text, GradusSettings* s
 void check_settings(const GradusSettings& settings);
 // The range of reconstruction_alpha has a gap: 0 is automatic.
 void check_alpha(float alpha);
-// Name of an enum's value in lower case, as in the table.
+// Returns the name of an enum's value in lower case, or its number if it has none.
 std::string choice_name(const Option& option, uint32_t value);
+// Returns the names of an enum's values, separated by spaces.
+std::string choice_names(const Option& option);
 
 // All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default).
 nlohmann::json settings_to_json(const GradusSettings& settings);

@@ -1,8 +1,9 @@
-// THE native table of passes: names, channels, and which stored plane a pass is read from. The integrator fills the planes that
-// frame/pass_planes.h creates; frames are read through render/pass_read.h.
+// The passes: names, channels, and which stored plane a pass is read from. The table is generated: schema/pass_rows.cpp.
+// The integrator fills the planes that frame/pass_planes.h creates; frames are read through render/pass_read.h.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gradus/gradus.h"
@@ -37,6 +38,8 @@ constexpr bool is_of_light(PassKind kind) { return kind == PassKind::Radiance ||
 // By halves, whose difference tells the noise.
 constexpr bool is_in_halves(PassKind kind) { return kind == PassKind::Feature || is_of_light(kind); }
 
+// Returns the passes in order of their numbers.
+std::span<const PassInfo> all_passes();
 // Throws invalid_argument for a number that is no pass.
 const PassInfo& pass_info(uint32_t pass);
 
@@ -50,6 +53,8 @@ struct ComponentPassInfo {
   const char* name;
   uint32_t channels;
 };
+// Returns the passes of a component in order of their numbers.
+std::span<const ComponentPassInfo> all_component_passes();
 // Throws invalid_argument for a number that is none.
 const ComponentPassInfo& component_pass_info(uint32_t pass);
 

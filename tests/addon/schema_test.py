@@ -1,0 +1,94 @@
+"""What schema/ determines is written anew by tools/schema/generate.py and is not edited by hand."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PYTHON = "/usr/bin/python3"  # tomllib needs 3.11, which not every host has
+GENERATED = (
+    "native/include/gradus/gradus.h",
+    "native/include/gradus/gradus_nodes.h",
+    "native/src/schema/option_table.cpp",
+    "addon/gradus/abi.py",
+    "addon/gradus/setting_table.py",
+)
+
+
+def generate(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([PYTHON, root / "tools/schema/generate.py", *arguments], capture_output=True, text=True, timeout=60)
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """A copy of the schema, its script and the user guide, with everything generated."""
+    for folder in ("schema", "tools/schema"):
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "docs").mkdir()
+    shutil.copy(ROOT / "docs" / "user-guide.md", tmp_path / "docs")
+    assert generate(tmp_path).returncode == 0
+    assert generate(tmp_path, "--check").returncode == 0
+    return tmp_path
+
+
+def change(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def test_nothing_is_stale() -> None:
+    result = generate(ROOT, "--check")
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.parametrize("path", GENERATED)
+def test_an_edited_file_is_named_and_written_anew(copy: Path, path: str) -> None:
+    before = (copy / path).read_text(encoding="utf-8")
+    assert before == (ROOT / path).read_text(encoding="utf-8")
+    (copy / path).write_text(before + "\n", encoding="utf-8")
+    result = generate(copy, "--check")
+    assert (result.returncode, result.stderr.splitlines()) == (1, [f"{path} is stale: run tools/schema/generate.py"])
+    assert generate(copy).returncode == 0
+    assert (copy / path).read_text(encoding="utf-8") == before
+
+
+def test_a_changed_option_reaches_library_and_add_on(copy: Path) -> None:
+    change(copy / "schema" / "options.toml", "default = 64", "default = 65")
+    stale = {line.partition(" ")[0] for line in generate(copy, "--check").stderr.splitlines()}
+    assert {"native/src/schema/option_table.cpp", "addon/gradus/setting_table.py"} <= stale
+
+
+def test_the_guide_s_tables_are_filled_between_their_markers(copy: Path) -> None:
+    guide = copy / "docs" / "user-guide.md"
+    guide.write_text("before\n\n<!-- generated: passes -->\nold\n<!-- end -->\n\nafter\n", encoding="utf-8")
+    assert generate(copy, "--check").returncode == 1
+    assert generate(copy).returncode == 0
+    text = guide.read_text(encoding="utf-8")
+    assert text.startswith("before\n\n<!-- generated: passes -->\n| pass |")
+    assert text.endswith("|\n<!-- end -->\n\nafter\n")
+    assert "| `Noisy Image` | `noisy_image` |" in text
+    assert "old" not in text
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "complaint"),
+    [
+        ("structs.toml", '"float[9]"', '"floot[9]"', "field matrix has the unknown type floot"),
+        ("options.toml", 'name = "seed"', 'name = "samples"', "samples is there twice"),
+        ("options.toml", 'label = "Seed"', 'lable = "Seed"', "seed: "),
+        ("enums.toml", '["PATH", 1', '["AUTO", 1', "AUTO is there twice"),
+        ("passes.toml", "number = 32", "number = 34", "passes are not numbered from 0 on without gaps"),
+        ("gradus.h.in", "@struct Camera\n", "", "gradus.h.in does not declare each struct of the schema once"),
+    ],
+)
+def test_a_mistake_is_named(copy: Path, file: str, old: str, new: str, complaint: str) -> None:
+    change(copy / "schema" / file, old, new)
+    result = generate(copy)
+    assert result.returncode == 1
+    assert complaint in result.stderr
+    assert "Traceback" not in result.stderr
