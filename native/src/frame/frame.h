@@ -187,7 +187,5 @@ GradientImages read_images(const Frame& frame, int component);
 GradientImages read_half_differences(const Frame& frame, int component);
 // Fills the deviations.
 void read_deviations(const Frame& frame, int component, GradientImages* images);
-// Estimated variance of the mean of the primal: ((A - B)/2)², per channel (contract 1.2).
-std::vector<float> read_variance(const Frame& frame);
 
 }  // namespace gradus
