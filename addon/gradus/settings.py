@@ -42,15 +42,15 @@ class Setting:
 
 # Identifiers that exist in the library but are refused or unfinished there do not appear: a menu promises what it shows.
 INTEGRATORS = (
-    ("AUTO", "Automatic", "Path tracing; for L2, L1 and WEIGHTED with differences between neighbouring pixels where they pay", 0),
+    ("AUTO", "Automatic", "Path tracing; for L2 and L1 with differences between neighbouring pixels where they pay", 0),
     ("PATH", "Path", "Plain path tracing: the reference", 1),
     ("GRADIENT", "Gradient", "Path tracing that also samples the differences between neighbouring pixels", 2),
 )
+# The number 3 is not used: files of earlier versions hold it for a method that has been removed.
 RECONSTRUCTIONS = (
     ("AUTO", "Automatic", "Regularized; none for plain path tracing, if that is asked for", 0),
     ("NONE", "None", "Deliver the sampled image", 1),
     ("L2", "L2", "Least squares: unbiased; outliers may leave small dipoles, and single values may be negative", 2),
-    ("WEIGHTED", "Weighted", "Least squares by the measured noise of every pixel and difference; consistent", 3),
     ("L1", "L1", "Least absolute deviations: robust to outliers, without dipoles; biased, it may darken", 4),
     ("REGULARIZED", "Regularized", "By the features of the surfaces, the samples and their differences: least error; consistent", 5),
 )
@@ -119,8 +119,7 @@ SETTINGS: tuple[Setting, ...] = (
         FLOAT,
         0.0,
         "Primal Weight",
-        "Weight of the sampled image against its gradients in L2 and L1; in Weighted how far the image's means are smoothed. "
-        "0 = automatic: 0.4 for L2, 0.2 for the others",
+        "Weight of the sampled image against its gradients in L2 and L1. 0 = automatic: 0.4 for L2, 0.2 for L1",
         0.0,
         1e3,
         1,

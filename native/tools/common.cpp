@@ -17,9 +17,13 @@ std::string describe(const GradusOptionInfo& info) {
   text << info.doc;
   if (info.type == GRADUS_OPTION_ENUM) {
     std::istringstream names(info.choices);
-    std::string name;
-    for (int i = 0; i <= int(info.default_value); ++i) names >> name;
-    text << " (" << info.choices << "; default " << name << ")";
+    std::string name, default_name;
+    text << " (";
+    for (int i = 0; names >> name; ++i) {
+      if (i == int(info.default_value)) default_name = name;
+      if (name != "-") text << (i > 0 ? " " : "") << name;
+    }
+    text << "; default " << default_name << ")";
   } else {
     text << " (default " << info.default_value << ")";
   }

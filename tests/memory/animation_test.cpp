@@ -82,16 +82,14 @@ TEST_P(PlannedAnimation, TakesWhatIsPlanned) {
   EXPECT_GE(frames, files);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, PlannedAnimation,
-    ::testing::Values(Job{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
-                      Job{"L2Error", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2, false, true},
-                      Job{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
-                      Job{"Weighted", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED},
-                      Job{"WeightedErrorTransparent", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED, true, true},
-                      Job{"Regularized", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED},
-                      Job{"RegularizedPathTransparent", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED, true}),
-    [](const ::testing::TestParamInfo<Job>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, PlannedAnimation,
+                         ::testing::Values(Job{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
+                                           Job{"L2Error", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2, false, true},
+                                           Job{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
+                                           Job{"Regularized", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED},
+                                           Job{"RegularizedPathTransparent", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED,
+                                               true}),
+                         [](const ::testing::TestParamInfo<Job>& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace gradus::memory

@@ -85,8 +85,6 @@ INSTANTIATE_TEST_SUITE_P(All, PlannedBytes, ::testing::ValuesIn([] {
                                all.push_back({"L2", gradient, GRADUS_RECONSTRUCTION_L2, adaptive, transparent, false});
                                all.push_back({"L2WithGaps", gradient, GRADUS_RECONSTRUCTION_L2, adaptive, transparent, true});
                                all.push_back({"L1", gradient, GRADUS_RECONSTRUCTION_L1, adaptive, transparent, false});
-                               all.push_back({"Weighted", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, adaptive, transparent, false});
-                               all.push_back({"WeightedWithGaps", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, adaptive, transparent, true});
                              }
                            }
                            for (const bool transparent : {false, true}) {
@@ -94,10 +92,8 @@ INSTANTIATE_TEST_SUITE_P(All, PlannedBytes, ::testing::ValuesIn([] {
                              all.push_back({"L2Error", gradient, GRADUS_RECONSTRUCTION_L2, false, transparent, false, true});
                              all.push_back({"L2WithGapsError", gradient, GRADUS_RECONSTRUCTION_L2, false, transparent, true, true});
                              all.push_back({"Denoised", path, GRADUS_RECONSTRUCTION_NONE, false, transparent, false, false, false, true});
-                             all.push_back({"WeightedError", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, false, transparent, false, true});
                            }
                            all.push_back({"WatchedL2", gradient, GRADUS_RECONSTRUCTION_L2, false, false, false, false, true});
-                           all.push_back({"WatchedError", gradient, GRADUS_RECONSTRUCTION_WEIGHTED, false, true, false, true, true});
                            all.push_back({"Watched", path, GRADUS_RECONSTRUCTION_REGULARIZED, false, false, false, false, true});
                            const char* const bounces = "Once=EDL;Twice=EDDL;Thrice=EDDDL";
                            Case apart{"Components", path, GRADUS_RECONSTRUCTION_REGULARIZED, false, false, false};

@@ -381,8 +381,7 @@ typedef enum GradusReconstruction {
   GRADUS_RECONSTRUCTION_AUTO = 0,
   GRADUS_RECONSTRUCTION_NONE = 1,
   GRADUS_RECONSTRUCTION_L2 = 2,
-  GRADUS_RECONSTRUCTION_WEIGHTED = 3,
-  GRADUS_RECONSTRUCTION_L1 = 4,
+  GRADUS_RECONSTRUCTION_L1 = 4, /* 3 is not used: it was a method that has been removed */
   GRADUS_RECONSTRUCTION_REGULARIZED = 5 /* by features of the surfaces, samples and, where there are any, gradients */
 } GradusReconstruction;
 
@@ -514,7 +513,7 @@ typedef struct GradusOptionInfo {
   double default_value;
   double minimum;
   double maximum;
-  const char* choices;             /* enum: names in order of value, separated by spaces */
+  const char* choices;             /* enum: names in order of value, separated by spaces; "-" for a value that is not used */
 } GradusOptionInfo;
 
 GRADUS_API uint32_t gradus_option_count(void);

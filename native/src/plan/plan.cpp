@@ -21,8 +21,7 @@ constexpr uint32_t kFirstCheck = 16;
 std::string choice_of(const char* option, uint32_t value) { return choice_name(*find_option(option), value); }
 
 bool needs_gradients(uint32_t reconstruction) {
-  return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED ||
-         reconstruction == GRADUS_RECONSTRUCTION_L1;
+  return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_L1;
 }
 
 // Samples from which the host's denoiser takes more off the error than those that its time would buy (docs/method.md).

@@ -18,7 +18,7 @@ constexpr auto kText = GRADUS_OPTION_TEXT;
   Option { #field, type, offsetof(GradusSettings, field), value, low, high, choices, doc, sampling }
 
 constexpr const char* kIntegrators = "auto path gradient bidirectional metropolis";
-constexpr const char* kReconstructions = "auto none l2 weighted l1 regularized";
+constexpr const char* kReconstructions = "auto none l2 - l1 regularized";
 constexpr const char* kDenoisers = "none auto oidn";
 constexpr const char* kFilters = "box gaussian blackman_harris";
 
@@ -38,9 +38,9 @@ constexpr Option kOptions[] = {
     OPTION(integrator, kEnum, GRADUS_INTEGRATOR_AUTO, 0, 4, kIntegrators, kSampling,
            "How light is sampled; auto: the planner decides. bidirectional and metropolis are refused until they work"),
     OPTION(reconstruction, kEnum, GRADUS_RECONSTRUCTION_AUTO, 0, 5, kReconstructions, kOther,
-           "How the image is reconstructed from samples and gradients; l2 is unbiased; weighted goes by the "
-           "measured noise and l1 is robust; regularized (auto) goes by features of the surfaces as well: all consistent"),
-    OPTION(reconstruction_alpha, kFloat, 0.0, 0.0, 1e3, "", kOther, "Weight of the primal image against the gradients in l2 and l1, of its means in weighted; 0 = automatic: 0.4 for l2, 0.2 for the others"),
+           "How the image is reconstructed from samples and gradients; l2 is unbiased; l1 is robust and "
+           "regularized (auto) goes by features of the surfaces as well: both consistent"),
+    OPTION(reconstruction_alpha, kFloat, 0.0, 0.0, 1e3, "", kOther, "Weight of the primal image against the gradients in l2 and l1; 0 = automatic: 0.4 for l2, 0.2 for l1"),
     OPTION(denoiser, kEnum, GRADUS_DENOISER_NONE, 0, 2, kDenoisers, kOther,
            "What takes the rest of the noise out of the result; oidn: the host's Open Image Denoise, an error where there is none; auto: "
            "that where it is there, from 8 samples on. Biased, for stills"),

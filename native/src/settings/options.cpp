@@ -1,5 +1,6 @@
 #include "settings/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -46,6 +47,22 @@ void check_range(const Option& option, double value) {
   throw refused(option, number(value), allowed);
 }
 
+// The name of a value that no choice has.
+constexpr const char* kUnused = "-";
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    if (name != kUnused) text += (text.empty() ? "" : " ") + name;
+  }
+  return text;
+}
+
+void check_choice(const Option& option, double value) {
+  const std::vector<std::string> names = choices_of(option);
+  if (names[size_t(value)] == kUnused) throw refused(option, number(value), "one of " + joined(names));
+}
+
 double parse_bool(const Option& option, const std::string& text) {
   if (text == "1" || text == "true" || text == "on") return 1;
   if (text == "0" || text == "false" || text == "off") return 0;
@@ -70,9 +87,9 @@ double parse_value(const Option& option, std::string_view text) {
   if (option.type != GRADUS_OPTION_ENUM) return parse_number(option, std::string(text));
   const std::vector<std::string> names = choices_of(option);
   for (size_t i = 0; i < names.size(); ++i) {
-    if (value == names[i]) return double(i);
+    if (value == names[i] && names[i] != kUnused) return double(i);
   }
-  throw refused(option, text, "one of " + std::string(option.choices));
+  throw refused(option, text, "one of " + joined(names));
 }
 
 void check_length(const Option& option, size_t length) {
@@ -171,6 +188,7 @@ void check_settings(const GradusSettings& settings) {
     // The float of a minimum may lie just below it.
     if (option.type == GRADUS_OPTION_FLOAT && std::abs(value - option.minimum) <= 1e-6 * std::abs(option.minimum)) continue;
     check_range(option, value);
+    if (option.type == GRADUS_OPTION_ENUM) check_choice(option, value);
   }
   check_alpha(settings.reconstruction_alpha);
 }
@@ -209,7 +227,32 @@ nlohmann::json settings_to_json(const GradusSettings& settings) {
   return json;
 }
 
-GradusSettings settings_from_json(const nlohmann::json& json) {
+namespace {
+
+// A choice that was removed, as stored settings name it.
+struct RemovedChoice {
+  const char* option;
+  const char* name;
+};
+constexpr RemovedChoice kRemovedChoices[] = {{"reconstruction", "weighted"}};
+
+bool was_removed(const Option& option, const std::string& text) {
+  return std::any_of(std::begin(kRemovedChoices), std::end(kRemovedChoices), [&](const RemovedChoice& removed) {
+    return std::strcmp(removed.option, option.name) == 0 && canonical(text) == removed.name;
+  });
+}
+
+void read_text(const Option& option, const std::string& text, GradusSettings* settings, std::vector<std::string>* warnings) {
+  if (!was_removed(option, text)) return parse_option(option, text, settings);
+  set_option(settings, option, option.default_value);
+  if (!warnings) return;
+  const std::string name = option.name, used = choice_name(option, static_cast<uint32_t>(option.default_value));
+  warnings->push_back(name + " " + text + " was removed: the stored settings are read as " + name + " " + used);
+}
+
+}  // namespace
+
+GradusSettings settings_from_json(const nlohmann::json& json, std::vector<std::string>* warnings) {
   GradusSettings settings = default_settings();
   for (const Option& option : options()) {
     const auto found = json.find(option.name);
@@ -217,7 +260,7 @@ GradusSettings settings_from_json(const nlohmann::json& json) {
     if (found->is_boolean() && option.type != GRADUS_OPTION_TEXT) {
       set_option(&settings, option, found->get<bool>() ? 1 : 0);
     } else if (found->is_string()) {
-      parse_option(option, found->get<std::string>(), &settings);
+      read_text(option, found->get<std::string>(), &settings, warnings);
     } else if (found->is_number() && option.type != GRADUS_OPTION_TEXT) {
       const double value = found->get<double>();
       if (option.type != GRADUS_OPTION_FLOAT) check_range(option, value);

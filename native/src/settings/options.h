@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -21,7 +22,7 @@ struct Option {
   double default_value;
   double minimum;
   double maximum;
-  const char* choices;  // enum: names in order of value, separated by spaces; "" otherwise
+  const char* choices;  // enum: names in order of value, separated by spaces, "-" for a value that is not used; "" otherwise
   const char* doc;
   bool sampling;  // changes what is sampled: part of the sampling key (contract 7.2)
 };
@@ -50,9 +51,10 @@ void check_alpha(float alpha);
 // Name of an enum's value in lower case, as in the table.
 std::string choice_name(const Option& option, uint32_t value);
 
-// All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default).
+// All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default). Choices that earlier
+// versions had become the default; `warnings`, unless it is nullptr, receives a text for each.
 nlohmann::json settings_to_json(const GradusSettings& settings);
-GradusSettings settings_from_json(const nlohmann::json& json);
+GradusSettings settings_from_json(const nlohmann::json& json, std::vector<std::string>* warnings = nullptr);
 // Hash of what determines a sample's value: size, seed, frame, integrator, bounces and the like, not how many samples are taken.
 uint64_t sampling_key(const GradusSettings& settings);
 

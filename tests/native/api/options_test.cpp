@@ -26,7 +26,7 @@ seed 0 0 0 2.14748e+09
 use_animated_seed 2 1 0 1 
 frame 0 0 -2.14748e+09 2.14748e+09 
 integrator 3 0 0 4 auto path gradient bidirectional metropolis
-reconstruction 3 0 0 5 auto none l2 weighted l1 regularized
+reconstruction 3 0 0 5 auto none l2 - l1 regularized
 reconstruction_alpha 1 0 0 1000 
 denoiser 3 0 0 2 none auto oidn
 max_bounces 0 12 0 1024 
@@ -136,6 +136,26 @@ TEST(G9_Options, SurviveJson) {
   s.strict = 1;
   const GradusSettings back = settings_from_json(settings_to_json(s));
   EXPECT_EQ(std::memcmp(&s, &back, sizeof(s)), 0);
+}
+
+// Films of earlier versions may name a reconstruction that was removed. Their samples are as good as before.
+TEST(G9_Options, AStoredChoiceThatWasRemovedIsReadAsTheDefaultWithAWarning) {
+  nlohmann::json stored = settings_to_json(default_settings());
+  stored["reconstruction"] = "weighted";
+  std::vector<std::string> warnings;
+  EXPECT_EQ(settings_from_json(stored, &warnings).reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], "reconstruction weighted was removed: the stored settings are read as reconstruction auto");
+  stored["reconstruction"] = "wieghted";
+  EXPECT_THROW(settings_from_json(stored, &warnings), Error) << "there never was such a choice";
+}
+
+TEST(G9_Options, ANumberThatNoChoiceHasIsRefused) {
+  EXPECT_NE(refused("reconstruction", "weighted").find("one of auto none l2 l1 regularized"), std::string::npos);
+  EXPECT_NE(refused("reconstruction", "-").find("one of auto none l2 l1 regularized"), std::string::npos);
+  GradusSettings s = default_settings();
+  s.reconstruction = 3;
+  EXPECT_THROW(check_settings(s), Error);
 }
 
 TEST(G9_Options, SamplingKeyIgnoresHowManySamples) {

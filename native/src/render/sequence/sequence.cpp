@@ -193,7 +193,7 @@ SequenceSource Sequence::source(const SequenceMethod& method, const std::vector<
     merge(frame_at(place), frame.get(), replay);
     return frame;
   };
-  const auto spooled = std::make_shared<SpooledFrames>(base, offset, TemporalContent{.halves = reads_halves(method)});
+  const auto spooled = std::make_shared<SpooledFrames>(base, offset, TemporalContent{.halves = method.with_error});
   const auto streamed = std::make_shared<StreamedFrames>(base, offset, merged);
   return {[spooled](const FrameRange& window, const CancelTest& cancel) { return spooled->window(window.first, window.last, cancel); },
           [streamed](int place, const CancelTest& cancel) { return streamed->frame(place, cancel); },

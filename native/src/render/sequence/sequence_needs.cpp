@@ -114,7 +114,7 @@ PlannedBytes planned_bytes(const Plan& plan, const SequenceMethod& method, const
   const uint64_t area = uint64_t(plan.sampled.area()), channels = uint64_t(plan.channels);
   const Sizes sizes{frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes,
                                           {plan.rough_vertices, plan.rough_details, plan.component_motion, plan.component_motion}),
-                    channels, uint64_t(regularized || reads_halves(method) ? 1 : 0), uint64_t(plan.gradients && !regularized ? 3 : 1),
+                    channels, uint64_t(regularized || method.with_error ? 1 : 0), uint64_t(plan.gradients && !regularized ? 3 : 1),
                     uint64_t(regularized ? plan.components.count() : 1)};
   const uint64_t all = uint64_t(count), in_window = keeps ? uint64_t(windows.frames) : std::min(all, uint64_t(windows.frames));
   const uint64_t ahead = std::min(all, uint64_t(2 * windows.frames - windows.overlap));
