@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/hash.h"
 
 namespace gradus {
 namespace {
@@ -276,13 +277,11 @@ GradusSettings settings_from_json(const nlohmann::json& json, std::vector<std::s
 }
 
 uint64_t sampling_key(const GradusSettings& settings) {
-  uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over the raw values
+  ContentHash hash;
   for (const Option& option : options()) {
-    if (!option.sampling) continue;
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&settings) + option.offset;
-    for (size_t i = 0; i < size_of(option); ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    if (option.sampling) hash.bytes(reinterpret_cast<const unsigned char*>(&settings) + option.offset, size_of(option));
   }
-  return hash;
+  return hash.result();
 }
 
 }  // namespace gradus
