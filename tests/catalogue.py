@@ -26,7 +26,7 @@ ENTRIES = {
     "A10": "seeds, threads and neighbours are uncorrelated",
     "B1": "reconstruction of an image with its own gradients",
     "B2": "the solvers on known systems",
-    "B3": "L2 without bias, L1 and WEIGHTED within their bound",
+    "B3": "L2 without bias, L1 within their bound",
     "B4": "shifts: Jacobians, way back, swapped ends",
     "B5": "gradients gain at equal time",
     "B6": "what is not finite is dropped before the solve",

@@ -136,7 +136,6 @@ class Reconstruction(IntEnum):
     AUTO = 0
     NONE = 1
     L2 = 2
-    WEIGHTED = 3
     L1 = 4
     REGULARIZED = 5
 

@@ -136,12 +136,6 @@ ROWS: tuple[dict[str, Any], ...] = (
                 2,
             ),
             (
-                "WEIGHTED",
-                "Weighted",
-                "Least squares by the measured noise of every sample and difference",
-                3,
-            ),
-            (
                 "L1",
                 "L1",
                 "Least absolute deviations of samples and gradients. It has no halos, but can darken the picture",

@@ -18,11 +18,10 @@ void check_usage(const ReconstructArguments& args, uint32_t reconstruction, uint
   check_apart("--output", args.output, args.input);
   for (const std::string& path : args.merged) check_apart("--output", args.output, path);
   check_denoiser_path(args.denoiser_path, denoiser);
-  const bool weighs = reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED ||
-                      reconstruction == GRADUS_RECONSTRUCTION_L1;
+  const bool weighs = reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_L1;
   const bool as_sampled = is_sequence(args) && reconstruction == GRADUS_RECONSTRUCTION_AUTO;
   if (args.alpha != 0.0f && !weighs && !as_sampled) {
-    throw CLI::ValidationError("--alpha", "is for --reconstruction l2, weighted or l1; others find their weights themselves");
+    throw CLI::ValidationError("--alpha", "is for --reconstruction l2 or l1; others find their weights themselves");
   }
   const auto refuse = [](const char* option, const char* what) { throw CLI::ValidationError(option, std::string("is for ") + what); };
   if (is_sequence(args)) {
@@ -98,12 +97,10 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
                    "Of an animation: those of them that are reconstructed with the next ones, too (half if not given)")
       ->check(CLI::Range(0, 500));
   command->add_option("--film-exposure", args->exposure, "Of an animation: factor on all radiance")->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--reconstruction", args->reconstruction,
-                   "auto, none, l2 (unbiased), regularized (by features), weighted (by the measured noise) or l1 (robust)")
+  command->add_option("--reconstruction", args->reconstruction, "auto, none, l2 (unbiased), regularized (by features) or l1 (robust)")
       ->capture_default_str()
       ->check([](const std::string& value) { return bad_value("reconstruction", value); });
-  command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients, for l2, weighted and l1; 0: automatic")
+  command->add_option("--alpha", args->alpha, "Weight of the noisy image against the gradients, for l2 and l1; 0: automatic")
       ->capture_default_str()
       ->check([](const std::string& value) { return bad_value("reconstruction_alpha", value); });
   command->add_option("--denoiser", args->denoiser, "none, oidn (the machine's Open Image Denoise) or auto (that where there is one)")

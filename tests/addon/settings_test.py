@@ -35,11 +35,12 @@ def test_values_reach_the_library_and_options_win(scene: bpy.types.Scene) -> Non
     assert scene.gradus.samples == 5
 
 
-def test_a_stored_value_of_another_version_names_its_setting(scene: bpy.types.Scene) -> None:
+@pytest.mark.parametrize("value", [99, 3], ids=["never used", "of the removed WEIGHTED"])
+def test_a_stored_value_of_another_version_names_its_setting(scene: bpy.types.Scene, value: int) -> None:
     """It was a traceback that ended with KeyError: ''."""
     if "gradus" not in scene:
         scene["gradus"] = {}
-    scene["gradus"]["reconstruction"] = 99
+    scene["gradus"]["reconstruction"] = value
     if scene.gradus.reconstruction:
         pytest.skip("this Blender keeps the values of properties apart from what scripts store")
     with pytest.raises(Failure, match="Reconstruction .reconstruction. has a value that this version does not know"):

@@ -49,7 +49,6 @@ std::vector<Picture> pictures() {
   std::vector<Picture> list;
   add_scenarios(&list);
   list.push_back({"box L1", whole_box, [](GradusSettings* s) { s->reconstruction = GRADUS_RECONSTRUCTION_L1; }});
-  list.push_back({"box WEIGHTED", whole_box, [](GradusSettings* s) { s->reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED; }});
   list.push_back({"box automatic", whole_box,
                   [](GradusSettings* s) {
                     s->integrator = GRADUS_INTEGRATOR_AUTO;

@@ -45,7 +45,7 @@ class Injecting : public Integrator {
 };
 
 struct Images {
-  std::vector<float> noisy, l2, l1, weighted;
+  std::vector<float> noisy, l2, l1;
   Counters counters;
 };
 
@@ -61,9 +61,8 @@ Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) 
     return combine(
         *frame, how, 0.0f, frame->region, [] { return false; }, &report);
   };
-  Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1),
-                image(GRADUS_RECONSTRUCTION_WEIGHTED), frame->counters};
-  for (const auto* i : {&images.noisy, &images.l2, &images.l1, &images.weighted}) expect_finite(*i, "image");
+  Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1), frame->counters};
+  for (const auto* i : {&images.noisy, &images.l2, &images.l1}) expect_finite(*i, "image");
   return images;
 }
 
@@ -87,25 +86,22 @@ TEST(Fireflies, AMillionOfThemStayWhereTheyAre) {
   enter_row(std::to_string(injected) + " fireflies", images.counters);
   EXPECT_NEAR(mean(images.l2) / mean(images.noisy), 1.0, 1e-5);
   const Images calm = rendered(size, samples, kNothing);
-  double l2 = 0.0, l1 = 0.0, weighted = 0.0, noisy = 0.0;
+  double l2 = 0.0, l1 = 0.0, noisy = 0.0;
   for (uint32_t y = 0; y < size; ++y) {
     for (uint32_t x = size / 2 + 64; x < size; ++x) {
       const size_t i = 4 * (size_t(y) * size + x);
       const float truth = test::fake_truth(int32_t(x), int32_t(y));
       l2 = std::max(l2, double(std::fabs(images.l2[i] - calm.l2[i])));
       l1 += std::pow(images.l1[i] - truth, 2);
-      weighted += std::pow(images.weighted[i] - truth, 2);
       noisy += std::pow(images.noisy[i] - truth, 2);
     }
   }
   // 1e-7 of the largest firefly: the rounding of transforms that hold it.
   EXPECT_LT(l2, 0.1);
   EXPECT_LT(l1, 1.1 * noisy);
-  EXPECT_LT(weighted, 1.1 * noisy);
 }
 
-// Few enough to be told from the picture: L1 leaves them out, WEIGHTED where they are. Their noise was taken for that of all pixels around
-// them, too, which came out wrong, and a picture's width of five pixels around these 0.35 too dark.
+// Few enough to be told from the picture: L1 leaves them out.
 TEST(Fireflies, ScatteredOnesDoNotSpread) {
   const auto scattered = [](int32_t x, int32_t y, uint32_t s) {
     return s == 1 && x % 37 == 5 && y % 37 == 7 ? Radiance(1e6f, 1e6f, 1e6f, 0.0f) : Radiance(0.0f);
@@ -117,7 +113,6 @@ TEST(Fireflies, ScatteredOnesDoNotSpread) {
     return double(off) / double(a.size());
   };
   EXPECT_LE(share_off(images.l1, calm.l1), 0.01);
-  EXPECT_LE(share_off(images.weighted, calm.weighted), 0.01);
 }
 
 // Every tenth sample is no number; they are counted, and the rest of the pixel's samples make its value.
@@ -137,7 +132,6 @@ TEST(NonFinite, SamplesAreDroppedAndCounted) {
   EXPECT_EQ(images.noisy, calm.noisy);
   EXPECT_EQ(images.l2, calm.l2);
   EXPECT_EQ(images.l1, calm.l1);
-  EXPECT_EQ(images.weighted, calm.weighted);
 }
 
 // A material that shines NaN is black. It took the samples of all paths that met it, two thirds of the picture.

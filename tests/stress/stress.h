@@ -1,6 +1,6 @@
 // The stress suite: renders of scenes that are hard on floats, each with bounds on what is dropped and which shifts fail.
 //
-// Every case renders with gradients and all passes, is reconstructed by L2, L1 and WEIGHTED, and is followed in double. What comes out must
+// Every case renders with gradients and all passes, is reconstructed by L2 and L1, and is followed in double. What comes out must
 // be finite; a table of the counts of all cases is printed in the end. A tenth of the cases and samples runs with every change, the whole
 // with GRADUS_TEST_FULL=1 (make stress).
 #pragma once

@@ -452,7 +452,6 @@ typedef enum GradusReconstruction {
   GRADUS_RECONSTRUCTION_NONE = 1,       /* Delivers the sampled picture. */
   GRADUS_RECONSTRUCTION_L2 = 2,         /* Least squares of samples and gradients. It is unbiased; around very bright
                                            spots it can leave bright and dark halos. */
-  GRADUS_RECONSTRUCTION_WEIGHTED = 3,   /* Least squares by the measured noise of every sample and difference. */
   GRADUS_RECONSTRUCTION_L1 = 4,         /* Least absolute deviations of samples and gradients. It has no halos, but
                                            can darken the picture. */
   GRADUS_RECONSTRUCTION_REGULARIZED = 5 /* Removes noise by the geometry, the samples and, where they were sampled,

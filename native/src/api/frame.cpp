@@ -35,11 +35,10 @@ uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
   switch (reconstruction) {
     case GRADUS_RECONSTRUCTION_AUTO:
       if (has_features(frame)) return GRADUS_RECONSTRUCTION_REGULARIZED;
-      return frame.gradients ? GRADUS_RECONSTRUCTION_WEIGHTED : GRADUS_RECONSTRUCTION_NONE;
+      return frame.gradients ? GRADUS_RECONSTRUCTION_L1 : GRADUS_RECONSTRUCTION_NONE;
     case GRADUS_RECONSTRUCTION_NONE:
     case GRADUS_RECONSTRUCTION_L2:
     case GRADUS_RECONSTRUCTION_L1:
-    case GRADUS_RECONSTRUCTION_WEIGHTED:
     case GRADUS_RECONSTRUCTION_REGULARIZED:
       return reconstruction;
     default:
@@ -165,6 +164,7 @@ GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame
     auto object = std::make_shared<api::FrameObject>(api::find_handle<Device>(device));
     const std::string file = &api::require(path, "path");
     object->device->arena().execute([&] { object->frame = load_frame(file); });
+    for (const std::string& warning : load_header(file).warnings) object->device->warnings().add(file + ": " + warning);
     *frame = api::add_handle(std::move(object));
   });
 }

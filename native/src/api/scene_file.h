@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "api/archive.h"
+#include "base/hash.h"
 
 namespace gradus::api {
 
@@ -28,18 +29,11 @@ static_assert(sizeof(RecordHeader) % kArchiveAlignment == 0);
 
 inline uint64_t padded(uint64_t size) { return (size + kArchiveAlignment - 1) / kArchiveAlignment * kArchiveAlignment; }
 
-// FNV-1a over 8 bytes at a time: finds damage, not intent.
+// Finds damage, not intent.
 inline uint64_t checksum(const char* data, size_t size) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  size_t i = 0;
-  for (; i + 8 <= size; i += 8) {
-    uint64_t word;
-    std::memcpy(&word, data + i, 8);
-    hash = (hash ^ word) * 0x100000001b3u;
-    hash ^= hash >> 32;
-  }
-  for (; i < size; ++i) hash = (hash ^ static_cast<unsigned char>(data[i])) * 0x100000001b3u;
-  return hash;
+  ContentHash hash;
+  hash.bytes(data, size);
+  return hash.result();
 }
 
 }  // namespace gradus::api

@@ -1,4 +1,4 @@
-// Hashes of content: what tells unchanged data from changed, and keys a scene (contract 7.2). Not for random numbers.
+// Hashes of content by XXH3 (xxHash): they tell unchanged data from changed, and key a scene (contract 7.2). Not for random numbers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace gradus {
 
-// Finaliser of MurmurHash3 (Appleby): every input bit reaches every output bit.
+// Finaliser of MurmurHash3 (Appleby), which spreads every input bit over all output bits. Numbers of specular chains are made of it.
 inline uint64_t mix_bits(uint64_t h) {
   h ^= h >> 33;
   h *= 0xff51afd7ed558ccdULL;
@@ -36,7 +36,7 @@ class ContentHash {
     value(uint64_t(v.size()));
     bytes(v.data(), v.size() * sizeof(T));
   }
-  uint64_t result() const { return mix_bits(state_); }
+  uint64_t result() const { return state_; }
 
  private:
   static uint32_t bits(float v) {
@@ -44,7 +44,7 @@ class ContentHash {
     std::memcpy(&u, &v, sizeof(u));
     return u;
   }
-  uint64_t state_ = 0x9e3779b97f4a7c15ULL;
+  uint64_t state_ = 0;
 };
 
 }  // namespace gradus

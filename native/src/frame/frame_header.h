@@ -20,13 +20,14 @@ struct FrameHeader {
   uint64_t replayed_key = 0;   // of its scene; 0: not known
   uint32_t replayed_seed = 0;
   SharedSamples shared;
+  std::vector<std::string> warnings;  // what the file asks for that this version does not have
 };
 
 inline FrameHeader header_of(const Frame& frame) {
   const SampleSources& replayed = frame.replayed;
   return {frame.region,       frame.channels, frame.gradients, kept_passes(frame), kept_of_components(frame),
           frame.settings,     frame.samples,  frame.scene_key, frame.frame_number, replayed.stream_frame,
-          replayed.scene_key, replayed.seed,  frame.shared};
+          replayed.scene_key, replayed.seed,  frame.shared,    {}};
 }
 
 }  // namespace gradus

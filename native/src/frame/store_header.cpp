@@ -183,7 +183,7 @@ FrameHeader read_header(const Imf::Header& header, const json& description) {
   frame.gradients = description.at("gradients");
   frame.planes = description.at("planes");
   frame.of_components = kept_from_json(description);
-  frame.settings = settings_from_json(description.at("settings"));
+  frame.settings = settings_from_json(description.at("settings"), &frame.warnings);
   frame.samples = ranges_from_json(description.at("samples"));
   frame.replayed_frame = description.value("replayed_frame", 0);
   if (description.contains("replayed_scene_key")) frame.replayed_key = key_from_json(description.at("replayed_scene_key"));

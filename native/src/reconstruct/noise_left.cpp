@@ -13,7 +13,7 @@ constexpr int kMostSteps = 10;
 }  // namespace
 
 NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, float alpha, const CancelTest& cancel) {
-  alpha = chosen_alpha(GRADUS_RECONSTRUCTION_WEIGHTED, alpha);
+  alpha = chosen_alpha(GRADUS_RECONSTRUCTION_L1, alpha);
   SolveReport report;
   Minimum minimum = minimise_by_noise(images, cancel, &report);
   const int channels = minimum.solution.channels();

@@ -1,4 +1,5 @@
-// What WEIGHTED leaves of the noise, by its own weights, from the difference of the two half-buffers (contract 1.2).
+// Estimates the noise that L1 leaves, from the difference of the two half-buffers (contract 1.2). The weights are those of the measured
+// noise (minimise_by_noise.h), which are close to L1's and need no iteration.
 #pragma once
 
 #include <vector>

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "reconstruct/l2.h"
 #include "reconstruct/l2_with_gaps.h"
-#include "reconstruct/minimise_by_noise.h"
 #include "reconstruct/minimise_l1.h"
 #include "reconstruct/settled.h"
 #include "reconstruct/solver.h"
@@ -48,8 +47,6 @@ std::unique_ptr<TwicedSolver> make_solver(const GradientImages& images, uint32_t
   switch (reconstruction) {
     case GRADUS_RECONSTRUCTION_L1:
       return std::make_unique<TwicedSolver>(images, minimise_l1(images, alpha, cancel, report), alpha);
-    case GRADUS_RECONSTRUCTION_WEIGHTED:
-      return std::make_unique<TwicedSolver>(images, minimise_by_noise(images, cancel, report), alpha);
     default:
       throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   }

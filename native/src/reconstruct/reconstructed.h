@@ -16,7 +16,7 @@ struct Reconstructed {
   std::vector<float> image;  // width·height·channels
   std::vector<float> error;  // width·height: estimated squared error of the image, mean over RGB; empty unless asked for
   std::vector<std::vector<float>> components{};  // images that add up to it; none unless asked for
-  ErrorTerms terms{};                            // of RGB, of pictures by L2, L1 or WEIGHTED over time: in the place of the error
+  ErrorTerms terms{};                            // of RGB, of pictures by L2 or L1 over time: in the place of the error
 };
 
 }  // namespace gradus

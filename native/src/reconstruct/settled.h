@@ -18,8 +18,8 @@ std::vector<uint8_t> find_settled(const GradientImages& images);
 // difference that is in doubt crosses its border.
 Region unsettled_region(const std::vector<uint8_t>& settled, int width, int height);
 
-// By WEIGHTED or L1, whose weights hold such pixels only nearly, and whose twicing would give them a share of their neighbours' noise: they
-// keep their values, and what lies around all others is not solved for at all. `images` have deviations.
+// Reconstructs by L1, but settled pixels keep their values, and only the region around the others is solved for. L1's weights hold settled
+// pixels only nearly, and its twicing would give them a share of their neighbours' noise. `images` have deviations.
 std::vector<float> reconstruct_unsettled(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                          SolveReport* report);
 

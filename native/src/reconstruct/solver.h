@@ -41,8 +41,7 @@ struct SolveReport {
 
 // L2, exact by DCT: minimises α²‖x−I‖² + ‖Dx−g‖². Unbiased. (Thesis eq. 5.13 with k = 2; Bhat et al. 2008 for the DCT.)
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
-// L1, or WEIGHTED, for which `images` have deviations: with weights estimated from the images (all channels together) and then frozen.
-// Consistent, not unbiased.
+// L1, with weights that are estimated from the images (all channels together) and then frozen. Consistent, not unbiased.
 std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                             SolveReport* report);
 
@@ -52,7 +51,7 @@ inline float chosen_alpha(uint32_t reconstruction, float alpha) {
   return alpha > 0.0f ? alpha : reconstruction == GRADUS_RECONSTRUCTION_L2 ? 0.4f : 0.2f;
 }
 
-// Reconstructs all channels; returns width·height·channels. L2, L1 or WEIGHTED by `reconstruction` (GradusReconstruction, never AUTO).
+// Reconstructs all channels; returns width·height·channels. `reconstruction` is GRADUS_RECONSTRUCTION_L2 or GRADUS_RECONSTRUCTION_L1.
 std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
                                SolveReport* report);
 

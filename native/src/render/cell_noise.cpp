@@ -15,10 +15,6 @@ namespace {
 // Keeps the relative error of black areas finite; radiance² at display exposure (the measures' constant).
 constexpr double kEpsilon = 1e-3;
 
-bool follows_noise(uint32_t reconstruction) {
-  return reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED || reconstruction == GRADUS_RECONSTRUCTION_L1;
-}
-
 // Of all components together.
 struct FrameNoise {
   std::vector<float> image;  // what is delivered
@@ -34,8 +30,8 @@ void add_terms(const Frame& frame, int component, uint32_t reconstruction, float
   add_image(std::move(terms.apart), &sum->terms.apart);
 }
 
-// L1, too: its weights are of the same kind as WEIGHTED's, and those of the noise are known without iterating.
-void add_weighted(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
+// Estimates the noise of L1 by weights of the measured noise, which are close to L1's weights and need no iteration.
+void add_l1(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
   GradientImages images = read_images(frame, component);
   read_deviations(frame, component, &images);
   NoiseLeft left = noise_left(images, read_half_differences(frame, component), alpha, cancel);
@@ -61,7 +57,7 @@ FrameNoise noise_of(const Frame& frame, uint32_t reconstruction, float alpha, co
     sum.error = std::move(picture.error);
     return sum;
   }
-  const auto add_component = follows_noise(reconstruction) ? add_weighted : add_other;
+  const auto add_component = reconstruction == GRADUS_RECONSTRUCTION_L1 ? add_l1 : add_other;
   for (int component = 0; component < int(frame.components.size()); ++component) {
     add_component(frame, component, reconstruction, alpha, cancel, &sum);
   }

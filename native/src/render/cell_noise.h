@@ -13,7 +13,7 @@ struct CellNoise {
   // (contract 5.3).
   double relative_error = 0.0;
   // Root of the mean over pixels of squared error over squared gray, by the weights of that reconstruction. It tells cells apart, but of
-  // WEIGHTED and L1, whose weights follow the noise, it is up to ten times too small.
+  // L1, whose weights follow the noise, it is up to ten times too small.
   double spread = 0.0;
 };
 

@@ -6,7 +6,6 @@
 
 #include <tbb/task_arena.h>
 
-#include "base/claims.h"
 #include "base/warnings.h"
 #include "gradus/gradus.h"
 #include "scene/embree_device.h"
@@ -31,11 +30,9 @@ class Device {
   const std::string& denoiser_path() const { return denoiser_path_; }
   // Of the device itself: colour management. Those of scenes are with the scenes.
   Warnings& warnings() { return warnings_; }
-  Claims& claims() { return claims_; }
 
  private:
   Warnings warnings_;
-  Claims claims_;
   EmbreeDevice embree_;
   uint32_t threads_ = 0;
   tbb::task_arena arena_;

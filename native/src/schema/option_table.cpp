@@ -17,7 +17,6 @@ constexpr Choice kReconstructionChoices[] = {
     {"auto", GRADUS_RECONSTRUCTION_AUTO},
     {"none", GRADUS_RECONSTRUCTION_NONE},
     {"l2", GRADUS_RECONSTRUCTION_L2},
-    {"weighted", GRADUS_RECONSTRUCTION_WEIGHTED},
     {"l1", GRADUS_RECONSTRUCTION_L1},
     {"regularized", GRADUS_RECONSTRUCTION_REGULARIZED},
 };
@@ -68,11 +67,10 @@ constexpr Option kOptions[] = {
     OPTION(reconstruction, GRADUS_OPTION_ENUM, 0, 0, 5, kReconstructionChoices, false,
            "How the picture is made from the samples and their gradients. auto: Regularized. With the integrator Path"
            " the sampled picture is delivered. none: Delivers the sampled picture. l2: Least squares of samples and "
-           "gradients. It is unbiased; around very bright spots it can leave bright and dark halos. weighted: Least "
-           "squares by the measured noise of every sample and difference. l1: Least absolute deviations of samples "
-           "and gradients. It has no halos, but can darken the picture. regularized: Removes noise by the geometry, "
-           "the samples and, where they were sampled, the gradients. It has the least error; its bias vanishes with "
-           "more samples."),
+           "gradients. It is unbiased; around very bright spots it can leave bright and dark halos. l1: Least "
+           "absolute deviations of samples and gradients. It has no halos, but can darken the picture. regularized: "
+           "Removes noise by the geometry, the samples and, where they were sampled, the gradients. It has the least "
+           "error; its bias vanishes with more samples."),
     OPTION(reconstruction_alpha, GRADUS_OPTION_FLOAT, 0, 0, 1000, {}, false,
            "Weight of the sampled picture against its gradients in the reconstructions L2 and L1: higher values keep "
            "more of its noise and spread less error of the gradients. 0 = automatic: 0.4 for L2, 0.2 for L1."),

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/hash.h"
 
 namespace gradus {
 namespace {
@@ -214,7 +215,32 @@ nlohmann::json settings_to_json(const GradusSettings& settings) {
   return json;
 }
 
-GradusSettings settings_from_json(const nlohmann::json& json) {
+namespace {
+
+// A choice that was removed, as stored settings name it.
+struct RemovedChoice {
+  const char* option;
+  const char* name;
+};
+constexpr RemovedChoice kRemovedChoices[] = {{"reconstruction", "weighted"}};
+
+bool was_removed(const Option& option, const std::string& text) {
+  return std::any_of(std::begin(kRemovedChoices), std::end(kRemovedChoices), [&](const RemovedChoice& removed) {
+    return std::strcmp(removed.option, option.name) == 0 && canonical(text) == removed.name;
+  });
+}
+
+void read_text(const Option& option, const std::string& text, GradusSettings* settings, std::vector<std::string>* warnings) {
+  if (!was_removed(option, text)) return parse_option(option, text, settings);
+  set_option(settings, option, option.default_value);
+  if (!warnings) return;
+  const std::string name = option.name, used = choice_name(option, static_cast<uint32_t>(option.default_value));
+  warnings->push_back(name + " " + text + " was removed: the stored settings are read as " + name + " " + used);
+}
+
+}  // namespace
+
+GradusSettings settings_from_json(const nlohmann::json& json, std::vector<std::string>* warnings) {
   GradusSettings settings = default_settings();
   for (const Option& option : options()) {
     const auto found = json.find(option.name);
@@ -222,7 +248,7 @@ GradusSettings settings_from_json(const nlohmann::json& json) {
     if (found->is_boolean() && option.type != GRADUS_OPTION_TEXT) {
       set_option(&settings, option, found->get<bool>() ? 1 : 0);
     } else if (found->is_string()) {
-      parse_option(option, found->get<std::string>(), &settings);
+      read_text(option, found->get<std::string>(), &settings, warnings);
     } else if (found->is_number() && option.type != GRADUS_OPTION_TEXT) {
       const double value = found->get<double>();
       if (option.type != GRADUS_OPTION_FLOAT) check_range(option, value);
@@ -238,13 +264,11 @@ GradusSettings settings_from_json(const nlohmann::json& json) {
 }
 
 uint64_t sampling_key(const GradusSettings& settings) {
-  uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over the raw values
+  ContentHash hash;
   for (const Option& option : options()) {
-    if (!option.sampling) continue;
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&settings) + option.offset;
-    for (size_t i = 0; i < size_of(option); ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    if (option.sampling) hash.bytes(reinterpret_cast<const unsigned char*>(&settings) + option.offset, size_of(option));
   }
-  return hash;
+  return hash.result();
 }
 
 }  // namespace gradus

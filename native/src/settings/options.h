@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -58,9 +59,10 @@ std::string choice_name(const Option& option, uint32_t value);
 // Returns the names of an enum's values, separated by spaces.
 std::string choice_names(const Option& option);
 
-// All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default).
+// All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default). Choices that earlier
+// versions had become the default; `warnings`, unless it is nullptr, receives a text for each.
 nlohmann::json settings_to_json(const GradusSettings& settings);
-GradusSettings settings_from_json(const nlohmann::json& json);
+GradusSettings settings_from_json(const nlohmann::json& json, std::vector<std::string>* warnings = nullptr);
 // Hash of what determines a sample's value: size, seed, frame, integrator, bounces and the like, not how many samples are taken.
 uint64_t sampling_key(const GradusSettings& settings);
 

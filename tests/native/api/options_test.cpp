@@ -99,6 +99,26 @@ TEST(G9_Options, SurviveJson) {
   EXPECT_EQ(std::memcmp(&s, &back, sizeof(s)), 0);
 }
 
+// Films of earlier versions may name a reconstruction that was removed. Their samples are as good as before.
+TEST(G9_Options, AStoredChoiceThatWasRemovedIsReadAsTheDefaultWithAWarning) {
+  nlohmann::json stored = settings_to_json(default_settings());
+  stored["reconstruction"] = "weighted";
+  std::vector<std::string> warnings;
+  EXPECT_EQ(settings_from_json(stored, &warnings).reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], "reconstruction weighted was removed: the stored settings are read as reconstruction auto");
+  stored["reconstruction"] = "wieghted";
+  EXPECT_THROW(settings_from_json(stored, &warnings), Error) << "there never was such a choice";
+}
+
+TEST(G9_Options, ANumberThatNoChoiceHasIsRefused) {
+  EXPECT_NE(refused("reconstruction", "weighted").find("one of auto none l2 l1 regularized"), std::string::npos);
+  EXPECT_NE(refused("reconstruction", "-").find("one of auto none l2 l1 regularized"), std::string::npos);
+  GradusSettings s = default_settings();
+  s.reconstruction = 3;
+  EXPECT_THROW(check_settings(s), Error);
+}
+
 TEST(G9_Options, SamplingKeyIgnoresHowManySamples) {
   GradusSettings a = default_settings(), b = a;
   b.samples = 7;

@@ -321,6 +321,21 @@ TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
   EXPECT_EQ(load_header(path("earlier.exr")).replayed_seed, 5u);
 }
 
+// The samples of such a film are good: it is read with a warning, and its picture is that of the automatic choice.
+TEST_F(F6_Store, AFilmWhoseReconstructionWasRemovedIsReadWithAWarning) {
+  save_frame(*rendered(small_settings(20, 10, 2)), path());
+  EXPECT_TRUE(load_header(path()).warnings.empty());
+  rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
+    nlohmann::json j = description_of(headers->front());
+    j["settings"]["reconstruction"] = "weighted";
+    headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
+  });
+  EXPECT_EQ(load_frame(path("earlier.exr"))->settings.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
+  const std::vector<std::string> warnings = load_header(path("earlier.exr")).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("reconstruction weighted was removed"), std::string::npos) << warnings[0];
+}
+
 // Nothing of what components show was kept but the first rough vertices.
 TEST_F(F6_Store, FramesOfEarlierVersionsHaveNoDetailsOfComponents) {
   save_frame(*rendered(small_settings(20, 10, 2)), path());

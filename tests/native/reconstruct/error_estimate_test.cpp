@@ -50,8 +50,7 @@ std::vector<float> error_of(const Frame& frame, uint32_t reconstruction) {
   return reconstruct_frame(frame, reconstruction, 0.0f, {.error = true}, kNever, &report).error;
 }
 
-constexpr uint32_t kAll[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_WEIGHTED,
-                             GRADUS_RECONSTRUCTION_L1};
+constexpr uint32_t kAll[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1};
 
 // One sample in each half, of variance σ²: the mean's is σ²/2.
 TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {

@@ -410,7 +410,7 @@ struct Spoiled {
   std::function<float(int x, int y, int channel, int half)> feature;  // in place of the room's
   std::function<void(Frame*)> spoil = [](Frame*) {};
   // Of L2's error, root mean square. Where features say nothing, and uniform differences as much as the pixels, L2 has the right weights
-  // without knowing, and windows are smaller than its reach: 1.09 and 1.10 (WEIGHTED 1.04).
+  // without knowing, and windows are smaller than its reach: 1.09 and 1.10.
   double most = 1.12;
 };
 

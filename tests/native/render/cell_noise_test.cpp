@@ -43,7 +43,7 @@ double sum_over(const Frame& frame, const std::vector<float>& pixels, const Regi
   return sum;
 }
 
-// Noise of the halves, which a reconstruction by features hides like WEIGHTED, says nothing of its error: its own estimate has to be taken.
+// Noise of the halves, which a reconstruction by features hides, says nothing of its error: its own estimate has to be taken.
 TEST(CellNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
   for (const bool gradients : {false, true}) {
     const Frame frame = noisy_room(gradients);

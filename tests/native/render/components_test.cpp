@@ -89,8 +89,7 @@ TEST_P(Modes, ComponentsAddUpToCombined) {
 
 INSTANTIATE_TEST_SUITE_P(Components, Modes,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_NONE}, uint32_t{GRADUS_RECONSTRUCTION_L2},
-                                         uint32_t{GRADUS_RECONSTRUCTION_WEIGHTED}, uint32_t{GRADUS_RECONSTRUCTION_L1},
-                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+                                         uint32_t{GRADUS_RECONSTRUCTION_L1}, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
 // L2 has the same weights everywhere: what was taken apart comes together as if it had not been.
 TEST(Components, OfL2AddUpToThePictureOfOne) {
@@ -649,7 +648,7 @@ TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
 // The picture is clamped, and so are its parts: by what there is too much of, nothing is added.
 TEST(Components, ThatAreClampedAddUpToThePictureAsClamped) {
   std::vector<std::vector<float>> images = {{2.0f, -1.0f, 1.0f, 0.5f}, {-1.0f, -1.0f, 3.0f, 0.25f}};
-  clamp_components(GRADUS_RECONSTRUCTION_WEIGHTED, 4, &images);
+  clamp_components(GRADUS_RECONSTRUCTION_L1, 4, &images);
   EXPECT_EQ(images[0], (std::vector<float>{1.0f, 0.0f, 1.0f, 0.5f}));
   EXPECT_EQ(images[1], (std::vector<float>{0.0f, 0.0f, 3.0f, 0.25f}));
   std::vector<std::vector<float>> kept = {{2.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}};

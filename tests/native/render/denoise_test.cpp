@@ -34,7 +34,7 @@ GradusSettings settings_with(uint32_t denoiser) {
   settings.denoiser = denoiser;
   settings.film_transparent = 1;
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
-  settings.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L1;
   return settings;
 }
 

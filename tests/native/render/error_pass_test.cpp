@@ -84,7 +84,7 @@ TEST(ErrorPass, OfAPartHasItsPixels) {
 
 // What is delivered then is the noisy image.
 TEST(ErrorPass, AfterACancelIsThatOfTheNoisyImage) {
-  auto render = start(error_settings(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED, 1000000));
+  auto render = start(error_settings(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1, 1000000));
   while (render->progress().samples_done < 8) std::this_thread::yield();
   EXPECT_THROW(read(*render, GRADUS_PASS_ERROR, kAll), Error) << "while sampling";
   render->cancel();

@@ -136,10 +136,10 @@ TEST_P(WatchedRender, MayBeOfAnySize) {
 INSTANTIATE_TEST_SUITE_P(All, WatchedRender,
                          ::testing::Values(Kind{"Noisy", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE},
                                            Kind{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
-                                           Kind{"Weighted", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED},
+                                           Kind{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
                                            Kind{"PathRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED},
                                            Kind{"Regularized", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED},
-                                           Kind{"AdaptiveWeighted", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED, 0.03f},
+                                           Kind{"AdaptiveL1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1, 0.03f},
                                            Kind{"AdaptiveRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, 0.03f}),
                          [](const ::testing::TestParamInfo<Kind>& info) { return info.param.name; });
 
@@ -180,7 +180,7 @@ TEST(LiveView, ALongBatchDoesNotKeepTheWatcherWaiting) {
 // Seconds of sampling are given; those of pictures are what is billed, however long that takes here.
 TEST(LiveView, TakesATwentiethOfTheTime) {
   LoopInput input;
-  input.settings = settings_of(96, 64, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED);
+  input.settings = settings_of(96, 64, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   const Plan plan = make_plan(input.settings, *empty_snapshot());
   const std::atomic<bool> stop{false};
   tbb::task_arena arena(2);
@@ -189,7 +189,7 @@ TEST(LiveView, TakesATwentiethOfTheTime) {
   LiveView view(input, plan, stop, &arena, &picture, &tracker);
   view.watch();
   const auto frame = rendered(input.settings);
-  const auto is_due = [&](double sampled) { return view.refresh_is_due(GRADUS_RECONSTRUCTION_WEIGHTED, sampled, 0.5); };
+  const auto is_due = [&](double sampled) { return view.refresh_is_due(GRADUS_RECONSTRUCTION_L1, sampled, 0.5); };
   EXPECT_TRUE(is_due(0.0)) << "nothing is known of the first one";
   double sampled = 0.0;
   for (uint32_t i = 1; i <= 5; ++i) {
@@ -206,7 +206,7 @@ TEST(LiveView, TakesATwentiethOfTheTime) {
 
 // A picture of this size takes tens of milliseconds: once there is one, the next would come too late.
 TEST(LiveView, IsAskedForNoMoreOftenThanItPays) {
-  GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED);
+  GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   settings.time_limit = 0.25f;
   std::atomic<bool> is_watched{false};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
@@ -326,7 +326,7 @@ TEST(LiveView, ACancelLeavesTheReconstructionThatWasSeen) {
 
 // It delivered what was there of the solution.
 TEST(LiveView, ACancelOfTheReconstructionLeavesTheSamples) {
-  GradusSettings settings = settings_of(1200, 900, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_WEIGHTED);
+  GradusSettings settings = settings_of(1200, 900, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   const auto render = start(settings, fake_factory());
   wait_for([&] { return render->progress().phase >= GRADUS_PHASE_RECONSTRUCTING; });
   render->cancel();

@@ -136,7 +136,7 @@ TEST(L3_Merge, AFrameThatEndedEarlyLeavesItsOtherSamplesFree) {
 
 TEST(L3_Border, SamplesOfARegionAreThoseOfTheFullFrame) {
   GradusSettings settings = small_settings(160, 120, 8);
-  settings.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L1;
   const auto full = start(settings);
   full->wait(-1.0);
   const uint32_t region[4] = {60, 50, 97, 83};
@@ -308,7 +308,7 @@ TEST(Loop, ATimeLimitHoldsForAResumedRender) { EXPECT_LT(limited_seconds(0.3, 0.
 TEST(Loop, NoisyImageThatThePilotLeavesIsUnbiased) {
   GradusSettings settings = small_settings(64, 64, 8);
   settings.integrator = GRADUS_INTEGRATOR_AUTO;
-  settings.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L1;
   auto render = start(settings, fake_factory([](FakeIntegrator* fake) { fake->noise = 0.0f; }));
   ASSERT_TRUE(render->wait(20.0));
   const auto stats = nlohmann::json::parse(render->stats_json());

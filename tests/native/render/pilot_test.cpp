@@ -147,7 +147,7 @@ struct HalfNoisy final : Integrator {
 };
 
 GradientMap pilot(const GradusSettings& settings, const Region& region, int32_t noisy_from,
-                  uint32_t reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED) {
+                  uint32_t reconstruction = GRADUS_RECONSTRUCTION_L1) {
   const std::atomic<bool> stop{false};
   return run_pilot(HalfNoisy(noisy_from), pilot_settings(settings), reconstruction, region, 3, stop);
 }
@@ -164,7 +164,7 @@ TEST(Pilot, LeavesGradientsWhereTheyPay) {
 // Planes of a border, of another seed, of 16 and then 48 samples must fit together (contract 2.1).
 TEST(Pilot, MapDependsOnThePictureAlone) {
   GradusSettings s = small_settings(300, 200, 4);
-  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_WEIGHTED, GRADUS_RECONSTRUCTION_L2}) {
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_L2}) {
     s.samples = 4;
     s.seed = s.frame = s.first_sample = 0;
     const GradientMap full = pilot(s, {0, 0, 300, 200}, 230, reconstruction);
@@ -191,7 +191,7 @@ TEST(Pilot, ItsSeedIsNoUsers) { EXPECT_GT(pilot_settings(small_settings(8, 8, 1)
 nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr<const Frame>* frame) {
   GradusSettings s = small_settings(256, 96, 4);
   s.integrator = integrator;
-  s.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
+  s.reconstruction = GRADUS_RECONSTRUCTION_L1;
   const auto factory = [&](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(noisy_from); };
   const auto render = start(s, factory);
   render->wait(-1.0);
@@ -205,7 +205,7 @@ nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr
 TEST(Pilot, ACancelMeanwhileIsACancel) {
   GradusSettings s = small_settings(64, 48, 4);
   s.integrator = GRADUS_INTEGRATOR_AUTO;
-  s.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
+  s.reconstruction = GRADUS_RECONSTRUCTION_L1;
   const auto noisy = [](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(64); };
   const auto first = start(s, noisy);
   first->wait(-1.0);

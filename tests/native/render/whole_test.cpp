@@ -44,7 +44,7 @@ TEST(L6_Whole, APictureWithAllPassesIsFinite) {
   settings.threads = 1;
   settings.passes = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
-  settings.reconstruction = GRADUS_RECONSTRUCTION_WEIGHTED;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L1;
   test::PathScene scene;
   build_room(&scene);
   Render render(test::test_device(), scene.context(settings).snapshot, settings);

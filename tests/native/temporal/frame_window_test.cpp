@@ -52,11 +52,6 @@ class TwoFrames : public testing::Test {
     FrameWindow(frames_).read_half_differences(kind, t, 0, out.data());
     return {out[0], out[3], out[6]};
   }
-  std::vector<float> deviations(RowKind kind, int t) const {
-    std::vector<float> out(3);
-    FrameWindow(frames_).read_deviations(kind, t, 0, out.data());
-    return out;
-  }
   std::vector<std::shared_ptr<const TemporalFrame>> frames_;
 };
 
@@ -76,12 +71,6 @@ TEST_F(TwoFrames, RowsInTimeAreDifferencesAlongTheLinks) {
 }
 
 // Base and replay take the same random numbers: their halves differ alike, and the difference over time is more certain than either.
-TEST_F(TwoFrames, DeviationsAreThoseOfTheRows) {
-  EXPECT_NEAR(deviations(RowKind::kPrimal, 1)[0], 0.55f, 1e-6f);
-  EXPECT_NEAR(deviations(RowKind::kDt, 0)[0], 0.7f, 1e-6f);
-  EXPECT_NEAR(deviations(RowKind::kDxDt, 0)[0], 7.0f, 1e-5f);
-}
-
 TEST_F(TwoFrames, HalfDifferencesAreThoseOfTheRows) {
   EXPECT_NEAR(half_differences(RowKind::kDt, 0)[1], 0.9f - 0.2f, 1e-6f);
   EXPECT_TRUE(std::isnan(half_differences(RowKind::kDt, 0)[2]));
@@ -231,7 +220,7 @@ TEST_F(FiveFrames, K2_ACancelIsHeardAtEveryRow) {
   EXPECT_NO_THROW(window->read_row(RowKind::kPrimal, 0, 0, row.data()));
   is_cancelled = true;
   EXPECT_THROW(window->read_row(RowKind::kPrimal, 0, 0, row.data()), Error);
-  EXPECT_THROW(window->read_deviations(RowKind::kPrimal, 0, 0, row.data()), Error);
+  EXPECT_THROW(window->read_half_differences(RowKind::kPrimal, 0, 0, row.data()), Error);
   EXPECT_THROW(window->read_links(0, 0, links.data()), Error);
 }
 

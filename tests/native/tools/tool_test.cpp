@@ -91,7 +91,7 @@ TEST_F(Tool, RendersReconstructsAndCompares) {
   ASSERT_EQ(rendered.code, 0) << rendered.err;
   EXPECT_NE(rendered.out.find(kStored), std::string::npos);
   EXPECT_NE(text("stats.jsonl").find("\"integrator\":\"gradient\""), std::string::npos);
-  for (const char* how : {"regularized", "weighted", "l2", "l1", "none"}) {
+  for (const char* how : {"regularized", "l2", "l1", "none"}) {
     const Outcome made = run(std::string("reconstruct ") + kStored + " -o " + how + ".exr --passes noisy_image --reconstruction " + how);
     EXPECT_EQ(made.code, 0) << made.err;
     EXPECT_LT(relative_error(std::string(how) + ".exr", "combined.exr"), 0.1);
@@ -141,7 +141,7 @@ TEST_F(Tool, Denoises) {
 }
 
 TEST_F(Tool, SaysThatTheDenoiserHasNoGuides) {
-  ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction weighted").code, 0);
+  ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction l1").code, 0);
   const Outcome made = run(std::string("reconstruct frame.exr -o image.exr") + kFakeDenoiser);
   EXPECT_EQ(made.code, 0);
   EXPECT_NE(made.err.find("warning: the frame holds no features"), std::string::npos) << made.err;
@@ -240,7 +240,7 @@ TEST_F(Tool, NoOptionIsIgnored) {
   for (const char* how : {"auto", "none", "regularized"}) {
     const Outcome outcome = run(std::string("reconstruct f.exr -o x.exr --alpha 0.3 --reconstruction ") + how);
     EXPECT_EQ(outcome.code, 2) << how;
-    EXPECT_NE(outcome.err.find("is for --reconstruction l2, weighted or l1"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("is for --reconstruction l2 or l1"), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(run("reconstruct f.exr -o x.exr --alpha 0.3 --reconstruction l2").code, 0);
   for (const char* command : {"render good.gradus -o store", "reconstruct f.exr -o y.exr"}) {
@@ -345,7 +345,7 @@ TEST_F(Tool, FilesThatAreCutShortAreNamedOnce) {
 
 // EXR was written under the name of a PNG, with exit code 0.
 TEST_F(Tool, RefusesImagesThatAreNotExr) {
-  ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction weighted").code, 0);
+  ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction l1").code, 0);
   std::ofstream(folder / "x.png") << "PNG";
   for (const char* arguments : {"reconstruct frame.exr -o l1.png", "render good.gradus -o store --image l1.png", "compare x.png frame.exr",
                                 "compare frame.exr x.png"}) {

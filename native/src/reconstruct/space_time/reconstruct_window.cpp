@@ -14,7 +14,6 @@ class HalfDifferences final : public WindowSource {
   explicit HalfDifferences(const HalvedWindowSource& source) : source_(source) {}
   WindowSize size() const override { return source_.size(); }
   void read_row(RowKind kind, int t, int y, float* out) const override { source_.read_half_differences(kind, t, y, out); }
-  void read_deviations(RowKind kind, int t, int y, float* out) const override { source_.read_deviations(kind, t, y, out); }
   void read_links(int t, int y, int32_t* out) const override { source_.read_links(t, y, out); }
 
  private:

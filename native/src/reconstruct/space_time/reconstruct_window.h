@@ -1,4 +1,4 @@
-// The pictures of a window by L2, L1 or WEIGHTED, and what their errors are made of.
+// The pictures of a window by L2 or L1, and what their errors are made of.
 #pragma once
 
 #include <functional>

@@ -7,8 +7,6 @@
 
 namespace gradus {
 
-bool reads_halves(const SequenceMethod& method) { return method.with_error || method.reconstruction == GRADUS_RECONSTRUCTION_WEIGHTED; }
-
 SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& shape, SequenceSource source, const SequenceMethod& method)
     : grid_(range, shape),
       source_(std::move(source)),

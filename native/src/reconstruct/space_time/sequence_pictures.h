@@ -15,14 +15,11 @@ namespace gradus {
 
 // What makes pictures of a sequence differ.
 struct SequenceMethod {
-  uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2;  // L2, L1, WEIGHTED or REGULARIZED
+  uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2;  // L2, L1 or REGULARIZED
   float alpha = 0.0f;                                  // 0: what measures best
   bool with_error = false;                             // whether the pictures' errors, or their terms, are wanted
   bool operator==(const SequenceMethod&) const = default;
 };
-
-// Whether it reads half the differences of the halves, besides the values.
-bool reads_halves(const SequenceMethod& method);
 
 // Where a sequence comes from. Its frames are of one size.
 struct SequenceSource {

@@ -6,7 +6,6 @@
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/value_rows.h"
 #include "reconstruct/space_time/weigh_alike.h"
-#include "reconstruct/space_time/weigh_by_noise.h"
 #include "reconstruct/space_time/weigh_by_residuals.h"
 #include "reconstruct/weighted_least_squares.h"
 
@@ -16,9 +15,8 @@ namespace {
 constexpr CgGoal kExact{.residual = 1e-5f};
 constexpr int kMostSteps = 100;
 
-// As minimise_by_noise.cpp and minimise_l1.cpp have them, but for how far a system is solved: what is left here has less than 1e-4 of the
-// error's square (docs/method.md, "Space-time reconstruction"). The solution's own noise has a row error of 1.
-constexpr CgGoal kWithinNoise{.row_error = 3e-2f};
+// As minimise_l1.cpp has them, but for how far a system is solved: what is left here has less than 1e-4 of the error's square
+// (docs/method.md, "Space-time reconstruction").
 constexpr float kFirstFloor = 0.05f;
 constexpr float kLastFloor = 2e-3f;
 constexpr float kFloorFactor = 0.2f;
@@ -58,11 +56,6 @@ WindowSolver::WindowSolver(const WindowSource& source, uint32_t reconstruction, 
       return;
     case GRADUS_RECONSTRUCTION_L1:
       solution_ = minimise_l1(source, alpha, cancel, report);
-      break;
-    case GRADUS_RECONSTRUCTION_WEIGHTED:
-      weigh_by_noise(source, window_scale(source), &system_);
-      solution_ = solve(source, 0, channels, kWithinNoise, kMostSteps, cancel, report);
-      ++report->outer_steps;
       break;
     default:
       throw unsupported("no solver of windows for reconstruction " + std::to_string(reconstruction));

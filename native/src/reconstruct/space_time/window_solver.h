@@ -11,12 +11,11 @@
 namespace gradus {
 
 // A frozen linear operator W: weights and links come from one source, and every other plane of these frames goes through the same ones
-// (contract 3.4). L2: minimises α²‖x−I‖² + Σ‖Hx−g‖² over all kinds of differences; unbiased. L1 and WEIGHTED: as of single frames, with
-// rows of all kinds; consistent. Solutions are exact to a residual of 1e-5 of the right side, WEIGHTED's to a hundredth of the noise.
+// (contract 3.4). L2: minimises α²‖x−I‖² + Σ‖Hx−g‖² over all kinds of differences; unbiased. L1: as of single frames, with rows of all
+// kinds; consistent. Solutions are exact to a residual of 1e-5 of the right side.
 class WindowSolver {
  public:
-  // reconstruction: L2, L1 or WEIGHTED; the weights of the last two come from the first three channels of `source`. alpha 0: what measures
-  // best (chosen_alpha()).
+  // reconstruction: L2 or L1, whose weights come from the first three channels of `source`. alpha 0: what measures best (chosen_alpha()).
   WindowSolver(const WindowSource& source, uint32_t reconstruction, float alpha, const CancelTest& cancel, SolveReport* report);
 
   // The channels that the constructor has solved for, the first three at most, by frames.
@@ -32,7 +31,7 @@ class WindowSolver {
   Frames minimise_l1(const WindowSource& source, float alpha, const CancelTest& cancel, SolveReport* report);
 
   SpaceTimeSystem system_;
-  std::unique_ptr<const WindowTwicing> twicing_;  // of L1 and WEIGHTED
+  std::unique_ptr<const WindowTwicing> twicing_;  // of L1
   Frames solution_;
 };
 

@@ -27,8 +27,6 @@ class WindowSource {
   // beyond the border, temporal rows without a link, and mixed ones between pixels that do not stay neighbours; whatever is read for these.
   // Temporal rows are read of all frames but the last. Called from several threads.
   virtual void read_row(RowKind kind, int t, int y, float* out) const = 0;
-  // Deviations of the values of a row, one per pixel (GradientImages), for weights by noise; NaN where unknown.
-  virtual void read_deviations(RowKind kind, int t, int y, float* out) const = 0;
   // The pixels of frame t + 1 that those of row y of frame t are linked to, as y·width + x, or kNoLink. One-to-one.
   virtual void read_links(int t, int y, int32_t* out) const = 0;
 };
@@ -40,8 +38,6 @@ class HalvedWindowSource : public WindowSource {
   virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
   // Where ways to linked pixels end, from the middle of these (PixelLinks::off_centre). By default there.
   virtual void read_off_centre(int t, int y, Vec2* out) const;
-  // By these: root mean squares over RGB.
-  void read_deviations(RowKind kind, int t, int y, float* out) const override;
 };
 
 }  // namespace gradus

@@ -25,9 +25,6 @@ struct Window final : HalvedWindowSource {
     const size_t row = size_t(size_.width) * size_t(size_.channels);
     std::copy_n(plane(kind, t).begin() + ptrdiff_t(size_t(y) * row), row, out);
   }
-  void read_deviations(RowKind kind, int t, int y, float* out) const override {
-    std::copy_n(deviations[size_t(kind)][size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
-  }
   void read_half_differences(RowKind kind, int t, int y, float* out) const override {
     const size_t row = size_t(size_.width) * size_t(size_.channels);
     std::copy_n(halves[size_t(kind)][size_t(t)].begin() + ptrdiff_t(size_t(y) * row), row, out);

@@ -136,7 +136,7 @@ TEST_P(SequenceComponents, AddUpBehindADenoiser) {
 
 INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceComponents,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_L1},
-                                         uint32_t{GRADUS_RECONSTRUCTION_WEIGHTED}, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
 // The weights of L2 over time are the same for all, where all go the surfaces' ways.
 TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOne) {

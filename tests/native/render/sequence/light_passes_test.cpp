@@ -31,7 +31,7 @@ TEST_P(SequenceLightPasses, AddUpInEveryFrame) {
 
 INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceLightPasses,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_L1},
-                                         uint32_t{GRADUS_RECONSTRUCTION_WEIGHTED}, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
 }  // namespace
 }  // namespace gradus
