@@ -101,10 +101,11 @@ def native_settings(
 
 
 def limit_preview(result: native.Settings, samples: int) -> None:
-    """Previews must not take the machine from the user, nor from a render that runs at the same time."""
+    """Previews leave half of the processor to the user and to a render that runs at the same time, and are never strict."""
     result.samples = min(result.samples, samples)
     result.threads = max(1, store.process_cpu_threads() // 2)
     result.denoiser = native.Denoiser.NONE
+    result.strict = False
 
 
 def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
@@ -148,6 +149,7 @@ class Job:
         self.animation: Animation | None = None
         self.size = (0, 0)  # pixels of the frame that was exported last
         self.frame_by_frame = ""  # why a frame of an animation is rendered on its own
+        self.unsupported: list[str] = []  # warnings about the frame that was exported last that `strict` turns into an error
         self.buffer = pixels.PassBuffer()
 
     @property
@@ -167,7 +169,7 @@ class Job:
         self.begin_shot()
         self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
         self.shot.settings = self.new_settings()
-        self.warn(cycles_settings.warnings(self.scene, {name for name, _ in self.overrides.native}))
+        self.warn(cycles_settings.warnings(self.scene, {name for name, _ in self.overrides.native}), changes_picture=False)
         self.warn_of_simulations()
         self.warn(output.cut_names(self.scene.render.image_settings, self.layer.name, self.views, self.infos, compat.VERSION))
         self.animation = animation.of_job(self)
@@ -210,6 +212,8 @@ class Job:
     def build(self) -> None:
         with self.shot.clock.phase("build"):
             self.session.commit(self.stop)
+        self.warn([])
+        self.refuse_unsupported()
         if self.overrides.save_scene:
             path = self.overrides.save_scene.replace("%f", str(self.scene.frame_current))
             self.session.library.scene_save(self.session.scene, byref(self.shot.settings), native.text(path))
@@ -268,16 +272,33 @@ class Job:
 
     def wants_vectors(self) -> bool:
         if any(self.keeps_still(info) for info in self.infos):
-            self.warn(["Pass Vector is 0: the picture has motion blur (Motion Blur > Vector Pass gives it all the same)"])
+            text = "Pass Vector is 0: the picture has motion blur (Motion Blur > Vector Pass gives it all the same)"
+            self.warn([text], changes_picture=False)
         return any(info.is_motion for info in self.filled())
 
-    def warn(self, texts: list[str]) -> None:
+    def warn(self, texts: list[str], changes_picture: bool = True) -> None:
+        """Reports `texts`, and what the library has to say, once per session.
+
+        changes_picture: whether the texts name something that the scene asks for and the picture will not have.
+        """
         if self.is_silent:
             return
         for text in self.session.take_new_warnings(texts):
             self.shot.warnings.append(text)
             if not self.is_preview:
                 self.engine.report({"WARNING"}, f"Gradus: {text}")
+        if changes_picture:
+            self.unsupported += [text for text in texts if text not in self.unsupported]
+
+    def refuse_unsupported(self) -> None:
+        """Raises Failure in a strict render of a frame that Gradus would render differently from what the scene asks for.
+
+        Only the warnings of Python are looked at here: the library refuses those of its own commits when the render starts.
+        """
+        texts, self.unsupported = self.unsupported, []
+        if self.shot.settings.strict and texts:
+            others = f" (and {len(texts) - 1} other warnings)" if len(texts) > 1 else ""
+            raise Failure(f"strict: {texts[0]}{others}")
 
     def stop(self) -> bool:
         return stop_requested(self.engine)

@@ -195,7 +195,16 @@ SETTINGS: tuple[Setting, ...] = (
         0,
         1,
     ),
-    Setting("strict", BOOL, False, "Strict", "Missing or broken image files end the render with an error in place of a warning", 0, 1),
+    Setting(
+        "strict",
+        BOOL,
+        False,
+        "Strict",
+        "Ends the render with an error where Gradus would otherwise leave out or replace something and warn: missing images, nodes and "
+        "objects that it does not support",
+        0,
+        1,
+    ),
     Setting(
         "preview_samples",
         INT,

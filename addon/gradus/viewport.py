@@ -105,6 +105,7 @@ class View:
         settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides(), is_final=False)
         settings.samples = scene.gradus.preview_samples
         settings.noise_threshold = settings.time_limit = 0.0
+        settings.strict = False
         settings.integrator, settings.reconstruction, settings.denoiser = Integrator.PATH, _reconstruction(scene.gradus), Denoiser.NONE
         settings.threads = max(1, store.process_cpu_threads() - 1)  # one is left for the interface
         settings.width, settings.height = self.override.width, self.override.height
@@ -287,16 +288,36 @@ def _override(context: Any) -> ViewOverride:
 
 
 def _has_edits(depsgraph: Any) -> bool:
-    """Whether something besides the scene itself was updated. Selecting gives an update of the scene alone. Before 5.0 the scene's
-    compositor comes along with it, which works on the picture when it is there."""
+    """Returns whether the update is of more than the scene itself.
+
+    Blender tags the scene alone when something is selected, but also when objects are hidden or settings change; see _signature().
+    Before 5.0 the scene's compositor is tagged along with it. It works on the finished picture and does not concern the renderer.
+    """
     return any(not isinstance(update.id, (bpy.types.Scene, bpy.types.CompositorNodeTree)) for update in depsgraph.updates)
 
 
 def _signature(depsgraph: Any) -> object:
-    """What a bare scene update may have changed: settings, frame, and which objects there are (hidden ones are not)."""
+    """Returns a value that differs if an update of the scene alone has changed the picture.
+
+    Blender lists every other change in depsgraph.updates, instances included. What remains are settings, the frame, replaced datablocks,
+    and which objects and collections the view layer shows: hiding and unhiding objects of a view layer tags the scene alone. The objects
+    are read and hashed by two calls into Blender and Python, without a loop over them, and instances are not read at all.
+    """
     scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
     values = tuple(getattr(scene.gradus, name) for name in settings.BY_NAME if name not in settings.OF_COMPONENTS)
-    objects = hash(tuple(instance.object.original.as_pointer() for instance in depsgraph.object_instances))
     replaced = (scene.world, layer.material_override, getattr(layer, "world_override", None))
     blocks = tuple(block.original.as_pointer() if block else 0 for block in replaced)
-    return values, scene.frame_current, scene.render.film_transparent, layer.name, layer.use_sky, layer.use_solid, blocks, objects
+    flags = (scene.render.film_transparent, layer.use_sky, layer.use_solid)
+    objects = hash(tuple(depsgraph.objects.values()))
+    return values, scene.frame_current, layer.name, flags, blocks, objects, _collection_flags(layer)
+
+
+def _collection_flags(layer: Any) -> tuple[tuple[bool, ...], ...]:
+    """Returns the switches of a view layer's collections that change how their objects are rendered."""
+    flags = []
+    waiting = [layer.layer_collection]
+    while waiting:
+        collection = waiting.pop()
+        flags.append((collection.exclude, collection.holdout, collection.indirect_only))
+        waiting.extend(collection.children)
+    return tuple(flags)

@@ -63,6 +63,22 @@ def test_examples_belong_to_their_component() -> None:
 MALFORMED = ("A=ED(L", "A=EDL;B=ED.*L", "A=", "A=EXL", "A=DL", "A=EDL;a=ERL", "Residual=EL", ";", "7=EL")
 
 
+@pytest.mark.parametrize("text", SETS)
+def test_the_early_check_accepts_what_the_library_accepts(text: str) -> None:
+    components.describe(native.load(), text.encode())
+    assert components.syntax_error(text) == ""
+
+
+MISSPELT = ("A=ED(L", "A=EDL)", "A=E(D|", "A=*EDL", "A=E(+D)L", "A=E|?L", "A=EXL", "A=", "A", ";", "7=EL", "A=EDL;B")
+
+
+@pytest.mark.parametrize("text", MISSPELT)
+def test_the_early_check_refuses_only_what_the_library_refuses(text: str) -> None:
+    assert components.syntax_error(text)
+    with pytest.raises(native.GradusError):
+        components.describe(native.load(), text.encode())
+
+
 @pytest.mark.parametrize("text", MALFORMED)
 def test_a_malformed_set_is_refused_before_the_export(scene: bpy.types.Scene, text: str) -> None:
     scene.gradus.use_decomposition, scene.gradus.components = True, text

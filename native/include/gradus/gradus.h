@@ -428,7 +428,7 @@ typedef struct GradusSettings {
   float film_exposure;
   uint32_t film_transparent;
   float roughness_threshold;
-  uint32_t strict;
+  uint32_t strict;                 /* warnings of the scene's commit make gradus_render_start and _sequence_sample fail */
   uint32_t threads;                /* 0 = those of the device */
   float alpha_threshold;           /* surfaces with less alpha are skipped by data passes */
   uint32_t use_sky;                /* the world is seen by the camera */

@@ -58,7 +58,7 @@ constexpr Option kOptions[] = {
     OPTION(film_transparent, kBool, 0, 0, 1, "", kSampling, "The world is transparent to the camera; alpha is reconstructed as a fourth channel"),
     OPTION(roughness_threshold, kFloat, 0.1, 0, 1, "", kSampling,
            "Lobes with alpha (roughness squared) below it count as specular reflection or transmission"),
-    OPTION(strict, kBool, 0, 0, 1, "", kOther, "Missing or broken files end the render with an error in place of a warning"),
+    OPTION(strict, kBool, 0, 0, 1, "", kOther, "What would be left out or replaced with a warning ends the render with an error"),
     OPTION(threads, kInt, 0, 0, 1024, "", kOther, "Threads, 0 = those of the device; the result does not depend on it"),
     OPTION(alpha_threshold, kFloat, 0.5, 0, 1, "", kSampling, "Surfaces with less alpha are skipped by data passes"),
     OPTION(use_sky, kBool, 1, 0, 1, "", kSampling, "The world is seen by the camera"),
