@@ -13,7 +13,6 @@ SAME_NAME = (
     "diffuse_bounces",
     "glossy_bounces",
     "transmission_bounces",
-    "volume_bounces",
     "transparent_max_bounces",
     "film_exposure",
     "filter_width",

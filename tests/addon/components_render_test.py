@@ -46,7 +46,7 @@ def require_sum(rendered: images.Passes, names: tuple[str, ...], layer: str = "V
 # ------------------------------------------------------------------------------------------------ sums
 
 
-@pytest.mark.parametrize("reconstruction", ["NONE", "REGULARIZED", "L2", "L1", "WEIGHTED"])
+@pytest.mark.parametrize("reconstruction", ["NONE", "REGULARIZED", "L2", "L1"])
 def test_components_add_up_to_combined(sample: bpy.types.Scene, render: Callable[..., images.Passes], reconstruction: str) -> None:
     rendered = render(sample, frame=12, reconstruction=reconstruction, integrator="PATH" if reconstruction == "NONE" else "GRADIENT")
     require_sum(rendered, DEFAULT)

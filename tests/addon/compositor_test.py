@@ -22,7 +22,7 @@ def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Pas
     @cache
     def passes(*muted: str) -> images.Passes:
         folder = tmp_path_factory.mktemp("composite")
-        return compositing.render_muted(SAMPLE, folder, muted, percentage=30, frame=12, samples=8, reconstruction="WEIGHTED")
+        return compositing.render_muted(SAMPLE, folder, muted, percentage=30, frame=12, samples=8, reconstruction="L2")
 
     return passes
 

@@ -51,7 +51,7 @@ def compose(scene: bpy.types.Scene) -> None:
     tree.links.new(summed(tree, render), output)
 
 
-@pytest.mark.parametrize("reconstruction", ["REGULARIZED", "WEIGHTED"])
+@pytest.mark.parametrize("reconstruction", ["REGULARIZED", "L2"])
 def test_the_sum_of_light_passes_is_the_render(tmp_path: Path, reconstruction: str) -> None:
     bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
     scene = bpy.context.scene

@@ -6,7 +6,7 @@ from typing import Any
 
 CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME, SHADOW = 1, 2, 4, 8, 16, 32
 ALL_RAYS = 63
-HOLDOUT, SHADOW_CATCHER = 64, 128
+HOLDOUT = 64
 MAY_MOVE = 256
 
 RAY_SWITCHES = (
@@ -42,6 +42,4 @@ def visibility(obj: Any, parent: Any, view_layer: Any) -> int:
         bits &= ~CAMERA
     if obj.is_holdout or owner.holdout_get(view_layer=view_layer):
         bits |= HOLDOUT
-    if obj.is_shadow_catcher or owner.is_shadow_catcher:
-        bits |= SHADOW_CATCHER
     return bits

@@ -28,7 +28,7 @@ class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "preview_samples")
 
 
-FROM_GRADIENTS = ("L2", "WEIGHTED", "L1")
+FROM_GRADIENTS = ("L2", "L1")
 """Reconstructions that need gradients, and weigh the image against them."""
 
 
@@ -42,9 +42,7 @@ def bias(settings: Any, samples: int) -> tuple[str, str]:
         return "Biased where a denoiser is found", "INFO"
     if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
         return "Biased: light is clamped", "INFO"
-    if settings.reconstruction in ("L1", "WEIGHTED", "REGULARIZED") or (
-        settings.reconstruction == "AUTO" and settings.integrator != "PATH"
-    ):
+    if settings.reconstruction in ("L1", "REGULARIZED") or (settings.reconstruction == "AUTO" and settings.integrator != "PATH"):
         return "Consistent", "INFO"
     return ("Unbiased at threshold 0", "INFO") if settings.noise_threshold > 0.0 else ("Unbiased", "CHECKMARK")
 
