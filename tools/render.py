@@ -20,6 +20,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "addon"))
+
+from gradus import components, options  # noqa: E402  (neither needs Blender or the library)
 
 
 class RenderError(Exception):
@@ -93,6 +96,17 @@ def component_options(text: str) -> list[str]:
     return ["--gradus-use-decomposition", "1", f"--gradus-components={own}", "--gradus-passes", "components"]
 
 
+def check_options(arguments: list[str]) -> None:
+    """Refuses options that the add-on would refuse after the build. Values of native settings are left to the library."""
+    try:
+        overrides = options.parse(arguments)
+    except options.OptionError as error:
+        raise RenderError(str(error)) from error
+    problem = components.syntax_error(overrides.text("components") or "")
+    if problem:
+        raise RenderError(f"COMPONENTS: {problem}")
+
+
 @dataclass(frozen=True)
 class Request:
     """What the user asks for."""
@@ -113,6 +127,7 @@ def request() -> Request:
         arguments = component_options(os.environ.get("COMPONENTS") or "") + shlex.split(text)
     except ValueError as error:
         raise RenderError(f"ARGS={text}: {error}") from error
+    check_options(arguments)
     out = Path(os.environ.get("OUT") or "out").absolute()
     try:
         out.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""scene.gradus and view_layer.gradus, made from the table of settings.py."""
+"""The properties scene.gradus and view_layer.gradus, created from the table of settings.py."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from . import native, pass_table, settings
 from .settings import Setting
 
 CHANGE_PASSES = frozenset(("integrator", "reconstruction", "denoiser", "use_decomposition", "components"))
-"""Settings by which there are passes or not."""
+"""Settings that add or remove passes."""
 
 
 def _show_passes(group: Any, _context: Any) -> None:
-    """Sockets of the compositor's Render Layers follow at once. Any layer speaks for all of the scene."""
+    """Updates the sockets of the compositor's Render Layers nodes. One view layer updates all of the scene."""
     group.id_data.view_layers[0].update_render_passes()
 
 
 def _property(setting: Setting) -> Any:
-    """The bpy property of a setting."""
+    """Returns the bpy property of a setting."""
     common = {"name": setting.label, "description": setting.doc, "default": setting.default}
     if setting.name in CHANGE_PASSES:
         common["update"] = _show_passes
     if setting.kind == settings.BOOL:
         return BoolProperty(**common)
     if setting.kind == settings.ENUM:
-        # The library's own numbers, so that files keep their meaning when choices are added between.
+        # The numbers of the library, so that files keep their meaning when choices are inserted.
         items = [(identifier, label, doc, number) for identifier, label, doc, number in setting.choices]
         return EnumProperty(**common, items=items)
     if setting.kind == settings.TEXT:
@@ -51,18 +51,18 @@ def _switch(label: str, description: str, default: bool) -> Any:
 
 
 class GradusViewLayerSettings(bpy.types.PropertyGroup):
-    """Passes of the engine that Blender has no switch for."""
+    """Switches of passes for which Blender has none."""
 
     __annotations__ = {name: _switch(*row) for name, *row in pass_table.SWITCHES}  # noqa: RUF012
 
 
 class GradusWindowState(bpy.types.PropertyGroup):
-    """What the interface remembers; no file does."""
+    """State of the interface that is not saved in files."""
 
     path: StringProperty(
         name="Try a Path",
-        description="E, then D (rough), R (sharp reflection) or T (sharp transmission) for each scattering, then L: to which component it "
-        "belongs is shown below",
+        description="A light path: E, then D (diffuse or rough), R (specular reflection) or T (specular "
+        "transmission) for each scattering event, then L. The component to which it belongs is shown below",
         default="ETTDL",
     )
 
@@ -78,7 +78,8 @@ class GradusPreferences(bpy.types.AddonPreferences):
 
     library_path: StringProperty(
         name="Library",
-        description="Path of libgradus.so; empty = the one that came with the add-on. The environment variable GRADUS_LIBRARY wins over it",
+        description="Path of libgradus.so. If empty, the library of the add-on is used. The environment variable "
+        "GRADUS_LIBRARY overrides this setting",
         subtype="FILE_PATH",
         update=_set_library,
     )

@@ -39,7 +39,7 @@ def test_a_set_that_is_refused_has_the_names_that_can_be_read() -> None:
 def test_the_default_set_written_out_is_the_default_set() -> None:
     library = native.load()
     found = components.describe(library, b"")
-    again = components.describe(library, components.written(found).encode())
+    again = components.describe(library, components.to_text(found).encode())
     assert again == found
     assert [component.expression for component in found] == ["EL", "ED.*L", "ER(D.*)?L", "ETT(D.*)?L", ""]
 
@@ -61,6 +61,22 @@ def test_examples_belong_to_their_component() -> None:
 
 
 MALFORMED = ("A=ED(L", "A=EDL;B=ED.*L", "A=", "A=EXL", "A=DL", "A=EDL;a=ERL", "Residual=EL", ";", "7=EL")
+
+
+@pytest.mark.parametrize("text", SETS)
+def test_the_early_check_accepts_what_the_library_accepts(text: str) -> None:
+    components.describe(native.load(), text.encode())
+    assert components.syntax_error(text) == ""
+
+
+MISSPELT = ("A=ED(L", "A=EDL)", "A=E(D|", "A=*EDL", "A=E(+D)L", "A=E|?L", "A=EXL", "A=", "A", ";", "7=EL", "A=EDL;B")
+
+
+@pytest.mark.parametrize("text", MISSPELT)
+def test_the_early_check_refuses_only_what_the_library_refuses(text: str) -> None:
+    assert components.syntax_error(text)
+    with pytest.raises(native.GradusError):
+        components.describe(native.load(), text.encode())
 
 
 @pytest.mark.parametrize("text", MALFORMED)
@@ -235,5 +251,5 @@ def test_without_a_library_writing_out_was_a_traceback(scene: bpy.types.Scene, m
 
 
 def test_components_have_a_panel_among_the_passes() -> None:
-    switches = {part.switch.removeprefix("gradus.") for part in passes.PARTS}
+    switches = {part.switch.removeprefix("gradus.") for part in passes.COMPONENT_TABLE}
     assert set(ui.pass_panels.OF_COMPONENTS) == switches

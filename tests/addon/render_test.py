@@ -222,6 +222,59 @@ def test_what_cannot_be_obeyed_is_refused(cube: bpy.types.Scene, render: Render)
         render(cube, integrator="PATH", reconstruction="L2")
 
 
+def use_lost_image(scene: bpy.types.Scene) -> bpy.types.Image:
+    """Gives the cube a texture from a file that does not exist."""
+    material = bpy.data.materials.new("Lost")
+    material.use_nodes = True
+    texture = material.node_tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("Lost", 1, 1)
+    texture.image.source, texture.image.filepath = "FILE", "/nonexistent/lost.png"
+    surface = material.node_tree.nodes["Principled BSDF"]
+    material.node_tree.links.new(texture.outputs["Color"], surface.inputs["Base Color"])
+    scene.objects["Cube"].data.materials.append(material)
+    return texture.image
+
+
+def test_a_strict_render_fails_for_a_missing_image(cube: bpy.types.Scene, render: Render) -> None:
+    use_lost_image(cube)
+    render(cube)
+    with pytest.raises(RuntimeError, match="strict: .*/nonexistent/lost.png"):
+        render(cube, strict=True)
+    with pytest.raises(RuntimeError, match="strict: "):  # also when the warning is no longer new
+        render(cube, strict=True)
+
+
+def test_strict_holds_with_persistent_data(cube: bpy.types.Scene, render: Render) -> None:
+    """Warnings are reported once per session, which persistent data keeps: strict renders must fail all the same."""
+    from gradus import store
+
+    cube.render.use_persistent_data = True
+    image = use_lost_image(cube)
+    layer = cube.view_layers[0]
+    fog = bpy.data.objects.new("Fog", bpy.data.volumes.new("Fog"))
+    cube.collection.objects.link(fog)
+    try:
+        render(cube)
+        with pytest.raises(RuntimeError, match="strict: Object 'Fog' is left out"):
+            render(cube, strict=True)
+        bpy.data.objects.remove(fog)
+        with pytest.raises(RuntimeError, match="strict: .*/nonexistent/lost.png"):
+            render(cube, strict=True)
+        cube.objects["Cube"].data.materials.clear()
+        bpy.data.images.remove(image)
+        render(cube, strict=True)
+        assert store.summaries[(cube.name, layer.name)]["warnings"] == []
+    finally:
+        cube.render.use_persistent_data = False
+        store.release_kind(store.FINAL)
+
+
+def test_strict_does_not_refuse_what_changes_no_picture(cube: bpy.types.Scene, render: Render) -> None:
+    """Limits that differ from Cycles' are reported, and are what the scene asks Gradus for."""
+    cube.cycles.max_bounces = 3
+    render(cube, strict=True)
+
+
 def test_no_camera(cube: bpy.types.Scene, render: Render) -> None:
     cube.camera = None
     with pytest.raises(RuntimeError, match="camera"):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from ctypes import byref
+from typing import Any
 
 import bpy
 import pytest
@@ -108,3 +110,94 @@ def test_a_changed_view_layer_starts_the_picture_again(scene: bpy.types.Scene, c
     assert signature() == before
     change(scene.view_layers[0])
     assert signature() != before
+
+
+class Shown:
+    """A view layer with two visible objects and a hidden one, an instanced collection and a collection of its own."""
+
+    def __init__(self, scene: bpy.types.Scene) -> None:
+        self.scene, self.layer = scene, scene.view_layers[0]
+        self.seen, self.hidden, self.other = (recording.add(recording.grid(1)) for _ in range(3))
+        self.hidden.hide_set(True)
+        self.other.modifiers.new("Cut", "BOOLEAN").object = self.seen  # keeps a hidden object in the dependency graph
+        self.source = bpy.data.objects.new("Source", recording.grid(1))
+        instanced = bpy.data.collections.new("Instanced")
+        instanced.objects.link(self.source)
+        empty = bpy.data.objects.new("Instancer", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", instanced
+        scene.collection.objects.link(empty)
+        self.collection = bpy.data.collections.new("Props")
+        scene.collection.children.link(self.collection)
+        self.collection.objects.link(bpy.data.objects.new("Prop", recording.grid(1)))
+
+    @property
+    def layer_collection(self) -> bpy.types.LayerCollection:
+        return self.layer.layer_collection.children["Props"]
+
+
+def swap(shown: Shown) -> None:
+    shown.seen.hide_set(True)
+    shown.hidden.hide_set(False)
+
+
+def replace(shown: Shown) -> None:
+    bpy.data.objects.remove(shown.other)
+    recording.add(recording.grid(1))
+
+
+CHANGES: dict[str, Callable[[Shown], Any]] = {
+    "hide": lambda shown: shown.other.hide_set(True),
+    "hide what another object needs": lambda shown: shown.seen.hide_set(True),
+    "unhide": lambda shown: shown.hidden.hide_set(False),
+    "swap": swap,
+    "hide for all view layers": lambda shown: setattr(shown.seen, "hide_viewport", True),
+    "hide in an instanced collection": lambda shown: setattr(shown.source, "hide_viewport", True),
+    "exclude": lambda shown: setattr(shown.layer_collection, "exclude", True),
+    "hide a collection": lambda shown: setattr(shown.collection, "hide_viewport", True),
+    "holdout": lambda shown: setattr(shown.layer_collection, "holdout", True),
+    "indirect only": lambda shown: setattr(shown.layer_collection, "indirect_only", True),
+    "remove": lambda shown: bpy.data.objects.remove(shown.other),
+    "replace": replace,
+    "move": lambda shown: setattr(shown.seen, "location", (1.0, 0.0, 0.0)),
+    "edit an instance": lambda shown: setattr(shown.source, "location", (1.0, 0.0, 0.0)),
+    "world": lambda shown: setattr(shown.scene, "world", bpy.data.worlds.new("Other")),
+    "frame": lambda shown: shown.scene.frame_set(5),
+}
+
+
+@pytest.mark.parametrize("name", list(CHANGES))
+def test_no_change_is_missed(scene: bpy.types.Scene, name: str) -> None:
+    shown = Shown(scene)
+    before = signature()
+    shown.other.select_set(True)
+    assert signature() == before
+    assert has_edits(lambda: CHANGES[name](shown)) or signature() != before
+
+
+def calls_of(action: Callable[[], object]) -> int:
+    """Counts the calls of Python and C functions that an action makes."""
+    count = 0
+
+    def note(_frame: object, event: str, _argument: object) -> None:
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(note)
+    try:
+        action()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+def test_an_update_does_not_visit_the_instances(scene: bpy.types.Scene) -> None:
+    """Each selection took a second in a scene of a million instances."""
+    mesh = recording.grid(1)
+    counts = []
+    for total in (2, 500):
+        while len(scene.objects) < total:
+            recording.add(mesh)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        depsgraph.update()
+        counts.append(calls_of(lambda depsgraph=depsgraph: (viewport._signature(depsgraph), viewport._has_edits(depsgraph))))
+    assert counts[0] == counts[1]

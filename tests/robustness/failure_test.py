@@ -5,13 +5,16 @@ Faults are put into the add-on by a script: each replaces one function by one th
 
 from __future__ import annotations
 
+import os
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
+import bpy
 import numpy as np
 import pytest
 from support import images
-from support.application import Outcome
+from support.application import ROOT, Outcome
 
 SETUP = """
 import bpy
@@ -96,6 +99,60 @@ def test_i1_unwritable_statistics(blender: Callable[..., Outcome], tmp_path: Pat
     outcome = blender(*head, "--", "--gradus-stats", "/proc/nowhere/stats.jsonl")
     assert outcome.code == 1, outcome.output
     assert files(tmp_path) == []
+
+
+UNSUPPORTED = {
+    "missing image": """
+image = tree.nodes.new("ShaderNodeTexImage")
+image.image = bpy.data.images.new("Lost", 1, 1)
+image.image.source, image.image.filepath = "FILE", "/nonexistent/lost.png"
+tree.links.new(image.outputs["Color"], surface.inputs["Base Color"])
+""",
+    "node": """
+voronoi = tree.nodes.new("ShaderNodeTexVoronoi")
+tree.links.new(voronoi.outputs["Color"], surface.inputs["Base Color"])
+""",
+    "object": "scene.collection.objects.link(bpy.data.objects.new('Fog', bpy.data.volumes.new('Fog')))",
+}
+MATERIAL = """
+tree = scene.objects["Cube"].active_material.node_tree
+surface = tree.nodes["Principled BSDF"]
+"""
+
+
+@pytest.mark.parametrize("ahead", [False, True], ids=["frame by frame", "ahead"])
+@pytest.mark.parametrize("name", list(UNSUPPORTED))
+def test_a_strict_render_of_what_gradus_would_replace_ends_with_code_1(
+    blender: Callable[..., Outcome], tmp_path: Path, name: str, ahead: bool
+) -> None:
+    """The option was read nowhere: farms delivered pictures with magenta textures."""
+    setup = "scene.gradus.integrator, scene.gradus.samples = 'AUTO', 2\n" * ahead + MATERIAL + UNSUPPORTED[name]
+    lax, strict = tmp_path / "lax", tmp_path / "strict"
+    outcome = animate(blender, lax, setup, range(1, 3))
+    assert outcome.code == 0, outcome.output
+    assert "Warning: Gradus: " in outcome.output
+    assert files(lax) == ["f_0001.png", "f_0002.png"]
+    outcome = animate(blender, strict, setup + "\nscene.gradus.strict = True", range(1, 3))
+    assert outcome.code == 1, outcome.output
+    assert "Error: Gradus: strict: " in outcome.output
+    assert files(strict) == []
+
+
+@pytest.mark.application
+def test_make_render_fails_where_a_strict_render_does(tmp_path: Path) -> None:
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    scene = bpy.context.scene
+    exec(MATERIAL + UNSUPPORTED["missing image"], {"bpy": bpy, "scene": scene})
+    scene.render.resolution_x, scene.render.resolution_y = 32, 18
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "lost.blend"))
+    for strict, code in (("0", 0), ("1", 1)):
+        arguments = f"--gradus-samples 1 --gradus-strict {strict}"
+        environment = os.environ | {"SCENE": str(tmp_path / "lost.blend"), "OUT": str(tmp_path / strict), "ARGS": arguments}
+        command = ["/usr/bin/python3", str(ROOT / "tools" / "render.py")]
+        result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=False)
+        assert result.returncode == code, result.stdout + result.stderr
+        assert ("strict: " in result.stdout) == (strict == "1")
+        assert (tmp_path / strict / "lost_0001.png").exists() == (strict == "0")
 
 
 def test_i2_a_rerun_completes_the_job(blender: Callable[..., Outcome], tmp_path: Path) -> None:

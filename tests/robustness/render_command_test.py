@@ -14,6 +14,7 @@ MISTAKES = {
     "FRAMES": ("3-1", "ends before it starts"),
     "OUT": ("/proc/nope", "OUT=/proc/nope"),
     "ARGS": ("--gradus-samples '4", "No closing quotation"),
+    "COMPONENTS": ("A=E(", "COMPONENTS: component A: a ')' is missing at the end of 'E('"),
 }
 
 
@@ -32,6 +33,10 @@ def test_negative_frames_are_refused() -> None:
 
 def test_an_animation_is_one_range() -> None:
     refused("FRAMES", "1-3,7", "expected one range", "--animation")
+
+
+def test_unknown_options_are_refused_before_the_build() -> None:
+    refused("ARGS", "--gradus-sampels 4", "unknown option --gradus-sampels")
 
 
 def refused(name: str, value: str, message: str, *options: str) -> None:

@@ -129,7 +129,7 @@ def _groups(schema: Schema) -> list[str]:
 
 def passes(schema: Schema, note: str) -> str:
     """The text of pass_table.py."""
-    lines = ['"""The passes of the engine as rows of passes.PassInfo and passes.PartInfo.', "", note, '"""', ""]
+    lines = ['"""The passes of the engine as rows of passes.PassInfo and passes.ComponentPassInfo.', "", note, '"""', ""]
     lines += ["from __future__ import annotations", "", "from typing import Any", ""]
     lines += ["from .abi import ComponentPass, Pass", "", "PASSES: tuple[tuple[Any, ...], ...] = ("]
     for item in schema.passes:

@@ -52,6 +52,14 @@ Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
   return plan;
 }
 
+// Throws where a strict render would show something else than what the scene asks for.
+void refuse_warnings(const LoopInput& input) {
+  const std::vector<std::string>& warnings = input.snapshot->warnings;
+  if (!input.settings.strict || warnings.empty()) return;
+  const size_t others = warnings.size() - 1;
+  throw unsupported("strict: " + warnings[0] + (others > 0 ? " (and " + std::to_string(others) + " other warnings)" : ""));
+}
+
 // From here on every pixel has samples of both halves: there is something to reconstruct.
 constexpr uint32_t kBothHalves = 2;
 
@@ -75,6 +83,7 @@ RenderLoop::RenderLoop(LoopInput input)
       picture_(plan_.delivered),
       live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
+  refuse_warnings(input_);
   stats_.threads = static_cast<uint32_t>(arena_.max_concurrency());
   if (input_.resumed) resume(input_.resumed);
 }

@@ -399,6 +399,33 @@ TEST(SceneWarnings, StayWithTheirScene) {
   EXPECT_OK(gradus_device_release(device));
 }
 
+// A render with `strict` starts only for scenes of which everything is rendered.
+TEST(SceneWarnings, EndAStrictRender) {
+  const GradusDevice device = make_device();
+  const GradusScene good = make_scene(device), broken = make_scene(device);
+  EXPECT_OK(gradus_scene_remove(broken, GRADUS_KIND_MESH, 1));
+  EXPECT_OK(gradus_scene_commit(broken, nullptr, nullptr));
+  GradusSettings settings = small_render();
+  for (const uint32_t strict : {0u, 1u}) {
+    settings.strict = strict;
+    for (const GradusScene scene : {good, broken}) {
+      GradusRender render = 0;
+      if (strict && scene == broken) {
+        EXPECT_EQ(gradus_render_start(scene, &settings, &render), GRADUS_ERROR_UNSUPPORTED);
+        EXPECT_NE(error_text().find("strict: object "), std::string::npos);
+        EXPECT_EQ(render, 0u);
+      } else {
+        EXPECT_OK(gradus_render_start(scene, &settings, &render));
+        EXPECT_OK(gradus_render_wait(render, -1.0));
+        EXPECT_OK(gradus_render_release(render));
+      }
+    }
+  }
+  EXPECT_OK(gradus_scene_release(good));
+  EXPECT_OK(gradus_scene_release(broken));
+  EXPECT_OK(gradus_device_release(device));
+}
+
 TEST(G10_Registry, HandlesComeAndGo) {
   api::Registry registry;
   uint64_t last = 0;
