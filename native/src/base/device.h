@@ -6,7 +6,6 @@
 
 #include <tbb/task_arena.h>
 
-#include "base/claims.h"
 #include "base/warnings.h"
 #include "gradus/gradus.h"
 
@@ -35,11 +34,9 @@ class Device {
   const std::string& denoiser_path() const { return denoiser_path_; }
   // Of the device itself: colour management. Those of scenes are with the scenes.
   Warnings& warnings() { return warnings_; }
-  Claims& claims() { return claims_; }
 
  private:
   Warnings warnings_;
-  Claims claims_;
   RTCDeviceTy* embree_ = nullptr;
   uint32_t threads_ = 0;
   tbb::task_arena arena_;

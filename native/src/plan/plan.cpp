@@ -1,14 +1,12 @@
 #include "plan/plan.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 
 #include "base/error.h"
 #include "base/text_list.h"
 #include "bsdf/ggx.h"
-#include "frame/pass_planes.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
 
@@ -240,103 +238,6 @@ bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* 
 
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises) {
   return plan.unbiased && !denoises && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
-}
-
-namespace {
-
-// Floats per pixel of an iterative solver for so many channels: matrices of all levels, interpolation and weights; vectors.
-uint64_t solver_floats(uint64_t channels) { return 12 + 6 * channels; }
-// The same with its input and solution.
-uint64_t solve_floats(uint64_t channels) { return solver_floats(channels) + 4 * channels; }
-
-// Where a pilot leaves differences out, L2 iterates (reconstruct/l2_with_gaps.h).
-bool l2_iterates(const Plan& plan) { return plan.pilot; }
-
-// REGULARIZED, as measured (reconstruct/feature_regression.h): features with their variances and as a basis, the image and half the
-// difference of its halves, weights, what both steps make of them; with differences the images and the solve, while the regression is
-// there.
-uint64_t regularized_floats(const Plan& plan) { return plan.gradients ? 45 + 15 * uint64_t(plan.channels) : 63; }
-
-// What the reconstruction takes beside the frame, floats per pixel: its result, and until it is there
-uint64_t reconstruction_floats(const Plan& plan) {
-  const uint64_t c = uint64_t(plan.channels), rgba = 4;
-  if (!plan.solves) return rgba;
-  if (plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) return rgba + regularized_floats(plan);
-  if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return rgba + (l2_iterates(plan) ? 4 * c + solve_floats(c) : c + 1);
-  // images, deviations, what is settled; then the solve with its blurred deviations, or that of alpha by the same weights.
-  const uint64_t colors = std::min<uint64_t>(c, 3), images = 3 * c + 3 + c + 1;
-  const uint64_t of_colors = solve_floats(colors) + 3 + c, of_alpha = solver_floats(colors) + colors + c + 1 + solve_floats(1);
-  return rgba + images + (c > colors ? std::max(of_colors, of_alpha) : of_colors);
-}
-
-// What the pass Error takes at the end (reconstruct/error_estimate.h): the picture, half the difference of the halves, L2 of both, and
-// their squares.
-uint64_t error_floats(const Plan& plan) {
-  const uint64_t c = uint64_t(plan.channels), rgba = 4;
-  if (plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) return reconstruction_floats(plan) + 1;
-  if (!plan.solves) return rgba + c + c * (plan.gradients ? 3 : 1) + 1;
-  const uint64_t l2 = l2_iterates(plan) ? solve_floats(c) : c + 1;
-  return rgba + c + 3 * c + l2 + (plan.reconstruction == GRADUS_RECONSTRUCTION_L2 ? 0 : c);
-}
-
-// What the estimate of noise takes (render/cell_noise.h): images and the halves' differences, what is delivered and its noise, and those
-// of L2 where the weights follow the noise.
-uint64_t noise_floats(const Plan& plan) {
-  const uint64_t c = uint64_t(plan.channels), images = 2 * c * (plan.gradients ? 3 : 1), result = 2 * c;
-  if (!plan.solves) return images + result;
-  if (plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) return regularized_floats(plan) + 1;
-  if (plan.reconstruction == GRADUS_RECONSTRUCTION_L2) return images + result + (l2_iterates(plan) ? solve_floats(c) : 0);
-  return images + 3 + result + solve_floats(std::min<uint64_t>(c, 3)) + 3 + result;
-}
-
-// What the host's denoiser takes: picture and guides, twice, and its network, which goes through large pictures in tiles (as measured with
-// Open Image Denoise 2.3.3).
-uint64_t denoiser_bytes(const Plan& plan) {
-  const uint64_t area = uint64_t(plan.sampled.area()), tile = std::min(area, uint64_t{2160} * 2160);
-  return 23 * sizeof(float) * area + 800 * tile + (32 << 20);
-}
-
-bool reconstructs(const Plan& plan) { return plan.solves || plan.denoises; }
-
-uint64_t light_pass_count(const Plan& plan) { return reconstructs(plan) ? uint64_t(std::popcount(plan.passes & light_passes())) : 0; }
-
-// What light passes take at the end (render/light_passes.h): of each, and of what is in none of them, the picture, its error and room, the
-// colour; until they are there one more regression.
-uint64_t light_floats(const Plan& plan) {
-  const uint64_t count = light_pass_count(plan), features = 14, of_regression = 63;
-  return count > 0 ? 10 * (count + 1) + features + of_regression : 0;
-}
-
-// The frame of the picture that a watcher sees first (render/quarter_picture.h), and its reconstruction.
-uint64_t quarter_bytes(const Plan& plan) {
-  const auto side = [](int32_t size) { return uint64_t(size) / 4 + 3; };
-  const uint64_t frame = frame_bytes_per_pixel(1, false, feature_passes());
-  return (frame + (4 + regularized_floats(plan)) * sizeof(float)) * side(plan.delivered.width()) * side(plan.delivered.height());
-}
-
-}  // namespace
-
-uint64_t planned_bytes(const Plan& plan) {
-  uint64_t bytes = frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes,
-                                         {plan.rough_vertices, plan.rough_details, plan.component_motion});
-  bytes += 4 * sizeof(float);  // the noisy image that is shown meanwhile
-  uint64_t floats = reconstruction_floats(plan);
-  if (plan.denoises) floats = std::max(floats, 4 + regularized_floats(plan));  // shown before the denoiser is
-  if (wants(plan.passes, GRADUS_PASS_ERROR)) floats = std::max(floats, error_floats(plan)) + 1;
-  floats = std::max(floats, light_floats(plan));
-  bytes += 3 * light_pass_count(plan) * sizeof(float);  // as they are delivered
-  // One component's picture, those of all where they are wanted, and those that are shown meanwhile.
-  const uint64_t channels = uint64_t(plan.channels), components = uint64_t(plan.components.count());
-  if (components > 1) bytes += (channels + (channels + 3) * components) * sizeof(float);
-  // A reconstruction that is shown stays until the next one is there.
-  if (reconstructs(plan)) bytes += (wants(plan.passes, GRADUS_PASS_ERROR) ? 5 : 4) * sizeof(float);
-  if (plan.adaptive) {
-    floats = std::max(floats, noise_floats(plan));
-    bytes += 2 * sizeof(uint32_t);  // where the samples of a batch go
-  }
-  const uint64_t area = uint64_t(plan.sampled.area());
-  return bytes * area +
-         std::max({floats * sizeof(float) * area, plan.denoises ? denoiser_bytes(plan) : 0, reconstructs(plan) ? quarter_bytes(plan) : 0});
 }
 
 }  // namespace gradus

@@ -70,7 +70,4 @@ bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises)
 // What the reconstruction reads besides the image: features (settings/pass_table.h).
 bool features_wanted(const Plan& plan);
 
-// Most bytes that a render takes at a time: the frame, and the work space of its reconstruction or of the estimate of its noise.
-uint64_t planned_bytes(const Plan& plan);
-
 }  // namespace gradus

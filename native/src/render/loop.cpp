@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/bill.h"
+#include "base/clock.h"
 #include "base/device.h"
 #include "base/error.h"
 #include "frame/pass_planes.h"
@@ -11,8 +12,8 @@
 #include "render/combine.h"
 #include "render/component_read.h"
 #include "render/denoise_and_bill.h"
+#include "render/memory_estimate.h"
 #include "render/pass_read.h"
-#include "render/require_memory.h"
 #include "render/resume.h"
 #include "render/show_combined.h"
 #include "render/small_components.h"
@@ -73,7 +74,6 @@ RenderLoop::RenderLoop(LoopInput input)
       picture_(plan_.delivered),
       live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
-  require_memory("the frame", planned_bytes(plan_), "render fewer pixels or passes");
   if (input_.resumed) resume(input_.resumed);
 }
 
@@ -161,6 +161,8 @@ void RenderLoop::prepare() {
   frame->frame_number = settings.frame;
   if (input_.replay) frame->replayed = input_.replay->sources;
   stats_.warnings = input_.snapshot->warnings;
+  const std::string warning = memory_warning(estimated_memory(plan_), machine_memory_bytes());
+  if (!warning.empty() && !input_.samples_only) stats_.warnings.push_back(warning);  // Sequence warns of its frames
 
   integrator_ = input_.make_integrator(frame->settings, integrator, components_);
   picture_.expect_tiles();

@@ -96,9 +96,6 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
                    {"residual", stats.solve.residual},
                    {"hit_cap", stats.solve.hit_cap}};
   }
-  const PlannedBytes& planned = stats.planned;
-  if (planned.memory > 0)
-    j["planned_bytes"] = {{"memory", planned.memory}, {"kept", planned.kept}, {"frames", planned.frames}, {"temporary", planned.temporary}};
   j["frame_memory_bytes"] = frame.memory_bytes();
   j["peak_memory_bytes"] = peak_memory_bytes();
   j["warnings"] = stats.warnings;

@@ -28,14 +28,6 @@ struct PhaseTimes {
   double total() const { return sample + preview + reconstruct + denoise + links + store; }
 };
 
-// What an animation takes at most, as planned before it begins; 0: not planned.
-struct PlannedBytes {
-  uint64_t memory = 0;     // at a time, without the scenes
-  uint64_t kept = 0;       // of that, while another layer or view is rendered
-  uint64_t frames = 0;     // files of frames: noisy sums hardly pack
-  uint64_t temporary = 0;  // rows in the folder for temporary files
-};
-
 struct RenderStats {
   // CPU time of samples is that of our threads, by tiles; that of all else (the pilot, previews, estimates of noise, solves, the denoiser,
   // links, files) is the whole process's meanwhile, what the host does in these moments included.
@@ -48,7 +40,6 @@ struct RenderStats {
   std::vector<std::string> warnings;
   Reasons chosen, skipped;      // what was decided after the plan, by samples
   double offset_samples = 0.0;  // per pixel, those that replay the frame before
-  PlannedBytes planned;
 
   // The work of a second part of the frame.
   void add(const RenderStats& part);

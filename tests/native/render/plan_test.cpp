@@ -154,7 +154,7 @@ TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
   EXPECT_EQ(first_check(0.01f, 4), 16u);
 }
 
-TEST(Plan, DenoiserIsBiasedAndAsksForFeaturesAndMemory) {
+TEST(Plan, DenoiserIsBiasedAndAsksForFeatures) {
   GradusSettings s = small_settings(64, 64, 4);
   s.reconstruction = GRADUS_RECONSTRUCTION_L2;
   const Plan plain = make_plan(s, *empty_snapshot()), denoised = make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
@@ -162,7 +162,6 @@ TEST(Plan, DenoiserIsBiasedAndAsksForFeaturesAndMemory) {
   EXPECT_FALSE(delivers_unbiased(denoised, denoised.reconstruction, denoised.denoises));
   EXPECT_EQ(plain.passes & feature_passes(), 0u);
   EXPECT_EQ(denoised.passes & feature_passes(), feature_passes());
-  EXPECT_GT(planned_bytes(denoised), planned_bytes(plain) + uint64_t{64} * 64 * 700);
 }
 
 TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {

@@ -18,7 +18,7 @@ FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input
   if (stored_base_ && record_.plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     require_features(*stored_base_, sequence_->folder_.path(input_.settings.frame, FramePart::kBase));
   }
-  record_.stats.planned = sequence_->plan_job(record_.plan, input_.settings, &record_.stats.warnings);
+  sequence_->warn_of_needs(record_.plan, &record_.stats.warnings);
   record_.plan.chosen.emplace_back("differences over time", "frames of an animation: half of the samples repeat those of the frame before");
 }
 

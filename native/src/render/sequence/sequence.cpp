@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "base/clock.h"
 #include "base/error.h"
-#include "render/require_memory.h"
+#include "render/memory_estimate.h"
 #include "render/resume.h"
 #include "render/sequence/frame_delivery.h"
 #include "render/sequence/frame_sampling.h"
 #include "render/sequence/halves.h"
-#include "render/sequence/sequence_needs.h"
 #include "render/sequence/stored_half.h"
 #include "settings/options.h"
 #include "settings/pass_table.h"
@@ -52,10 +52,6 @@ Sequence::Sequence(std::shared_ptr<Device> device, const SequenceSettings& setti
   WindowGrid(own_places(), settings.windows);  // which looks at them
 }
 
-Sequence::~Sequence() {
-  if (device_) device_->claims().drop(this);
-}
-
 int Sequence::place_of(int32_t frame) const {
   const int64_t from_first = int64_t(frame) - settings_.first, step = settings_.step;
   if (from_first % step != 0) throw invalid_argument("frame " + std::to_string(frame) + " is none of the sequence");
@@ -74,21 +70,16 @@ FrameRange Sequence::own_places() const {
   return range;
 }
 
-PlannedBytes Sequence::plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings) {
-  const SequenceMethod method{plan.reconstruction, settings.reconstruction_alpha, wants(settings.passes, GRADUS_PASS_ERROR)};
-  const PlannedBytes bytes =
-      planned_bytes(plan, method, settings_.windows, own_places().count(), !folder_.is_temporary(), settings_.with_flow);
-  Claim all = claim_of(bytes, folder_.path());
-  if (device_) {
-    device_->claims().set(this, std::move(all));
-    all = device_->claims().sum();
+void Sequence::warn_of_needs(const Plan& plan, std::vector<std::string>* warnings) {
+  if (needs_are_checked_) return;
+  needs_are_checked_ = true;
+  const WindowShape& windows = settings_.windows;
+  const int all = own_places().count(), at_a_time = std::min(all, 2 * windows.frames - windows.overlap);
+  const std::string memory = memory_warning(estimated_memory(plan, windows), machine_memory_bytes());
+  const std::string disk = disk_warning(estimated_files(plan, folder_.is_temporary() ? at_a_time : all), folder_.path());
+  for (const std::string& warning : {memory, disk}) {
+    if (!warning.empty()) warnings->push_back(warning);
   }
-  require_memory("the animation", all.memory, "render fewer pixels, passes, layers or views, or smaller windows");
-  require_memory("the animation, with its files in folders that are memory,", all.memory + bytes_in_memory(all.files),
-                 "set TMPDIR, or the frame store, to a folder on a disk");
-  if (!room_is_checked_) *warnings = lacking_room(all.files);
-  room_is_checked_ = true;
-  return bytes;
 }
 
 FrameRange Sequence::places_with_neighbours() const {

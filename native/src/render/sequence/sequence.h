@@ -37,7 +37,6 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
  public:
   // Throws invalid_argument for settings that make no sense, invalid_operation where the folder cannot be made.
   Sequence(std::shared_ptr<Device> device, const SequenceSettings& settings, IntegratorFactory factory = make_integrator);
-  ~Sequence();
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
 
@@ -66,9 +65,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   FrameRange own_places() const;
-  // What the job takes. Throws OUT_OF_MEMORY where the machine has less than it takes with those beside it; warns once of disks that are
-  // too small for all.
-  PlannedBytes plan_job(const Plan& plan, const GradusSettings& settings, std::vector<std::string>* warnings);
+  // Warns once where the machine may have less memory, or the disk less room, than the animation takes.
+  void warn_of_needs(const Plan& plan, std::vector<std::string>* warnings);
   // The frames that are rendered, and those beside them that the folder holds.
   FrameRange places_with_neighbours() const;
   // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
@@ -96,7 +94,7 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   const IntegratorFactory factory_;
   const SequenceFolder folder_;
   int32_t last_;
-  bool room_is_checked_ = false;
+  bool needs_are_checked_ = false;
   std::unique_ptr<const FrameBefore> before_;
   std::map<int32_t, FrameRecord> records_;
   std::map<int32_t, FrameForm> forms_;  // of frames that were sampled or looked at

@@ -1,0 +1,63 @@
+#include "render/memory_estimate.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "frame/links.h"
+#include "frame/pass_planes.h"
+
+namespace gradus {
+namespace {
+
+// Bytes of a pixel, as measured (tests/memory/memory_estimate_test.cpp).
+constexpr uint64_t kPicture = 8 * sizeof(float);  // what is shown and what is delivered, RGBA each
+constexpr uint64_t kReconstruction = 260;         // images, features or weights, and the work space of a solver or a regression
+constexpr uint64_t kDenoiser = 900;               // the network of Open Image Denoise, with its input and output
+constexpr uint64_t kReconstructedComponent = 48;  // pictures of a component, while those of others are made
+constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while the window is solved
+
+uint64_t frame_bytes(const Plan& plan) {
+  return frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes,
+                               {plan.rough_vertices, plan.rough_details, plan.component_motion, plan.component_motion});
+}
+
+uint64_t reconstruction_bytes(const Plan& plan) {
+  const auto components = uint64_t(plan.components.count());
+  uint64_t bytes = kPicture;
+  if (plan.solves || plan.adaptive) bytes += kReconstruction;
+  if (components > 1) bytes += components * kReconstructedComponent;
+  if (plan.denoises) bytes += kDenoiser;
+  return bytes;
+}
+
+std::string gibibytes(uint64_t bytes) { return std::to_string((bytes + (uint64_t{1} << 29)) >> 30) + " GiB"; }
+
+}  // namespace
+
+uint64_t estimated_memory(const Plan& plan) { return uint64_t(plan.sampled.area()) * (frame_bytes(plan) + reconstruction_bytes(plan)); }
+
+uint64_t estimated_memory(const Plan& plan, const WindowShape& windows) {
+  const uint64_t of_window = uint64_t(windows.frames) * uint64_t(plan.components.count()) * kWindowFrame;
+  return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window);
+}
+
+// A frame is stored in two parts, the second with its links to the frame before.
+uint64_t estimated_files(const Plan& plan, int frames) {
+  return uint64_t(plan.sampled.area()) * uint64_t(frames) * 2 * (frame_bytes(plan) + sizeof(int32_t) + sizeof(Vec2));
+}
+
+std::string memory_warning(uint64_t estimate, uint64_t available) {
+  if (available == 0 || estimate <= available) return "";
+  return "the render takes about " + gibibytes(estimate) + " of memory, and the machine has " + gibibytes(available) +
+         ": render fewer pixels, passes or components";
+}
+
+std::string disk_warning(uint64_t estimate, const std::string& folder) {
+  std::error_code unknown;
+  const std::filesystem::space_info space = std::filesystem::space(folder, unknown);
+  if (unknown || estimate <= space.available) return "";
+  return "files of the animation in " + folder + " take up to " + gibibytes(estimate) + ", and there is room for " +
+         gibibytes(space.available);
+}
+
+}  // namespace gradus
