@@ -291,6 +291,8 @@ void RenderLoop::find_motion() {
   arena_.execute(
       [&] { motion = component_motion(*input_.snapshot, input_.settings, components_, kEveryComponent, plan_.sampled, cancel); });
   stop_if_asked();
+  // progress() adds up the sizes of these vectors meanwhile.
+  const std::lock_guard lock(mutex_);
   for (size_t c = 0; c < motion.size(); ++c) {
     frame_->components[c].motion = std::move(motion[c].vectors);
     frame_->components[c].tracked = std::move(motion[c].tracked);
@@ -308,8 +310,8 @@ void RenderLoop::denoise_frame() {
 void RenderLoop::split_light() {
   const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
   const CancelTest cancel = [this] { return is_stopped(); };
-  LightPasses light;
-  arena_.execute([&] { light = LightPasses(*frame_, plan_.delivered, picture_.combined(), cancel); });
+  std::shared_ptr<const LightPasses> light;
+  arena_.execute([&] { light = std::make_shared<LightPasses>(*frame_, plan_.delivered, picture_.combined(), cancel); });
   const std::lock_guard lock(mutex_);
   light_ = std::move(light);
 }
@@ -328,7 +330,7 @@ void RenderLoop::ending(GradusError) {
 }
 
 uint64_t RenderLoop::memory_bytes() const {
-  return (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes() + light_.memory_bytes();
+  return (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes() + (light_ ? light_->memory_bytes() : 0);
 }
 
 void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
@@ -341,11 +343,13 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   }
   if (picture_.read(pass, pixels)) return;
   std::shared_ptr<const Frame> frame;
+  std::shared_ptr<const LightPasses> light;
   {
     const std::lock_guard lock(mutex_);
-    if (light_.read(pass, pixels)) return;
+    light = light_;
     if (!is_sampling()) frame = frame_;
   }
+  if (light && light->read(pass, pixels)) return;
   if (frame && pass == GRADUS_PASS_ERROR && wants(plan_.passes, pass)) return read_error_of_noisy(*frame, plan_.delivered, pixels);
   if (frame) return read_frame_pass(*frame, pass, plan_.delivered, pixels);
   std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
@@ -372,8 +376,11 @@ void RenderLoop::read_component(const std::string& name, uint32_t pass, float* p
 }
 
 std::string RenderLoop::stats() const {
-  const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its stats come", "the render failed before it began: ");
+  {
+    const std::lock_guard lock(mutex_);
+    require_frame(frame_, "its stats come", "the render failed before it began: ");
+  }
+  // Nothing of it changes after the end, so progress() need not wait for the sums over all pixels.
   return stats_json(stats_, plan_, *frame_);
 }
 

@@ -92,7 +92,7 @@ class RenderLoop final : public RenderTask {
   Stopwatch sampling_;        // without what a watcher is shown meanwhile
   uint32_t first_begin_ = 0;  // samples that were resumed
   RenderStats stats_;
-  LightPasses light_;  // of the picture
+  std::shared_ptr<const LightPasses> light_;  // of the picture; nullptr where it has none
 };
 
 }  // namespace gradus

@@ -556,6 +556,20 @@ TEST(Components, TellTheirMotion) {
   EXPECT_GT(farthest, 0.2f);
 }
 
+// ThreadSanitizer sees the vectors move into the frame while progress() adds up their sizes, unless both take the lock.
+TEST(Components, ProgressCountsTheirMotionWhileItIsFound) {
+  PathScene scene;
+  test::build(Scenario::DiffuseArea, &scene);
+  GradusSettings settings = settings_with("");
+  settings.component_passes = kMotionPasses;
+  const auto render = started(&scene, settings);
+  while (!render->wait(0.0)) render->progress();
+  ASSERT_EQ(render->outcome(nullptr), GRADUS_OK);
+  const auto frame = render->frame();
+  for (const ComponentPlanes& planes : frame->components) EXPECT_EQ(planes.motion.size(), size_t{kSide} * kSide) << planes.name;
+  EXPECT_GE(render->progress().memory_bytes, frame->memory_bytes());
+}
+
 // The last component of a set was taken for Residual where no path is left for that: it had the motion of the mirror, and as tracked.
 TEST(Components, OfSetsWithoutResidualTellTheMotionOfWhatTheyShow) {
   PathScene scene;

@@ -130,19 +130,17 @@ void FrameDelivery::join(const MadeFrame* previous, Tracking leads_here, std::sh
   flows_ = join_flows(*made_, back, forth);
 }
 
-const MadeFrame& FrameDelivery::made(const char* what) const {
+std::shared_ptr<const MadeFrame> FrameDelivery::made(const char* what) const {
+  const std::lock_guard lock(mutex_);
   require_frame(made_ ? made_->frame : nullptr, what, kNotDelivered);
-  return *made_;
+  return made_;
 }
 
-const Region& FrameDelivery::delivered() const {
-  const std::lock_guard lock(mutex_);
-  return made("its passes come").delivered();
-}
+const Region& FrameDelivery::delivered() const { return made("its passes come")->delivered(); }
 
 void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
-  const std::lock_guard lock(mutex_);
-  const MadeFrame& frame = made("its passes come");
+  const std::shared_ptr<const MadeFrame> own = made("its passes come");
+  const MadeFrame& frame = *own;
   const std::vector<float>* plane = pass == GRADUS_PASS_COMBINED          ? &frame.combined
                                     : pass == GRADUS_PASS_ERROR           ? &frame.error
                                     : pass == GRADUS_PASS_GRADIENT_T      ? &frame.difference
@@ -162,8 +160,8 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
 }
 
 void FrameDelivery::read_component(const std::string& name, uint32_t pass, float* pixels) const {
-  const std::lock_guard lock(mutex_);
-  const MadeFrame& frame = made("its passes come");
+  const std::shared_ptr<const MadeFrame> own = made("its passes come");
+  const MadeFrame& frame = *own;
   check_component(frame.frame->settings, name);
   const Region& region = frame.delivered();
   const int place = find_component(*frame.frame, name);
@@ -186,16 +184,11 @@ bool FrameDelivery::read_flow(size_t component, uint32_t pass, float* pixels) co
 }
 
 std::string FrameDelivery::stats() const {
-  const std::lock_guard lock(mutex_);
-  const MadeFrame& frame = made("its stats come");
-  return stats_json(frame.record.stats, frame.record.plan, *frame.frame);
+  const std::shared_ptr<const MadeFrame> own = made("its stats come");
+  return stats_json(own->record.stats, own->record.plan, *own->frame);
 }
 
-std::shared_ptr<const Frame> FrameDelivery::frame() const {
-  const std::lock_guard lock(mutex_);
-  made("its frame comes");
-  return made_->frame;
-}
+std::shared_ptr<const Frame> FrameDelivery::frame() const { return made("its frame comes")->frame; }
 
 uint64_t FrameDelivery::memory_bytes() const {
   return made_ ? made_->frame->memory_bytes() + 4 * uint64_t(made_->delivered().area()) * sizeof(float) : 0;

@@ -36,8 +36,8 @@ class FrameDelivery final : public RenderTask {
   void join(const MadeFrame* previous, Tracking leads_here, std::shared_ptr<MadeFrame> next, Tracking leads_on);
   // False: there is none.
   bool read_flow(size_t component, uint32_t pass, float* pixels) const;
-  // With the lock.
-  const MadeFrame& made(const char* what) const;
+  // Returns the frame, which does not change after the end: readers do not keep the lock, which progress() takes.
+  std::shared_ptr<const MadeFrame> made(const char* what) const;
 
   const std::shared_ptr<Sequence> sequence_;
   const int32_t number_;

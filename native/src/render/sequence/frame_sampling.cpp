@@ -56,18 +56,24 @@ GradusProgress FrameSampling::progress() const {
 }
 
 std::string FrameSampling::stats() const {
-  const std::lock_guard lock(mutex_);
-  return stats_json(record_.stats, record_.plan, *own_half("its stats come"));
+  const std::shared_ptr<const Frame> half = own_half("its stats come");
+  return stats_json(record_.stats, record_.plan, *half);  // the record does not change after the end
 }
 
-std::shared_ptr<const Frame> FrameSampling::frame() const {
-  const std::lock_guard lock(mutex_);
-  return own_half("its frame comes");
-}
+std::shared_ptr<const Frame> FrameSampling::frame() const { return own_half("its frame comes"); }
 
 std::shared_ptr<const Frame> FrameSampling::own_half(const char* what) const {
-  require_end(what);
-  if (!frame_ && text_.empty()) frame_ = read(FramePart::kBase, StoredContent::kAll, [] { return false; });
+  const std::lock_guard one_reader(reading_);
+  bool is_stored = false;
+  {
+    const std::lock_guard lock(mutex_);
+    require_end(what);
+    is_stored = !frame_ && text_.empty();
+  }
+  // progress() and cancel() take the lock, so no file is read under it.
+  std::shared_ptr<const Frame> half = is_stored ? read(FramePart::kBase, StoredContent::kAll, [] { return false; }) : nullptr;
+  const std::lock_guard lock(mutex_);
+  if (half) frame_ = std::move(half);
   require_frame(frame_, what, "the render failed: ");
   return frame_;
 }

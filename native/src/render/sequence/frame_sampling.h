@@ -32,7 +32,7 @@ class FrameSampling final : public RenderTask {
   std::optional<FrameHeader> stored_base() const;
   // Of a half of an earlier frame, which gets no more samples.
   bool has_enough(const FrameHeader& half, FramePart part) const;
-  // The frame that is sampled or was stored. With the lock.
+  // Returns the frame that was sampled, or reads the stored one. Takes the lock, but not while it reads a file.
   std::shared_ptr<const Frame> own_half(const char* what) const;
   std::shared_ptr<Frame> read(FramePart part, StoredContent content, const CancelTest& cancel) const;
   std::shared_ptr<Frame> load(FramePart part, StoredContent content = StoredContent::kAll);
@@ -60,6 +60,7 @@ class FrameSampling final : public RenderTask {
   RenderLoop base_;
   std::unique_ptr<RenderLoop> offset_;
   double resumed_mean_ = 0.0;                   // samples per pixel that the base went on from
+  mutable std::mutex reading_;                  // is held while a stored frame is read, so that it is read once
   mutable std::shared_ptr<const Frame> frame_;  // of one that was stored: when it is asked for
   FrameRecord record_;
 };

@@ -1,5 +1,12 @@
 // What a sequence finds in its folder, and what it takes of that: its frames are those of a job that was never ended (contract 7.2).
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <future>
+#include <thread>
 
 #include "base/error.h"
 #include "sequence_fixture.h"
@@ -19,6 +26,40 @@ void expect_same(const std::vector<Delivered>& found, const std::vector<Delivere
     EXPECT_EQ(found[i].noisy, whole[i].noisy) << i;
     EXPECT_EQ(found[i].combined, whole[i].combined) << i;
   }
+}
+
+// Opens the writing end of a named pipe as soon as somebody reads from it; -1: nobody does within ten seconds.
+int open_for_reader(const std::string& pipe) {
+  for (int ms = 0; ms < 10000; ++ms) {
+    const int descriptor = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK);
+    if (descriptor >= 0) return descriptor;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return -1;
+}
+
+// The frame was read under the lock that progress() and cancel() take: with a slow disk the interface stood still.
+TEST(C7_StoredFrames, ProgressAndCancelDoNotWaitForAFileThatIsRead) {
+  Pan pan(1.3f);
+  const Folder folder;
+  sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), settings_of(1));
+  const auto sequence = make_sequence(1, 1, folder.path());
+  const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
+  run(task.get());
+  const std::string path = sequence->folder().path(1, FramePart::kBase);
+  fs::remove(path);
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  auto reading = std::async(std::launch::async, [&] { return refusal_of([&] { task->frame(); }); });
+  const int writer = open_for_reader(path);
+  ASSERT_GE(writer, 0);
+  auto asking = std::async(std::launch::async, [&] {
+    task->cancel();
+    return task->progress().phase;
+  });
+  EXPECT_EQ(asking.wait_for(std::chrono::seconds(5)), std::future_status::ready);
+  ::close(writer);  // the reader finds an empty file
+  EXPECT_EQ(asking.get(), uint32_t{GRADUS_PHASE_DONE});
+  EXPECT_NE(reading.get().find(path), std::string::npos);
 }
 
 // Frames 3 and 5 replayed those two before them: half of the pairs had no links.
