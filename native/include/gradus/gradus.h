@@ -129,7 +129,7 @@ typedef struct GradusMesh {
   const float* generated_points;    /* undeformed coordinates, 3 per vertex; NULL = positions */
   const char* name;
   const float* shutter_positions;   /* 3 per vertex, key after key, evenly from the opening of the shutter to its closing */
-  uint32_t shutter_key_count;       /* 0 = stands still while it is open; else at least 2 */
+  uint32_t shutter_key_count;       /* 0 = stands still while it is open; else 2 to 129 */
   uint32_t reserved;
 } GradusMesh;
 
@@ -171,7 +171,7 @@ typedef struct GradusInstances {
   size_t name_count;
   const char* const* names;
   const uint32_t* shutter_first;     /* first matrix of the instance in shutter_matrices; NULL = nothing moves while the shutter is open */
-  const uint32_t* shutter_count;     /* 0 = at rest; else at least 2, evenly from the opening of the shutter to its closing */
+  const uint32_t* shutter_count;     /* 0 = at rest; else 2 to 129, evenly from the opening of the shutter to its closing */
   size_t shutter_size;
   const float* shutter_matrices;     /* 16 each */
 } GradusInstances;
@@ -252,7 +252,7 @@ typedef struct GradusCamera {
   float convergence_distance;      /* where the rays of both eyes meet; 0 = parallel */
   float pole_merge_from;           /* altitudes between which the offset fades out; to = 0: it does not */
   float pole_merge_to;
-  uint32_t shutter_key_count;      /* 0 = at rest while the shutter is open; else at least 2, evenly from its opening to its closing */
+  uint32_t shutter_key_count;      /* 0 = at rest while the shutter is open; else 2 to 129, evenly from its opening to its closing */
   float shutter_open;              /* frames relative to the one rendered; the frame is a moment where close <= open */
   float shutter_close;
   uint32_t shutter_curve_count;    /* below 2: open all the time */

@@ -59,8 +59,9 @@ Camera::Camera(const GradusCamera& desc, uint32_t width, uint32_t height) : desc
 }
 
 void Camera::add_keys() {
+  check_shutter_key_count("camera", desc_.shutter_key_count);
   std::vector<glm::dmat4> keys;
-  for (uint32_t i = 0; i < std::min(desc_.shutter_key_count, kMaxShutterKeys); ++i) {
+  for (uint32_t i = 0; i < desc_.shutter_key_count; ++i) {
     const float* window = desc_.shutter_windows != nullptr ? desc_.shutter_windows + size_t{4} * i : desc_.window;
     const Pose pose = make_pose(desc_.shutter_matrices + size_t{16} * i, window);
     keys.emplace_back(Mat4(pose.axes));

@@ -19,7 +19,7 @@ const float* pointer(const std::vector<float>& values) { return values.empty() ?
 
 CameraKeys copy_camera_keys(const GradusCamera& camera) {
   const uint32_t count = camera.shutter_key_count;
-  if (count == 1 || count > kMaxShutterKeys) throw invalid_argument("camera: number of shutter keys out of range");
+  check_shutter_key_count("camera", count);
   if (count > 0 && camera.shutter_matrices == nullptr) throw invalid_argument("camera: shutter_matrices missing");
   if (camera.shutter_curve_count > kMaxCurve) throw invalid_argument("camera: the shutter's curve is too long");
   return {copy(camera.shutter_curve, camera.shutter_curve_count), copy(camera.shutter_matrices, size_t{16} * count),

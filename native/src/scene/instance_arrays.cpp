@@ -35,7 +35,7 @@ void check(const GradusInstances& d) {
   require(!d.shutter_first || d.shutter_count, "shutter_count missing");
   require(d.shutter_size == 0 || d.shutter_matrices, "shutter_matrices missing");
   for (size_t i = 0; d.shutter_first && i < d.count; ++i) {
-    require(d.shutter_count[i] != 1 && d.shutter_count[i] <= kMaxShutterKeys, "shutter_count is out of range");
+    check_shutter_key_count("instance " + std::to_string(i), d.shutter_count[i]);
     require(uint64_t(d.shutter_first[i]) + d.shutter_count[i] <= d.shutter_size, "shutter_first is out of range");
   }
   require(!d.name_index || d.name_count == 0 || d.names, "names missing");

@@ -5,6 +5,8 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include "base/error.h"
+
 namespace gradus {
 
 namespace {
@@ -51,6 +53,12 @@ size_t parts_between(const std::vector<glm::dmat4>& keys) {
 }
 
 }  // namespace
+
+void check_shutter_key_count(const std::string& owner, uint32_t count) {
+  const std::string found = owner + ": " + std::to_string(count), maximum = std::to_string(kMaxShutterKeys);
+  if (count == 1) throw invalid_argument(found + " shutter key, at least 2 are needed");
+  if (count > kMaxShutterKeys) throw invalid_argument(found + " shutter keys, at most " + maximum + " are possible");
+}
 
 glm::dmat4 interpolate_motion(const glm::dmat4& a, const glm::dmat4& b, double f) {
   const glm::dmat4 straight = a * (1.0 - f) + b * f;

@@ -1,6 +1,7 @@
 // The way of an object or a camera while the shutter is open.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/types.h"
@@ -9,6 +10,9 @@ namespace gradus {
 
 // Most time keys of anything: Embree's limit.
 inline constexpr uint32_t kMaxShutterKeys = 129;
+
+// Throws invalid_argument that names `owner`, the count and the maximum, unless the count is 0 or from 2 to kMaxShutterKeys.
+void check_shutter_key_count(const std::string& owner, uint32_t count);
 
 // Matrices evenly spaced from the opening of the shutter (time 0) to its closing (1), linear in between, as Embree has them.
 class MatrixKeys {

@@ -25,6 +25,7 @@ class Check {
   void that(bool good, const char* text) const {
     if (!good) throw invalid_argument("mesh '" + mesh_ + "': " + text);
   }
+  const std::string& mesh() const { return mesh_; }
 
  private:
   const std::string& mesh_;
@@ -40,7 +41,7 @@ void check_counts(const GradusMesh& m, const Check& check) {
       "too many elements");
   check.that(m.vertex_count * m.key_count < kMaxElements * 4, "too many time keys");
   check.that(m.vertex_count == 0 || m.positions, "positions missing");
-  check.that(m.shutter_key_count != 1 && m.shutter_key_count <= kMaxKeys, "number of shutter keys out of range");
+  check_shutter_key_count("mesh '" + check.mesh() + "'", m.shutter_key_count);
   check.that(m.vertex_count * m.shutter_key_count < kMaxElements * 4, "too many shutter keys");
   check.that(m.vertex_count == 0 || m.shutter_key_count == 0 || m.shutter_positions, "shutter_positions missing");
   check.that(m.corner_count == 0 || m.corner_vertices, "corner_vertices missing");

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "camera_fixture.h"
+#include "scene/matrix_keys.h"
 #include "scene_fixture.h"
 #include "support/chi_square.h"
+#include "support/refusal.h"
 
 namespace gradus::test {
 namespace {
@@ -180,6 +182,25 @@ TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
       EXPECT_EQ(ray.time, time);
     }
   }
+}
+
+// A camera was made of the first 129 keys, as if the shutter closed there, where meshes and instances refuse more.
+TEST(Camera, RefusesMoreShutterKeysThanThereMayBe) {
+  GradusCamera moving = make_camera(BlenderCamera{}, 640, 360, kPose);
+  const std::vector<Mat4> matrices(kMaxShutterKeys + 1, kPose);
+  moving.shutter_matrices = &matrices[0][0][0];
+  TestScene scene;
+  for (const uint32_t count : {2u, kMaxShutterKeys}) {
+    moving.shutter_key_count = count;
+    EXPECT_EQ(refusal_of([&] { Camera(moving, 640, 360); }), "");
+    EXPECT_EQ(refusal_of([&] { scene.scene.set_camera(moving); }), "");
+  }
+  const std::string refusal = "camera: 130 shutter keys, at most 129 are possible";
+  moving.shutter_key_count = kMaxShutterKeys + 1;
+  EXPECT_EQ(refusal_of([&] { Camera(moving, 640, 360); }), refusal);
+  EXPECT_EQ(refusal_of([&] { scene.scene.set_camera(moving); }), refusal);
+  moving.shutter_key_count = 1;
+  EXPECT_EQ(refusal_of([&] { scene.scene.set_camera(moving); }), "camera: 1 shutter key, at least 2 are needed");
 }
 
 TEST(A3_LensSampling, RoundAndPolygonal) {

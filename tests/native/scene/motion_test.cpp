@@ -3,9 +3,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "path/segment.h"
+#include "scene/matrix_keys.h"
 #include "scene/mesh.h"
 #include "scene/rays4.h"
 #include "scene_fixture.h"
+#include "support/refusal.h"
 
 namespace gradus::test {
 namespace {
@@ -145,6 +147,21 @@ TEST(Motion, NormalsTurnWithADeformation) {
     const Vec3 expected = glm::normalize(point.position / (stretch * stretch));
     EXPECT_GT(glm::dot(point.shading_normal, expected), 0.998f);
   }
+}
+
+TEST(Motion, RefusesMoreShutterKeysThanThereMayBe) {
+  TestScene scene;
+  MeshDesc mesh(sphere(Vec3(0.0f), 1.0f, 4, 8));
+  const std::vector<Vec3> positions(mesh.desc.vertex_count * (kMaxShutterKeys + 1), Vec3(1.0f));
+  mesh.desc.shutter_positions = &positions[0].x;
+  mesh.desc.shutter_key_count = kMaxShutterKeys + 1;
+  const std::string too_many = ": 130 shutter keys, at most 129 are possible";
+  EXPECT_EQ(refusal_of([&] { scene.scene.set_mesh(1, mesh.desc); }), "mesh 'mesh'" + too_many);
+  mesh.desc.shutter_key_count = 0;
+  scene.scene.set_mesh(1, mesh.desc);
+  scene.way.assign(kMaxShutterKeys + 1, Mat4(1.0f));
+  scene.instance(1);
+  EXPECT_EQ(refusal_of([&] { scene.commit(); }), "instance 0" + too_many);
 }
 
 TEST(Motion, BrokenKeysCostTheMotionOrTheTriangle) {
