@@ -108,7 +108,7 @@ void FrameDelivery::find_flow(const MadeFrame* previous, double* seconds_ahead, 
   }
   RenderStats& stats = made_->record.stats;
   const Bill bill(&stats.seconds.links, &stats.cpu_seconds.links);
-  const uint32_t threads = threads_of(changed_.value_or(GradusSettings{}), sequence_->device_.get());
+  const uint32_t threads = threads_of(changed_ ? *changed_ : own_settings(number_), sequence_->device_.get());
   tbb::task_arena(arena_size(threads)).execute([&] { join(previous, leads_here, std::move(next), leads_on); });
   stats.warnings.insert(stats.warnings.end(), warnings_.begin(), warnings_.end());
 }

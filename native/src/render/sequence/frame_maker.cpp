@@ -55,7 +55,8 @@ FrameMaker::FrameMaker(Sequence* sequence, int32_t number, const std::optional<G
       number_(number),
       asked_(asked ? asked : sequence->folder_.settings(number)),
       is_cancelled_(is_cancelled),
-      arena_(arena_size(threads_of(asked.value_or(GradusSettings{}), sequence->device_.get()))) {}
+      threads_(threads_of(asked_.value_or(GradusSettings{}), sequence->device_.get())),
+      arena_(arena_size(threads_)) {}
 
 void FrameMaker::stop_if_asked() const {
   if (is_cancelled_()) throw cancelled();
@@ -165,8 +166,7 @@ void FrameMaker::denoise(MadeFrame* made) {
   const auto library = choose_denoiser(frame.settings.denoiser, device, &why_not);
   if (!library) return;
   if (!has_features(frame)) stats.warnings.emplace_back("the frame holds no features to guide the denoiser");
-  const uint32_t threads = threads_of(frame.settings, device);
-  std::vector<float> rgba = denoise_and_bill(*library, frame, made->delivered(), threads, is_cancelled_, made->combined, &stats);
+  std::vector<float> rgba = denoise_and_bill(*library, frame, made->delivered(), threads_, is_cancelled_, made->combined, &stats);
   if (rgba.empty()) return;
   arena_.execute([&] { follow_picture(made->combined, rgba, &made->components); });
   made->combined = std::move(rgba);

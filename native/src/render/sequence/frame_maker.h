@@ -13,7 +13,8 @@ namespace gradus {
 
 class FrameMaker {
  public:
-  // asked: what it is made of otherwise than it was sampled for; nothing: what the folder knows. All that is given lives as long as it.
+  // asked: what it is made of otherwise than it was sampled for, and the number of threads that make it; nothing: what the folder knows.
+  // All that is given lives as long as it.
   FrameMaker(Sequence* sequence, int32_t number, const std::optional<GradusSettings>& asked, const CancelTest& is_cancelled);
 
   // In this order. Both throw the Error CANCELLED.
@@ -38,6 +39,7 @@ class FrameMaker {
   const int32_t number_;
   const std::optional<GradusSettings> asked_;
   const CancelTest& is_cancelled_;
+  const uint32_t threads_;
   tbb::task_arena arena_;
 };
 

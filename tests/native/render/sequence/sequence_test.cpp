@@ -4,12 +4,16 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <mutex>
+#include <set>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "render/sequence/frame_maker.h"
 #include "sequence_fixture.h"
 #include "support/failing_disk.h"
 #include "support/file_calls.h"
@@ -65,6 +69,30 @@ TEST(C4_Sequence, FlickersLessThanItsSamples) {
     std::printf("  reconstruction %u: error %.3f, flicker %.3f of the samples'\n", reconstruction, error / error_of_samples,
                 flicker / flicker_of_samples);
   }
+}
+
+// Frames that were sampled by one thread, to leave the others to something else, were delivered by all threads of the device.
+TEST(C3_Sequence, FramesAreMadeByAsManyThreadsAsTheirSettingsSay) {
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  Pan pan(1.3f);
+  const auto sequence = make_sequence(1, 1);  // of a device with two threads
+  GradusSettings settings = settings_of(1);
+  const auto threads_of_maker = [&](const std::optional<GradusSettings>& asked) {
+    std::set<int> threads;
+    std::mutex mutex;
+    const CancelTest listen = [&] {
+      const std::lock_guard lock(mutex);
+      threads.insert(tbb::this_task_arena::max_concurrency());
+      return false;
+    };
+    FrameMaker(sequence.get(), 1, asked, listen).load();
+    return threads;
+  };
+  settings.threads = 1;
+  sample(sequence.get(), pan.at(1), settings);
+  EXPECT_EQ(threads_of_maker(std::nullopt), std::set<int>{1});
+  settings.threads = 2;
+  EXPECT_EQ(threads_of_maker(settings), std::set<int>{arena_size(2)});
 }
 
 TEST(I8_Sequence, WhatDoesNotChangeIsSampledOnce) {
