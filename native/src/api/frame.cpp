@@ -116,10 +116,16 @@ std::shared_ptr<MadePicture> made_of(FrameObject* object, const std::shared_ptr<
   return keep_made(object, frame, make_picture(object, *frame, s.reconstruction, s.reconstruction_alpha, s.denoiser, nullptr));
 }
 
+// Reads a pass of what was sampled, by as many threads.
+void read_sampled(const FrameObject& object, const Frame& frame, uint32_t pass, float* pixels) {
+  tbb::task_arena arena(arena_size(threads_for(object, frame)));
+  arena.execute([&] { read_frame_pass(frame, pass, delivered_region(frame), pixels); });
+}
+
 void read_light(FrameObject* object, const std::shared_ptr<const Frame>& frame, uint32_t pass, float* pixels) {
   const std::shared_ptr<MadePicture> made = made_of(object, frame);
   const Region region = delivered_region(*frame);
-  if (made->is_noisy) return read_frame_pass(*frame, pass, region, pixels);
+  if (made->is_noisy) return read_sampled(*object, *frame, pass, pixels);
   const std::lock_guard lock(object->mutex);
   if (!made->light) {
     tbb::task_arena(arena_size(threads_for(*object, *frame))).execute([&] {
@@ -208,7 +214,7 @@ GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixe
     }
     if (pass == GRADUS_PASS_ERROR) return static_cast<void>(std::ranges::copy(api::read_error(object.get(), *content), pixels));
     if (wants(light_passes(), pass) && has_pass(*content, pass)) return api::read_light(object.get(), content, pass, pixels);
-    read_frame_pass(*content, pass, region, pixels);
+    api::read_sampled(*object, *content, pass, pixels);
   });
 }
 

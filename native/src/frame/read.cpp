@@ -200,13 +200,11 @@ void read_deviations(const Frame& frame, int component, GradientImages* images) 
   images->dy_deviation = of_differences(kUp);
 }
 
-std::vector<float> read_variance(const Frame& frame) {
-  const auto pixels = static_cast<size_t>(frame.region.area());
-  std::vector<float> variance(pixels * frame.channels, 0.0f);
-  for (size_t i = 0; i < pixels; ++i) {
-    if (frame.count[0][i] == 0 || frame.count[1][i] == 0) {
-      continue;  // unknown; one half alone says nothing
-    }
+void read_variance_row(const Frame& frame, int y, float* row) {
+  const auto width = static_cast<size_t>(frame.region.width());
+  std::fill_n(row, width * size_t(frame.channels), 0.0f);
+  for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i, row += frame.channels) {
+    if (frame.count[0][i] == 0 || frame.count[1][i] == 0) continue;
     Radiance difference(0.0f);
     for (const ComponentPlanes& planes : frame.components) {
       difference +=
@@ -214,10 +212,13 @@ std::vector<float> read_variance(const Frame& frame) {
     }
     for (int c = 0; c < frame.channels; ++c) {
       const float half = 0.5f * difference[c];
-      variance[i * frame.channels + c] = std::min(half * half, std::numeric_limits<float>::max());
+      row[c] = std::min(half * half, std::numeric_limits<float>::max());
     }
   }
-  return variance;
+}
+
+std::vector<float> read_variance(const Frame& frame) {
+  return read_rows(frame, [&](int y, float* row) { read_variance_row(frame, y, row); });
 }
 
 }  // namespace gradus

@@ -351,7 +351,11 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   }
   if (light && light->read(pass, pixels)) return;
   if (frame && pass == GRADUS_PASS_ERROR && wants(plan_.passes, pass)) return read_error_of_noisy(*frame, plan_.delivered, pixels);
-  if (frame) return read_frame_pass(*frame, pass, plan_.delivered, pixels);
+  if (frame) {
+    // Not the render's own arena, whose threads may still be reconstructing.
+    tbb::task_arena(arena_size(input_.threads)).execute([&] { read_frame_pass(*frame, pass, plan_.delivered, pixels); });
+    return;
+  }
   std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
 }
 

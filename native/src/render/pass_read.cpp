@@ -1,11 +1,19 @@
 #include "render/pass_read.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "base/fpu.h"
 #include "frame/pass_planes.h"
+#include "frame/read_pixels.h"
 #include "settings/pass_table.h"
 
 namespace gradus {
@@ -14,12 +22,59 @@ namespace {
 // Depth of a pixel that sees nothing, as in Blender.
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
+// What is worth a task. The tiles that samplers show are smaller: their threads take up no other work in between.
+constexpr int32_t kPixelsOfTask = 1 << 15;
+
+// Sets the floating-point state of a thread for a scope.
+class BorrowedFpuState {
+ public:
+  explicit BorrowedFpuState(unsigned state) : own_(_mm_getcsr()) { _mm_setcsr(state); }
+  ~BorrowedFpuState() { _mm_setcsr(own_); }
+  BorrowedFpuState(const BorrowedFpuState&) = delete;
+  BorrowedFpuState& operator=(const BorrowedFpuState&) = delete;
+
+ private:
+  const unsigned own_;
+};
+
+// Calls function(first, last) for runs of the region's rows, on the threads of the caller's arena. They have the caller's floating-point
+// state meanwhile, which of a host's thread flushes no denormals, so that the bits do not depend on threads.
 template <class Function>
-void for_pixels(const Frame& frame, const Region& region, Function&& function) {
-  size_t out = 0;
-  for (int32_t y = region.y0; y < region.y1; ++y) {
-    for (int32_t x = region.x0; x < region.x1; ++x) function(frame.index(x, y), out++);
-  }
+void for_runs(const Region& region, const Function& function) {
+  const int32_t rows = std::max(kPixelsOfTask / std::max(region.width(), 1), 1);
+  if (region.height() <= rows) return static_cast<void>(function(region.y0, region.y1));
+  const unsigned state = _mm_getcsr();
+  tbb::parallel_for(tbb::blocked_range<int32_t>(region.y0, region.y1, rows), [&](const tbb::blocked_range<int32_t>& run) {
+    const BorrowedFpuState borrowed(state);
+    function(run.begin(), run.end());
+  });
+}
+
+// Calls function(i, out) for each pixel: its places in the frame's planes and in those of the region.
+template <class Function>
+void for_pixels(const Frame& frame, const Region& region, const Function& function) {
+  for_runs(region, [&](int32_t first, int32_t last) {
+    size_t out = size_t(first - region.y0) * size_t(region.width());
+    for (int32_t y = first; y < last; ++y) {
+      for (int32_t x = region.x0; x < region.x1; ++x) function(frame.index(x, y), out++);
+    }
+  });
+}
+
+// Reads whole rows of the frame one by one, read(y, values), y counted from its first row, and calls function(pixel, out) for those of
+// their pixels that lie in the region.
+template <class Read, class Function>
+void for_rows_of_frame(const Frame& frame, const Region& region, const Read& read, const Function& function) {
+  const auto channels = size_t(frame.channels), width = size_t(region.width());
+  for_runs(region, [&](int32_t first, int32_t last) {
+    std::vector<float> row(size_t(frame.region.width()) * channels);
+    for (int32_t y = first; y < last; ++y) {
+      read(y - frame.region.y0, row.data());
+      const float* pixel = row.data() + size_t(region.x0 - frame.region.x0) * channels;
+      size_t out = size_t(y - region.y0) * width;
+      for (size_t x = 0; x < width; ++x, pixel += channels) function(pixel, out++);
+    }
+  });
 }
 
 float inverse_count(const Frame& frame, size_t i) {
@@ -45,22 +100,23 @@ void read_gradient(const Frame& frame, const Region& region, bool vertical, floa
   if (!frame.gradients) return;
   const float exposure = frame.settings.film_exposure;
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    const GradientImages images = read_images(frame, component);
-    const std::vector<float>& plane = vertical ? images.dy : images.dx;
-    for_pixels(frame, region, [&](size_t i, size_t out) {
+    const auto read = [&](int y, float* row) {
+      const FlushDenormals flush;  // as solvers read them
+      read_difference_row(frame, component, vertical ? kUp : kRight, {}, y, row);
+    };
+    for_rows_of_frame(frame, region, read, [&](const float* pixel, size_t out) {
       for (int c = 0; c < 3; ++c) {
-        const float difference = plane[i * images.channels + c];
-        if (is_finite(difference)) pixels[3 * out + c] += exposure * difference;
+        if (is_finite(pixel[c])) pixels[3 * out + c] += exposure * pixel[c];
       }
     });
   }
 }
 
 void read_variance_pass(const Frame& frame, const Region& region, float* pixels) {
-  const std::vector<float> variance = read_variance(frame);
   const float scale = frame.settings.film_exposure * frame.settings.film_exposure;
-  for_pixels(frame, region, [&](size_t i, size_t out) {
-    for (int c = 0; c < 3; ++c) pixels[3 * out + c] = scale * variance[i * frame.channels + c];
+  const auto read = [&](int y, float* row) { read_variance_row(frame, y, row); };
+  for_rows_of_frame(frame, region, read, [&](const float* pixel, size_t out) {
+    for (int c = 0; c < 3; ++c) pixels[3 * out + c] = scale * pixel[c];
   });
 }
 

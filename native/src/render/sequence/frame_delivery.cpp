@@ -156,7 +156,8 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
     std::fill_n(pixels, size_t(region.area()), 0.0f);
     return;
   }
-  read_frame_pass(*frame.frame, pass, region, pixels);
+  const uint32_t threads = threads_of(frame.frame->settings, sequence_->device_.get());
+  tbb::task_arena(arena_size(threads)).execute([&] { read_frame_pass(*frame.frame, pass, region, pixels); });
 }
 
 void FrameDelivery::read_component(const std::string& name, uint32_t pass, float* pixels) const {
