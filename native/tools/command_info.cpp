@@ -16,6 +16,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// Names of files of a sequence that are missing or cannot be read, and why. Where there are any, the exit code is that of a failure.
+constexpr const char* kDamaged = "damaged";
+
 ordered_json scene_info(const std::string& path) {
   const api::SceneSummary s = api::summarize_scene(path);
   return {{"kind", "scene"},
@@ -61,7 +64,9 @@ ordered_json frame_info(const std::string& path) {
 }
 
 ordered_json sequence_info(const std::string& folder) {
-  const StoredSequence stored(folder);
+  const FolderFaults faults = find_faults(folder);
+  if (!faults.files.empty() && faults.whole_frames == 0) return {{"kind", "sequence"}, {"frames", 0}, {kDamaged, faults.files}};
+  const StoredSequence stored(folder, faults.frames);
   const int32_t first = stored.frames().front(), last = stored.frames().back();
   ordered_json frame = frame_info(stored.path(first));
   ordered_json info{{"kind", "sequence"},
@@ -69,7 +74,8 @@ ordered_json sequence_info(const std::string& folder) {
                     {"last", last},
                     {"step", stored.step()},
                     {"frames", stored.frames().size()},
-                    {"missing", stored.missing(first, last)}};
+                    {"missing", stored.missing(first, last)},
+                    {kDamaged, faults.files}};
   for (const char* of_all : {"resolution", "sampled_region", "alpha", "settings"}) info[of_all] = frame[of_all];
   return info;
 }
@@ -84,7 +90,7 @@ ordered_json describe(const std::string& path) {
 
 void print(const ordered_json& info, const std::string& indent) {
   for (const auto& [name, value] : info.items()) {
-    if (value.is_object()) {
+    if (value.is_object() && !value.empty()) {
       std::printf("%s%s\n", indent.c_str(), name.c_str());
       print(value, indent + "  ");
     } else {
@@ -111,7 +117,7 @@ void add_info(CLI::App* app, int* exit_code) {
     } else {
       print(info, "");
     }
-    *exit_code = 0;
+    *exit_code = info.contains(kDamaged) && !info[kDamaged].empty() ? kExitFailure : 0;
   });
 }
 

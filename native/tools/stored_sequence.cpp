@@ -8,8 +8,10 @@
 
 #include "base/error.h"
 #include "base/text_list.h"
+#include "common.h"
 #include "frame/frame_name.h"
 #include "frame/store.h"
+#include "render/sequence/sequence_folder.h"
 
 namespace gradus::tool {
 namespace {
@@ -87,6 +89,13 @@ std::string name_runs(const std::vector<int32_t>& frames, const IsMeant& is_mean
   return text;
 }
 
+// What of an error is not the name of the file, which is told beside it.
+std::string cause_of(const std::string& error, const std::string& path) {
+  const std::string name = path + ": ";
+  const size_t begin = error.find(name);
+  return begin == std::string::npos ? error : error.substr(begin + name.size());
+}
+
 std::vector<int32_t> joined(const std::vector<std::vector<int32_t>>& chains) {
   std::vector<int32_t> frames;
   for (const std::vector<int32_t>& chain : chains) frames.insert(frames.end(), chain.begin(), chain.end());
@@ -96,9 +105,10 @@ std::vector<int32_t> joined(const std::vector<std::vector<int32_t>>& chains) {
 
 }  // namespace
 
-StoredSequence::StoredSequence(const std::string& folder) : folder_(folder) {
+StoredSequence::StoredSequence(const std::string& folder, const std::set<int32_t>& left_out) : folder_(folder) {
   const std::set<int32_t> base = numbers_in(folder, "base"), offset = numbers_in(folder, "offset");
   std::set_intersection(base.begin(), base.end(), offset.begin(), offset.end(), std::back_inserter(frames_));
+  std::erase_if(frames_, [&](int32_t frame) { return left_out.count(frame) > 0; });
   if (frames_.empty()) {
     const bool has_none = base.empty() && numbers_in(folder, "").empty();
     throw invalid_argument(folder + (has_none ? " holds no stored frames" + advice(folder)
@@ -142,6 +152,27 @@ bool StoredSequence::is_unlinked(int32_t frame) const {
 
 std::string StoredSequence::unlinked(int32_t first, int32_t last) const {
   return name_runs(joined(chains(first, last)), [&](int32_t frame) { return frame > first && is_unlinked(frame); });
+}
+
+FolderFaults find_faults(const std::string& folder) {
+  const std::set<int32_t> base = numbers_in(folder, "base"), offset = numbers_in(folder, "offset");
+  std::set<int32_t> frames = base;
+  frames.insert(offset.begin(), offset.end());
+  const SequenceFolder files(folder);
+  FolderFaults faults;
+  for (const int32_t frame : frames) {
+    for (const char* kind : {"base.exr", "offset.exr"}) {
+      const std::string name = frame_name(frame, kind), path = (fs::path(folder) / name).string();
+      const std::string error = fs::exists(path) ? refusal([&] { load_frame(path); }) : "it is missing";
+      if (error.empty()) continue;
+      faults.files[name] = cause_of(error, path);
+      faults.frames.insert(frame);
+    }
+    const std::string error = refusal([&] { files.settings(frame); }), name = frame_name(frame, "json");
+    if (!error.empty()) faults.files[name] = cause_of(error, files.path() + "/" + name);
+  }
+  faults.whole_frames = frames.size() - faults.frames.size();
+  return faults;
 }
 
 }  // namespace gradus::tool

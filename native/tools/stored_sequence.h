@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,8 @@ namespace gradus::tool {
 
 class StoredSequence {
  public:
-  // Throws Error where the folder holds none.
-  explicit StoredSequence(const std::string& folder);
+  // left_out: frames that are taken for missing. Throws Error where the folder holds no others.
+  explicit StoredSequence(const std::string& folder, const std::set<int32_t>& left_out = {});
 
   const std::string& folder() const { return folder_; }
   std::string path(int32_t frame) const;
@@ -36,5 +37,13 @@ class StoredSequence {
   std::map<int32_t, FrameForm> forms_;
   int32_t step_ = 1;
 };
+
+// What is wrong with the files of a sequence, which are read as a whole.
+struct FolderFaults {
+  std::map<std::string, std::string> files;  // names of files that are missing or cannot be read, and why
+  std::set<int32_t> frames;                  // frames that lack samples for that
+  size_t whole_frames = 0;
+};
+FolderFaults find_faults(const std::string& folder);
 
 }  // namespace gradus::tool

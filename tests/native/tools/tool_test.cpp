@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <tuple>
 
@@ -618,9 +619,44 @@ TEST_F(ToolSequence, NamesFramesThatAreNotThere) {
   const Outcome beyond = run("reconstruct store/anim/layer -o pictures --frames 6-9");
   EXPECT_NE(beyond.err.find("lacks frames 7 to 9"), std::string::npos) << beyond.err;
   const Outcome info = run("info store/anim/layer");
-  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_EQ(info.code, 1) << info.err;
   EXPECT_NE(info.out.find("\"sequence\""), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("\"3, 5\""), std::string::npos) << info.out;
+  for (const char* file : {"f+0000003.base.exr", "f+0000005.offset.exr"})
+    EXPECT_NE(info.out.find(std::string(file) + " "), std::string::npos) << info.out;
+  EXPECT_EQ(occurrences(info.out, "\"it is missing\""), 2) << info.out;
+  for (const int frame : {3, 5}) remove(frame);
+  EXPECT_EQ(run("info store/anim/layer").code, 0) << "a gap is no damage: there may be more jobs to come";
+}
+
+// It told how many files there were, and that some were broken came out when all was reconstructed.
+TEST_F(ToolSequence, InfoNamesDamagedFiles) {
+  using Json = nlohmann::json;
+  const auto info = [&](int code) {
+    const Outcome outcome = run("info --json store/anim/layer");
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    return Json::parse(outcome.out);
+  };
+  EXPECT_EQ(info(0).at("damaged"), Json::object());
+  const fs::path store = folder / kFolder;
+  fs::resize_file(store / "f+0000002.base.exr", fs::file_size(store / "f+0000002.base.exr") / 2);
+  fs::resize_file(store / "f+0000004.offset.exr", 0);
+  std::ofstream(store / "f+0000006.json") << "{";
+  {
+    std::fstream file(store / "f+0000005.base.exr", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(-200, std::ios::end);
+    file << std::string(100, 'x');  // the size is right
+  }
+  const Json found = info(1), &damaged = found.at("damaged");
+  EXPECT_EQ(damaged.size(), 4u) << damaged;
+  EXPECT_EQ(damaged.at("f+0000002.base.exr"), "it is cut short");
+  EXPECT_NE(damaged.at("f+0000005.base.exr"), "");
+  EXPECT_NE(damaged.at("f+0000006.json"), "");
+  EXPECT_EQ(damaged.at("f+0000004.offset.exr").get<std::string>().find("f+0000004"), std::string::npos) << "named once";
+  EXPECT_EQ(found.at("frames"), 3);
+  EXPECT_EQ(found.at("missing"), "2, 4 to 5");
+  for (int frame = 1; frame <= 6; ++frame) fs::resize_file(store / ("f+000000" + std::to_string(frame) + ".base.exr"), 100);
+  EXPECT_EQ(info(1).at("frames"), 0);
 }
 
 // A frame of another layer under the name of one of this.
