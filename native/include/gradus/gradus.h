@@ -42,7 +42,8 @@ typedef enum GradusError {
   GRADUS_ERROR_INVALID_OPERATION = 3,
   GRADUS_ERROR_OUT_OF_MEMORY = 4,
   GRADUS_ERROR_UNSUPPORTED = 5,
-  GRADUS_ERROR_CANCELLED = 6
+  GRADUS_ERROR_CANCELLED = 6,
+  GRADUS_TIMEOUT = 7               /* no error: the time to wait is over and the render is still running. The error slot stays as it was. */
 } GradusError;
 
 /* major·10000 + minor·100 + patch of the library that answers. Works before anything else. */
@@ -573,7 +574,7 @@ GRADUS_API GradusError gradus_render_poll(GradusRender render, GradusProgress* p
 /* Asks it to stop. What was sampled stays readable; Combined is the last picture that was shown, if only at a quarter of the size, or the noisy image. */
 GRADUS_API GradusError gradus_render_cancel(GradusRender render);
 /* Blocks until done, cancelled or failed, or for at most `seconds` (negative: no limit). OK when it has ended well, CANCELLED or the
- * failure's code otherwise; INVALID_OPERATION while still running. */
+ * failure's code otherwise; GRADUS_TIMEOUT while it is still running. */
 GRADUS_API GradusError gradus_render_wait(GradusRender render, double seconds);
 GRADUS_API GradusError gradus_render_release(GradusRender render);
 /* Copies a pass of the region, width·height·channels floats (`count` must match exactly); never waits for samples. While sampling: Noisy Image so
