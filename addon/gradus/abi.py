@@ -25,6 +25,7 @@ class Error(IntEnum):
     OUT_OF_MEMORY = 4
     UNSUPPORTED = 5
     CANCELLED = 6
+    TIMEOUT = 7
 
 
 class Domain(IntEnum):

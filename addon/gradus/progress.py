@@ -33,14 +33,12 @@ def wait(job: Any, handle: int, display: Display, result: Any = None) -> None:
     running = True
     while running:
         try:
-            library.render_wait(handle, POLL_SECONDS)
-            running = False
+            running = library.render_wait(handle, POLL_SECONDS) == Error.TIMEOUT
         except GradusError as error:
-            if error.code == Error.CANCELLED:
-                job.cancelled = True
-                running = False
-            elif error.code != Error.INVALID_OPERATION:
+            if error.code != Error.CANCELLED:
                 raise
+            job.cancelled = True
+            running = False
         if running and not job.cancelled and job.is_stop_requested():
             job.cancelled = True
             library.render_cancel(handle)

@@ -43,14 +43,11 @@ client::Frame render_frame(const client::Device& device, const client::Scene& sc
       resumed ? client::Render(scene, settings, client::Frame::load(device, target.string())) : client::Render(scene, settings);
   {
     ProgressLine line;
-    while (gradus_render_wait(render.id(), 0.1) == GRADUS_ERROR_INVALID_OPERATION) {
-      gradus_error(nullptr);
+    while (!render.wait(0.1)) {
       line.show(render.poll(), settings.samples);
       if (interrupted) render.cancel();
     }
-    gradus_error(nullptr);
   }
-  render.wait();
   if (!args.stats.empty()) append_line(args.stats, render.stats());
   return render.frame();
 }

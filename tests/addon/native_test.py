@@ -7,10 +7,12 @@ import gc
 import shutil
 import subprocess
 from array import array
+from ctypes import byref
 from pathlib import Path
 
 import pytest
 from gradus import abi, native
+from support import one_ray
 
 
 def message(path: Path) -> str:
@@ -128,3 +130,25 @@ def test_error_has_code_and_text() -> None:
     assert caught.value.code != native.Error.OK
     assert caught.value.text
     assert library.take_error() == ""
+
+
+def test_waiting_for_a_running_render_raises_nothing() -> None:
+    """"Still running" was an error, thrown and caught 20 times a second, and a real one with its code was taken for it."""
+    library = native.load()
+    device, render = ctypes.c_uint64(), ctypes.c_uint64()
+    library.device_create(byref(one_ray.struct(native.DeviceSettings, threads=1)), byref(device))
+    scene = one_ray.triangle_scene(library, device.value)
+    settings = one_ray.struct(native.Settings)
+    library.settings_default(byref(settings))
+    settings.samples = 1 << 20
+    settings.noise_threshold = 0.0
+    library.render_start(scene, byref(settings), byref(render))
+    assert library.render_wait(render.value, 0.0) == native.Error.TIMEOUT
+    assert library.take_error() == ""
+    library.render_cancel(render.value)
+    with pytest.raises(native.GradusError) as caught:
+        library.render_wait(render.value, -1.0)
+    assert caught.value.code == native.Error.CANCELLED
+    library.render_release(render.value)
+    library.scene_release(scene)
+    library.device_release(device.value)

@@ -48,7 +48,9 @@ typedef enum GradusError {
   GRADUS_ERROR_INVALID_OPERATION = 3, /* The call is not possible in the present state of the object. */
   GRADUS_ERROR_OUT_OF_MEMORY = 4,     /* Memory could not be allocated. */
   GRADUS_ERROR_UNSUPPORTED = 5,       /* The machine, the process or the scene lacks something that the call needs. */
-  GRADUS_ERROR_CANCELLED = 6          /* The caller cancelled the work. */
+  GRADUS_ERROR_CANCELLED = 6,         /* The caller cancelled the work. */
+  GRADUS_TIMEOUT = 7                  /* Not an error: the time to wait is over and the render is still running. The
+                                         error slot keeps its content. */
 } GradusError;
 
 /* Returns the version of the library as major·10000 + minor·100 + patch. Works before anything else. */
@@ -717,7 +719,7 @@ GRADUS_API GradusError gradus_render_poll(GradusRender render, GradusProgress* p
  * was at a quarter of the width and height, or else the noisy image. */
 GRADUS_API GradusError gradus_render_cancel(GradusRender render);
 /* Blocks until the render is done, cancelled or failed, or for at most `seconds` (negative = no limit). Returns OK if
- * it is done, CANCELLED or the error of the failure otherwise, and INVALID_OPERATION while it is running. */
+ * it is done, CANCELLED or the error of the failure otherwise, and GRADUS_TIMEOUT while it is running. */
 GRADUS_API GradusError gradus_render_wait(GradusRender render, double seconds);
 GRADUS_API GradusError gradus_render_release(GradusRender render);
 /* Copies a pass of the region: width·height·channels floats, which `count` must equal. It never waits for samples.

@@ -182,6 +182,13 @@ class Render : public Handle<GradusRender, gradus_render_release> {
   }
   void cancel() { check(gradus_render_cancel(id_)); }
   void wait() const { check(gradus_render_wait(id_, -1.0)); }
+  // Returns false where the render is still running after this time.
+  bool wait(double seconds) const {
+    const GradusError code = gradus_render_wait(id_, seconds);
+    if (code == GRADUS_TIMEOUT) return false;
+    check(code);
+    return true;
+  }
   std::string stats() const {
     const char* json = nullptr;
     check(gradus_render_stats(id_, &json));

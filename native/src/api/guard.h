@@ -1,6 +1,7 @@
 // The wrapper around every function of the C API: no exception gets out.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 #include "api/error_slot.h"
@@ -8,11 +9,16 @@
 
 namespace gradus::api {
 
+// Returns what the function returns if that is a code, which then leaves the error slot as it is.
 template <class Function>
 GradusError guard(Function&& function) noexcept {
   try {
-    std::forward<Function>(function)();
-    return GRADUS_OK;
+    if constexpr (std::is_same_v<std::invoke_result_t<Function>, GradusError>) {
+      return std::forward<Function>(function)();
+    } else {
+      std::forward<Function>(function)();
+      return GRADUS_OK;
+    }
   } catch (...) {
     return record_current_exception();
   }

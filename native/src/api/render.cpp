@@ -44,12 +44,14 @@ GradusError gradus_render_cancel(GradusRender render) {
 }
 
 GradusError gradus_render_wait(GradusRender render, double seconds) {
-  return api::guard([&] {
+  return api::guard([&]() -> GradusError {
     const auto object = api::find_handle<api::RenderObject>(render);
-    if (!object->render.wait(seconds)) throw invalid_operation("the render is still running");
+    // Callers poll: an exception for each call would cost more than the call.
+    if (!object->render.wait(seconds)) return GRADUS_TIMEOUT;
     std::string text;
     const GradusError code = object->render.outcome(&text);
     if (code != GRADUS_OK) throw Error(code, text);
+    return GRADUS_OK;
   });
 }
 

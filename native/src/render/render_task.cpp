@@ -13,8 +13,7 @@ void RenderTask::run() noexcept {
     render();
     end(GRADUS_OK, "");
   } catch (const Error& e) {
-    // Of a render that is waited for, this code says that it goes on.
-    end(e.code() == GRADUS_ERROR_INVALID_OPERATION ? GRADUS_ERROR_UNKNOWN : e.code(), e.what());
+    end(e.code(), e.what());
   } catch (const std::bad_alloc&) {
     end(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while rendering");
   } catch (const std::exception& e) {

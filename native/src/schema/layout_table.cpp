@@ -294,6 +294,7 @@ constexpr int64_t kErrorValues[] = {
     GRADUS_ERROR_OUT_OF_MEMORY,
     GRADUS_ERROR_UNSUPPORTED,
     GRADUS_ERROR_CANCELLED,
+    GRADUS_TIMEOUT,
 };
 
 constexpr int64_t kDomainValues[] = {

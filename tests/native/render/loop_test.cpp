@@ -359,6 +359,16 @@ TEST(Loop, FailuresOfTheIntegratorBecomeTheOutcome) {
   EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_FAILED});
 }
 
+// The code also meant "still running", so that it was reported as UNKNOWN.
+TEST(Loop, AnInvalidOperationIsReportedAsSuch) {
+  const auto failing = [](FakeIntegrator* fake) { fake->before = [](const WorkUnit&) { throw invalid_operation("the film is shut"); }; };
+  auto render = start(small_settings(64, 48, 16), fake_factory(failing));
+  ASSERT_TRUE(render->wait(10.0));
+  std::string text;
+  EXPECT_EQ(render->outcome(&text), GRADUS_ERROR_INVALID_OPERATION);
+  EXPECT_EQ(text, "the film is shut");
+}
+
 TEST(Loop, AnswersOutOfOrderCalls) {
   auto render = start(small_settings(256, 256, 1000));
   EXPECT_FALSE(render->wait(0.0));
