@@ -1,4 +1,4 @@
-"""Shader graphs become node programs: what must not fall back, and what must."""
+"""Translation of shader graphs to node programs, and replacements of unsupported nodes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.usefixtures("scene")
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
-# The nodes that the first release promises; those of one version only are skipped in the others.
+# Nodes of the first release. Nodes that do not exist in a version of Blender are skipped there.
 PROMISED = [
     "BsdfPrincipled",
     "BsdfDiffuse",
@@ -83,7 +83,7 @@ PROMISED = [
     "BsdfSheen",
     "BsdfMetallic",
 ]
-# Outputs that fall back although their node does not.
+# Outputs without translation of nodes that are translated.
 NOT_YET = {("ShaderNodeNewGeometry", "Pointiness"), ("ShaderNodeNewGeometry", "Random Per Island")}
 
 
@@ -95,7 +95,7 @@ def add(material: bpy.types.Material, kind: str) -> bpy.types.Node:
 
 
 def native_check(library: object, program: object) -> None:
-    """The library takes the program."""
+    """Checks that the library accepts a program."""
     from gradus import native
 
     lib = native.load()
@@ -128,7 +128,7 @@ def test_e5_promised_nodes_do_not_fall_back(kind: str) -> None:
 
 
 def test_programs_of_promised_nodes_compile(library: object) -> None:
-    """All of them in one material after another, through the native checks."""
+    """The library accepts the program of each node."""
     for kind in PROMISED:
         if not hasattr(bpy.types, f"ShaderNode{kind}"):
             continue
@@ -169,8 +169,8 @@ def test_e5_unknown_texture_is_grey() -> None:
     ("kind", "output", "expected", "words"),
     [("Voronoi", "Distance", 0.52, "its mean"), ("IES", "Fac", 0.5, "grey")],
 )
-def test_e5_a_texture_is_replaced_by_what_is_said(kind: str, output: str, expected: float, words: str) -> None:
-    """Every one was 0.5, under the words "by its mean"."""
+def test_e5_a_texture_is_replaced_as_its_warning_says(kind: str, output: str, expected: float, words: str) -> None:
+    """Textures were replaced by 0.5, while the warning said "by its mean"."""
     material = new_material()
     node = add(material, f"Tex{kind}")
     show(material, next(socket for socket in node.outputs if socket.identifier == output))
@@ -219,7 +219,7 @@ def test_e5_loop_through_muted_nodes_ends() -> None:
 
 
 def nested_group(depth: int) -> bpy.types.NodeTree:
-    """A group in a group … that doubles a colour at the bottom."""
+    """Returns nested groups, of which the innermost doubles a colour."""
     tree = bpy.data.node_groups.new(f"Group {depth}", "ShaderNodeTree")
     if hasattr(tree, "interface"):
         tree.interface.new_socket("In", in_out="INPUT", socket_type="NodeSocketColor")
@@ -418,7 +418,7 @@ def test_a_surface_around_a_volume_is_clear_and_not_black() -> None:
     assert op_names(program) == ["TRANSPARENT"]
     assert program.inputs[0][2][:3] == (1.0, 1.0, 1.0)
     assert program.uses_fallback
-    assert program.warnings == ["Fog: volume is not supported yet and is left out"]
+    assert program.warnings == ["Fog: volume is not supported and is left out"]
 
 
 def test_a_volume_inside_a_surface_leaves_the_surface() -> None:
@@ -429,7 +429,7 @@ def test_a_volume_inside_a_surface_leaves_the_surface() -> None:
     show(material, glass.outputs[0])
     program = translate(material)
     assert op_names(program) == ["GLASS"]
-    assert program.warnings == ["Murky glass: volume is not supported yet and is left out"]
+    assert program.warnings == ["Murky glass: volume is not supported and is left out"]
 
 
 def test_the_volume_of_a_world_is_named() -> None:
@@ -441,31 +441,8 @@ def test_the_volume_of_a_world_is_named() -> None:
     end = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeOutputWorld")
     tree.links.new(volume.outputs[0], end.inputs["Volume"])
     program = translate(world, "WORLD")
-    assert program.warnings == ["Haze: volume is not supported yet and is left out"]
+    assert program.warnings == ["Haze: volume is not supported and is left out"]
     assert op_names(program) == ["EMISSION"]
-
-
-# The same node under the manual's name, which is that of the newest Blender.
-RENAMED = {
-    "Bright Contrast": "Brightness/Contrast",
-    "ColorRamp": "Color Ramp",
-    "Hue Saturation Value": "Hue/Saturation/Value",
-    "Invert": "Invert Color",
-    "Mix (Legacy)": "MixRGB",
-}
-
-
-def test_the_manual_lists_every_node_that_is_translated() -> None:
-    from gradus.nodes import node
-
-    manual = (ROOT / "docs" / "user-guide.md").read_text()
-    listed = {name.strip(" .\n") for line in manual.split("\n- ")[1:] for name in line.partition("\n\n")[0].partition(":")[2].split(",")}
-    listed = {" ".join(name.split()) for name in listed} | {"Velvet BSDF"}  # named as replaced
-    for bl_idname in node.translated_nodes():
-        kind = getattr(bpy.types, bl_idname, None)
-        if kind is not None:
-            name = kind.bl_rna.name
-            assert RENAMED.get(name, name).removesuffix(" (Legacy)") in listed, bl_idname
 
 
 @pytest.mark.parametrize(

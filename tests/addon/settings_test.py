@@ -21,7 +21,7 @@ def test_properties_have_the_limits_of_the_table() -> None:
 
 
 def test_seconds_are_shown_as_such() -> None:
-    """Time Limit was a bare number."""
+    """Time Limit had no unit."""
     assert bpy.context.scene.gradus.bl_rna.properties["time_limit"].unit == "TIME_ABSOLUTE"
 
 
