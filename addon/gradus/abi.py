@@ -635,7 +635,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     Phase,
 )
 
-Device = Scene = Render = Sequence = Frame = c_uint64  # handles are values, never addresses
+Device = Scene = Render = Sequence = Film = c_uint64  # handles are values, never addresses
 
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_version": (c_uint32, []),
@@ -672,7 +672,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_scene_save": (c_int, [Scene, POINTER(Settings), c_char_p]),
     "gradus_scene_load": (c_int, [Device, c_char_p, POINTER(Scene), POINTER(Settings)]),
     "gradus_render_start": (c_int, [Scene, POINTER(Settings), POINTER(Render)]),
-    "gradus_render_resume": (c_int, [Scene, POINTER(Settings), Frame, POINTER(Render)]),
+    "gradus_render_resume": (c_int, [Scene, POINTER(Settings), Film, POINTER(Render)]),
     "gradus_render_poll": (c_int, [Render, POINTER(Progress)]),
     "gradus_render_cancel": (c_int, [Render]),
     "gradus_render_wait": (c_int, [Render, c_double]),
@@ -680,7 +680,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_render_read_pass": (c_int, [Render, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_render_read_component": (c_int, [Render, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_render_stats": (c_int, [Render, POINTER(c_char_p)]),
-    "gradus_render_frame": (c_int, [Render, POINTER(Frame)]),
+    "gradus_render_film": (c_int, [Render, POINTER(Film)]),
     "gradus_sequence_applies": (c_int, [POINTER(Settings), POINTER(c_uint32), POINTER(c_char_p)]),
     "gradus_sequence_create": (c_int, [Device, POINTER(SequenceSettings), POINTER(Sequence)]),
     "gradus_sequence_needs": (c_int, [Sequence, c_int32, POINTER(c_int32), POINTER(c_int32)]),
@@ -689,17 +689,17 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_sequence_end_at": (c_int, [Sequence, c_int32]),
     "gradus_sequence_deliver": (c_int, [Sequence, c_int32, POINTER(Settings), POINTER(Render)]),
     "gradus_sequence_release": (c_int, [Sequence]),
-    "gradus_frame_save": (c_int, [Frame, c_char_p]),
-    "gradus_frame_load": (c_int, [Device, c_char_p, POINTER(Frame)]),
-    "gradus_frame_merge": (c_int, [Frame, Frame]),
-    "gradus_frame_size": (c_int, [Frame, POINTER(c_uint32), POINTER(c_uint32)]),
-    "gradus_frame_reconstruct": (
+    "gradus_film_save": (c_int, [Film, c_char_p]),
+    "gradus_film_load": (c_int, [Device, c_char_p, POINTER(Film)]),
+    "gradus_film_merge": (c_int, [Film, Film]),
+    "gradus_film_size": (c_int, [Film, POINTER(c_uint32), POINTER(c_uint32)]),
+    "gradus_film_reconstruct": (
         c_int,
-        [Frame, c_uint32, c_float, c_uint32, POINTER(c_float), c_size_t, POINTER(c_float)],
+        [Film, c_uint32, c_float, c_uint32, POINTER(c_float), c_size_t, POINTER(c_float)],
     ),
-    "gradus_frame_read_pass": (c_int, [Frame, c_uint32, POINTER(c_float), c_size_t]),
-    "gradus_frame_read_component": (c_int, [Frame, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
-    "gradus_frame_release": (c_int, [Frame]),
+    "gradus_film_read_pass": (c_int, [Film, c_uint32, POINTER(c_float), c_size_t]),
+    "gradus_film_read_component": (c_int, [Film, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
+    "gradus_film_release": (c_int, [Film]),
 }
 """(restype, argtypes) of every function of the header."""
 

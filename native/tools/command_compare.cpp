@@ -19,14 +19,14 @@ struct CompareArguments {
 
 // An image, or a stored frame as its settings reconstruct it.
 RgbImage load(const std::string& path, const std::string& layer) {
-  if (!is_frame_file(path)) {
+  if (!is_film_file(path)) {
     LoadedImage image = load_rgb(path, layer);
     return {image.width, image.height, std::move(image.rgb)};
   }
   const client::Device device;
-  const client::Frame frame = client::Frame::load(device, path);
-  const std::vector<float> rgba = frame.read_pass(GRADUS_PASS_COMBINED);
-  RgbImage image{int(frame.size().first), int(frame.size().second), {}};
+  const client::Film film = client::Film::load(device, path);
+  const std::vector<float> rgba = film.read_pass(GRADUS_PASS_COMBINED);
+  RgbImage image{int(film.size().first), int(film.size().second), {}};
   for (size_t i = 0; i < rgba.size(); i += 4)
     image.pixels.insert(image.pixels.end(), rgba.begin() + ptrdiff_t(i), rgba.begin() + ptrdiff_t(i + 3));
   return image;

@@ -36,14 +36,14 @@ ordered_json scene_info(const std::string& path) {
           {"settings", settings_to_json(s.settings)}};
 }
 
-ordered_json frame_info(const std::string& path) {
-  const auto frame = load_frame(path);
-  uint64_t samples = 0, least = UINT64_MAX, most = 0;
+ordered_json film_info(const std::string& path) {
+  const auto frame = load_film(path);
+  uint64_t samples = 0, minimum = UINT64_MAX, maximum = 0;
   for (size_t i = 0; i < frame->count[0].size(); ++i) {
     const uint64_t n = uint64_t(frame->count[0][i]) + frame->count[1][i];
     samples += n;
-    least = std::min(least, n);
-    most = std::max(most, n);
+    minimum = std::min(minimum, n);
+    maximum = std::max(maximum, n);
   }
   const Region& r = frame->region;
   char scene_key[20];
@@ -53,8 +53,8 @@ ordered_json frame_info(const std::string& path) {
           {"sampled_region", {r.x0, r.y0, r.x1, r.y1}},
           {"frame", frame->frame_number},
           {"samples", double(samples) / double(r.area())},
-          {"samples_least", least},
-          {"samples_most", most},
+          {"samples_least", minimum},
+          {"samples_most", maximum},
           {"gradients", frame->gradients},
           {"components", frame->components.size()},
           {"alpha", frame->channels == 4},
@@ -68,7 +68,7 @@ ordered_json sequence_info(const std::string& folder) {
   if (!faults.files.empty() && faults.whole_frames == 0) return {{"kind", "sequence"}, {"frames", 0}, {kDamaged, faults.files}};
   const StoredSequence stored(folder, faults.frames);
   const int32_t first = stored.frames().front(), last = stored.frames().back();
-  ordered_json frame = frame_info(stored.path(first));
+  ordered_json frame = film_info(stored.path(first));
   ordered_json info{{"kind", "sequence"},
                     {"first", first},
                     {"last", last},
@@ -84,7 +84,7 @@ ordered_json describe(const std::string& path) {
   if (std::filesystem::is_directory(path)) return sequence_info(path);
   if (std::filesystem::path(path).extension() == ".gradus") return scene_info(path);
   if (std::filesystem::path(path).extension() != ".exr") throw invalid_argument(path + " is neither FILE.gradus nor FILE.exr");
-  if (is_frame_file(path)) return frame_info(path);
+  if (is_film_file(path)) return film_info(path);
   return {{"kind", "image"}, {"channels", image_channels(path)}};
 }
 

@@ -27,7 +27,7 @@ ordered_json compare(const ChainView& view, const ChainTracer& next, const Chain
   for (size_t i = 0; i < found.film.size(); ++i) {
     if (found.tracking[i] != Tracking::Tracked) continue;
     const SpecularChain& chain = view.chains[size_t(view.places[i])];
-    if (chain.way.length > 0 && !chain.rests) simpler.add(chain, found.film[i]);
+    if (chain.signature.length > 0 && !chain.is_static) simpler.add(chain, found.film[i]);
   }
   return simpler.json();
 }
@@ -48,7 +48,7 @@ ordered_json measure(const Snapshot& snapshot, const GradusSettings& settings, c
   double wall = 0.0, cpu = 0.0;
   const auto billed = [&](const auto& work) {
     wall = cpu = 0.0;
-    const Bill bill(&wall, &cpu);
+    const ScopedTimer timer(&wall, &cpu);
     return work();
   };
   const Region region{0, 0, int32_t(settings.width), int32_t(settings.height)};
@@ -78,7 +78,7 @@ ordered_json measure(const Snapshot& snapshot, const GradusSettings& settings, c
     report[components[c].name] = part;
   }
   if (checked == 0) return report;
-  const StepsBetween steps(snapshot, settings, farthest_way(next, views, found));
+  const StepsBetween steps(snapshot, settings, farthest_displacement(next, views, found));
   for (int c = 0; c < followed; ++c) report[components[c].name]["check"] = steps.check(views[size_t(c)], found[size_t(c)], checked);
   return report;
 }

@@ -35,10 +35,10 @@ void check_usage(const ReconstructArguments& args, uint32_t reconstruction, uint
   if (const std::string bad = exr_only(args.output); !bad.empty()) throw CLI::ValidationError("--output", bad);
 }
 
-bool holds(const Frame& frame, uint32_t pass) {
-  if (pass_info(pass).kind == PassKind::Sequence) return wants(frame.settings.passes, pass);
-  if (pass == GRADUS_PASS_GRADIENT_X || pass == GRADUS_PASS_GRADIENT_Y) return frame.gradients;
-  return pass == GRADUS_PASS_ERROR || has_pass(frame, pass);  // that of the reconstruction
+bool holds(const Film& film, uint32_t pass) {
+  if (pass_info(pass).kind == PassKind::Sequence) return has_bit(film.settings.passes, pass);
+  if (pass == GRADUS_PASS_GRADIENT_X || pass == GRADUS_PASS_GRADIENT_Y) return film.gradients;
+  return pass == GRADUS_PASS_ERROR || has_pass(film, pass);  // that of the reconstruction
 }
 
 int run(const ReconstructArguments& args) {
@@ -46,25 +46,25 @@ int run(const ReconstructArguments& args) {
   check_usage(args, reconstruction, denoiser);
   if (is_sequence(args)) return reconstruct_sequence(args);
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
-  client::Frame frame = client::Frame::load(device, args.input);
-  for (const std::string& path : args.merged) frame.merge(client::Frame::load(device, path));
-  const auto [width, height] = frame.size();
+  client::Film film = client::Film::load(device, args.input);
+  for (const std::string& path : args.merged) film.merge(client::Film::load(device, path));
+  const auto [width, height] = film.size();
   const uint64_t passes =
-      args.passes.empty() ? 1 : held_passes(*api::find_handle<api::FrameObject>(frame.id())->get(), parse_passes(args.passes));
+      args.passes.empty() ? 1 : available_passes(*api::find_handle<api::FilmObject>(film.id())->get(), parse_passes(args.passes));
   const auto wanted = [passes](uint32_t pass) { return (passes >> pass & 1) != 0; };
   std::vector<float> error;  // of this reconstruction, not of the one that the frame was rendered for
   std::vector<ImageLayer> layers = {
-      {"", 4, frame.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
+      {"", 4, film.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
   for (uint32_t pass = 1; pass < GRADUS_PASS_COUNT; ++pass) {
     if (!wanted(pass)) continue;
     layers.push_back(
-        {client::pass_name(pass), int(client::pass_channels(pass)), pass == GRADUS_PASS_ERROR ? error : frame.read_pass(pass)});
+        {client::pass_name(pass), int(client::pass_channels(pass)), pass == GRADUS_PASS_ERROR ? error : film.read_pass(pass)});
   }
   const uint32_t of_components = parse_component_passes(args.component_passes);
   if (of_components != 0) {
-    const auto content = api::find_handle<api::FrameObject>(frame.id())->get();
-    const uint32_t held = held_component_passes(header_of(*content), of_components);
-    add_component_layers(content->settings, held, size_t(width) * height, reader_of(frame), &layers);
+    const auto content = api::find_handle<api::FilmObject>(film.id())->get();
+    const uint32_t held = available_component_passes(header_of(*content), of_components);
+    add_component_layers(content->settings, held, size_t(width) * height, reader_of(film), &layers);
   }
   save_image(args.output, int(width), int(height), layers);
   print_warnings(device);
@@ -73,9 +73,9 @@ int run(const ReconstructArguments& args) {
 
 }  // namespace
 
-uint64_t held_passes(const Frame& frame, uint64_t asked) {
-  const HeldPasses held = find_held(pass_names(), asked, [&](uint32_t pass) { return holds(frame, pass); });
-  if (asked == kAllPasses || held.missing.empty()) return asked & held.mask;
+uint64_t available_passes(const Film& film, uint64_t requested) {
+  const AvailablePasses held = find_available(pass_names(), requested, [&](uint32_t pass) { return holds(film, pass); });
+  if (requested == kAllPasses || held.missing.empty()) return requested & held.mask;
   throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without " + held.missing + "; it holds " + held.names);
 }
 

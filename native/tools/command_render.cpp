@@ -36,11 +36,11 @@ void append_line(const std::string& path, const std::string& line) {
   if (!(file << line << std::endl)) throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "cannot write " + path);
 }
 
-client::Frame render_frame(const client::Device& device, const client::Scene& scene, const GradusSettings& settings, const fs::path& target,
+client::Film render_film(const client::Device& device, const client::Scene& scene, const GradusSettings& settings, const fs::path& target,
                            const RenderArguments& args) {
   const bool resumed = args.resume && fs::exists(target);
   client::Render render =
-      resumed ? client::Render(scene, settings, client::Frame::load(device, target.string())) : client::Render(scene, settings);
+      resumed ? client::Render(scene, settings, client::Film::load(device, target.string())) : client::Render(scene, settings);
   {
     ProgressLine line;
     while (!render.wait(0.1)) {
@@ -49,10 +49,10 @@ client::Frame render_frame(const client::Device& device, const client::Scene& sc
     }
   }
   if (!args.stats.empty()) append_line(args.stats, render.stats());
-  return render.frame();
+  return render.film();
 }
 
-void write_image(const client::Frame& frame, const GradusSettings& settings, const std::string& path) {
+void write_image(const client::Film& frame, const GradusSettings& settings, const std::string& path) {
   const auto [width, height] = frame.size();
   std::vector<ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
@@ -76,7 +76,7 @@ int run(const RenderArguments& args) {
   if (!args.image.empty()) check_apart("--image", args.image, target.string());
   if (target.has_parent_path()) fs::create_directories(target.parent_path());
   std::signal(SIGINT, [](int) { interrupted = true; });
-  const client::Frame frame = render_frame(device, scene, settings, target, args);
+  const client::Film frame = render_film(device, scene, settings, target, args);
   frame.save(target.string());
   if (!args.image.empty()) write_image(frame, settings, args.image);
   print_warnings(device, scene);

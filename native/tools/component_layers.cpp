@@ -13,10 +13,10 @@ PassNames component_pass_names() {
           "; they have "};
 }
 
-bool is_held(const FrameHeader& frame, uint32_t pass) {
+bool is_available(const FilmHeader& frame, uint32_t pass) {
   if (frame.settings.use_decomposition == 0) return false;
-  const KeptOfComponents& held = frame.of_components;
-  return (held.rough || !is_of_rough_vertices(pass)) && (held.details || !is_of_rough_details(pass)) && (held.motion || !is_motion(pass));
+  const ComponentContent& held = frame.of_components;
+  return (held.non_specular || !is_of_non_specular_vertices(pass)) && (held.details || !is_of_non_specular_details(pass)) && (held.motion || !is_motion(pass));
 }
 
 std::string layer_name(const std::string& component, uint32_t pass) {
@@ -32,21 +32,21 @@ std::string bad_component_passes(const std::string& text) {
   return refusal([&] { parse_component_passes(text); });
 }
 
-uint32_t held_component_passes(const FrameHeader& frame, uint32_t asked) {
-  const HeldPasses held = find_held(component_pass_names(), asked, [&](uint32_t pass) { return is_held(frame, pass); });
-  if (held.mask == 0 && asked != 0) {
+uint32_t available_component_passes(const FilmHeader& frame, uint32_t requested) {
+  const AvailablePasses held = find_available(component_pass_names(), requested, [&](uint32_t pass) { return is_available(frame, pass); });
+  if (held.mask == 0 && requested != 0) {
     throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without components: --use-decomposition 1 samples them");
   }
-  if (asked == kAllComponentPasses || held.missing.empty()) return asked & uint32_t(held.mask);
+  if (requested == kAllComponentPasses || held.missing.empty()) return requested & uint32_t(held.mask);
   throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
                       "the frame's components were rendered without " + held.missing + "; there are " + held.names);
 }
 
-bool take_two_frames(uint32_t passes) { return wants_any(passes, is_motion); }
+bool need_two_frames(uint32_t passes) { return any_wanted(passes, is_motion); }
 
-ReadComponent reader_of(const client::Frame& frame) {
+ReadComponent reader_of(const client::Film& frame) {
   return [id = frame.id()](const char* component, uint32_t pass, std::vector<float>* pixels) {
-    client::check(gradus_frame_read_component(id, component, pass, pixels->data(), pixels->size()));
+    client::check(gradus_film_read_component(id, component, pass, pixels->data(), pixels->size()));
   };
 }
 
@@ -56,7 +56,7 @@ void add_component_layers(const GradusSettings& settings, uint32_t passes, size_
   const ComponentSet set = ComponentSet::parse(get_text(settings, *find_option("components")));
   for (int c = 0; c < set.count(); ++c) {
     for (uint32_t pass = 0; pass < GRADUS_COMPONENT_PASS_COUNT; ++pass) {
-      if (!wants(passes, pass)) continue;
+      if (!has_bit(passes, pass)) continue;
       const uint32_t channels = component_pass_info(pass).channels;
       layers->push_back({layer_name(set[c].name, pass), int(channels), std::vector<float>(pixels * channels)});
       read(set[c].name.c_str(), pass, &layers->back().pixels);

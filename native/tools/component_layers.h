@@ -17,13 +17,13 @@ inline constexpr uint32_t kAllComponentPasses = (uint32_t{1} << GRADUS_COMPONENT
 uint32_t parse_component_passes(const std::string& text);
 std::string bad_component_passes(const std::string& text);
 
-// Those of `asked` that the frame was sampled for: all of them, unless it is everything. Throws Error with what is missing.
-uint32_t held_component_passes(const FrameHeader& frame, uint32_t asked);
+// Those of `requested` that the frame was sampled for: all of them, unless it is everything. Throws Error with what is missing.
+uint32_t available_component_passes(const FilmHeader& frame, uint32_t requested);
 // Whether some are made of two frames: of an animation, by optical flow.
-bool take_two_frames(uint32_t passes);
+bool need_two_frames(uint32_t passes);
 
 using ReadComponent = std::function<void(const char* component, uint32_t pass, std::vector<float>* pixels)>;
-ReadComponent reader_of(const client::Frame& frame);
+ReadComponent reader_of(const client::Film& frame);
 // Of every component of the settings' set; pixels: of the image.
 void add_component_layers(const GradusSettings& settings, uint32_t passes, size_t pixels, const ReadComponent& read,
                           std::vector<ImageLayer>* layers);

@@ -25,23 +25,23 @@ void SimplerMotion::add(const SpecularChain& chain, const Vec2& place) {
   Vec2 film;
   Vec3 position;
   if (surface_.position(chain.first, &position) && camera.project(position, Moment::Now, &film))
-    first_.add(glm::length(camera.way(place, film)));
-  if (flat_mirror_motion(here_, next_, surface_, chain, FlatMirror::Rests, &film)) resting_.add(glm::length(camera.way(place, film)));
-  if (flat_mirror_motion(here_, next_, surface_, chain, FlatMirror::MovesAlong, &film)) along_.add(glm::length(camera.way(place, film)));
+    first_.add(glm::length(camera.film_displacement(place, film)));
+  if (flat_mirror_motion(here_, next_, surface_, chain, FlatMirror::Static, &film)) static_mirror_.add(glm::length(camera.film_displacement(place, film)));
+  if (flat_mirror_motion(here_, next_, surface_, chain, FlatMirror::MovesAlong, &film)) along_.add(glm::length(camera.film_displacement(place, film)));
 }
 
-StepsBetween::Frame::Frame(std::shared_ptr<const Snapshot> s, const GradusSettings& settings)
+StepsBetween::Film::Film(std::shared_ptr<const Snapshot> s, const GradusSettings& settings)
     : snapshot(std::move(s)),
       camera(Camera(snapshot->camera, settings.width, settings.height).without_lens()),
       tracer(*snapshot, camera, settings) {}
 
 StepsBetween::StepsBetween(const Snapshot& snapshot, const GradusSettings& settings, double farthest) : farthest_(farthest) {
-  constexpr double kStep = 0.3, kLeast = 8.0, kMost = 128.0;  // pixels in one step: less than true_place() looks for
-  const auto count = int(std::clamp(std::ceil(farthest / kStep), kLeast, kMost));
+  constexpr double kStep = 0.3, kMin = 8.0, kMax = 128.0;  // pixels in one step: less than true_place() looks for
+  const auto count = int(std::clamp(std::ceil(farthest / kStep), kMin, kMax));
   const auto never = [] { return false; };
   for (int k = 1; k <= count; ++k)
     frames_.push_back(
-        std::make_unique<Frame>(moved_snapshot(snapshot, Moment::Next, never, k == count ? 1.0f : float(k) / float(count)), settings));
+        std::make_unique<Film>(moved_snapshot(snapshot, Moment::Next, never, k == count ? 1.0f : float(k) / float(count)), settings));
 }
 
 namespace {
@@ -58,7 +58,7 @@ struct Pixel {
 std::vector<Pixel> spread(const ChainView& view, size_t wanted) {
   std::vector<Pixel> all, chosen;
   for (size_t i = 0; i < view.places.size(); ++i)
-    if (view.places[i] >= 0 && !view.chains[size_t(view.places[i])].rests) all.push_back({i, &view.chains[size_t(view.places[i])]});
+    if (view.places[i] >= 0 && !view.chains[size_t(view.places[i])].is_static) all.push_back({i, &view.chains[size_t(view.places[i])]});
   const size_t stride = std::max<size_t>(1, all.size() / std::max<size_t>(wanted, 1));
   for (size_t i = stride / 2; i < all.size(); i += stride) chosen.push_back(all[i]);
   return chosen;
@@ -68,23 +68,23 @@ std::vector<Pixel> spread(const ChainView& view, size_t wanted) {
 
 ordered_json StepsBetween::check(const ChainView& view, const ChainMotion& found, size_t wanted) const {
   constexpr double kSameThing = 3e-4;            // radians
-  constexpr double kBeside = 2.0, kMost = 24.0;  // pixels
-  const double reach = std::min(farthest_ + kBeside, kMost);
+  constexpr double kBeside = 2.0, kMax = 24.0;  // pixels
+  const double reach = std::min(farthest_ + kBeside, kMax);
   const ChainTracer here = view.tracer();
-  std::vector<const ChainTracer*> way{&here};
-  for (const auto& frame : frames_) way.push_back(&frame->tracer);
-  const ChainTracer& next = *way.back();
+  std::vector<const ChainTracer*> tracers{&here};
+  for (const auto& frame : frames_) tracers.push_back(&frame->tracer);
+  const ChainTracer& next = *tracers.back();
   std::vector<Pixel> pixels = spread(view, wanted);
   const auto width = size_t(view.region().width());
   const auto is_tracked = [&](const Pixel& p) { return found.tracking[p.number] == Tracking::Tracked; };
   tbb::parallel_for(size_t{0}, pixels.size(), [&](size_t i) {
     Pixel& p = pixels[i];
     const Vec2 centre = pixel_centre(int32_t(p.number % width), int32_t(p.number / width));
-    p.exists = true_place(way, *p.chain, centre, &p.truth);
+    p.exists = true_place(tracers, *p.chain, centre, &p.truth);
     Target target;
     const bool is_there = true_target(here, next, *p.chain, &target);
-    p.reappears = !p.exists && is_there && seen_near(next, p.chain->way, target, centre, reach);
-    p.invented = is_tracked(p) && !(is_there && shows(next, p.chain->way, target, glm::dvec2(found.film[p.number]), kSameThing));
+    p.reappears = !p.exists && is_there && seen_near(next, p.chain->signature, target, centre, reach);
+    p.invented = is_tracked(p) && !(is_there && shows(next, p.chain->signature, target, glm::dvec2(found.film[p.number]), kSameThing));
   });
   size_t exist = 0, reappear = 0, tracked = 0, invented = 0;
   Distances errors;
@@ -94,19 +94,19 @@ ordered_json StepsBetween::check(const ChainView& view, const ChainMotion& found
     reappear += p.reappears;
     invented += p.invented;
     if (!p.exists) continue;
-    if (p.chain->way.length > 0) simpler.add(*p.chain, Vec2(p.truth));
+    if (p.chain->signature.length > 0) simpler.add(*p.chain, Vec2(p.truth));
     if (!is_tracked(p)) continue;
     ++tracked;
-    errors.add(glm::length(glm::dvec2(next.camera().way(found.film[p.number], Vec2(p.truth)))));
+    errors.add(glm::length(glm::dvec2(next.camera().film_displacement(found.film[p.number], Vec2(p.truth)))));
   }
   return {{"steps", frames_.size()}, {"searched", pixels.size()}, {"exist", exist},         {"reappear", reappear},
           {"tracked", tracked},      {"invented", invented},      {"error", errors.json()}, {"simpler", simpler.json()}};
 }
 
-double farthest_way(const ChainTracer& next, const std::vector<ChainView>& views, const std::vector<ChainMotion>& found) {
+double farthest_displacement(const ChainTracer& next, const std::vector<ChainView>& views, const std::vector<ChainMotion>& found) {
   constexpr double kQuantile = 0.99;
-  std::vector<float> ways;
-  const auto add = [&](const Vec2& from, const Vec2& to) { ways.push_back(glm::length(next.camera().way(from, to))); };
+  std::vector<float> displacements;
+  const auto add = [&](const Vec2& from, const Vec2& to) { displacements.push_back(glm::length(next.camera().film_displacement(from, to))); };
   for (size_t c = 0; c < found.size(); ++c) {
     const ChainView& view = views[c];
     const ChainTracer here = view.tracer();
@@ -114,19 +114,19 @@ double farthest_way(const ChainTracer& next, const std::vector<ChainView>& views
     for (size_t i = 0; i < found[c].film.size(); ++i) {
       if (view.places[i] < 0) continue;
       const SpecularChain& chain = view.chains[size_t(view.places[i])];
-      if (chain.rests) continue;
+      if (chain.is_static) continue;
       const auto width = size_t(view.region().width());
       const Vec2 centre = pixel_centre(int32_t(i % width), int32_t(i / width));
       if (found[c].tracking[i] == Tracking::Tracked) add(centre, found[c].film[i]);
-      const Hit& seen = chain.way.length > 0 ? chain.first : chain.last;
+      const Hit& seen = chain.signature.length > 0 ? chain.first : chain.last;
       Vec3 position;
       Vec2 film;
       if (seen.valid() && surface.position(seen, &position) && next.camera().project(position, Moment::Now, &film)) add(centre, film);
     }
   }
-  if (ways.empty()) return 0.0;
-  const auto fast = ways.begin() + ptrdiff_t(kQuantile * double(ways.size() - 1));
-  std::nth_element(ways.begin(), fast, ways.end());
+  if (displacements.empty()) return 0.0;
+  const auto fast = displacements.begin() + ptrdiff_t(kQuantile * double(displacements.size() - 1));
+  std::nth_element(displacements.begin(), fast, displacements.end());
   return double(*fast);
 }
 

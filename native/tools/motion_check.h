@@ -28,13 +28,13 @@ class SimplerMotion {
 
   void add(const SpecularChain& chain, const Vec2& place);
   nlohmann::ordered_json json() {
-    return {{"motion_of_first_surface", first_.json()}, {"flat_resting_mirror", resting_.json()}, {"flat_moving_mirror", along_.json()}};
+    return {{"motion_of_first_surface", first_.json()}, {"flat_resting_mirror", static_mirror_.json()}, {"flat_moving_mirror", along_.json()}};
   }
 
  private:
   const ChainTracer &here_, &next_;
   SnapshotMotion surface_;
-  Distances first_, resting_, along_;
+  Distances first_, static_mirror_, along_;
 };
 
 // The scene in small steps from its frame to the next one, in which what pixels show is followed.
@@ -47,19 +47,19 @@ class StepsBetween {
   nlohmann::ordered_json check(const ChainView& view, const ChainMotion& found, size_t pixels) const;
 
  private:
-  struct Frame {
-    Frame(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
-    Frame(const Frame&) = delete;
+  struct Film {
+    Film(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
+    Film(const Film&) = delete;
 
     std::shared_ptr<const Snapshot> snapshot;
     Camera camera;
     ChainTracer tracer;
   };
   double farthest_;
-  std::vector<std::unique_ptr<Frame>> frames_;
+  std::vector<std::unique_ptr<Film>> frames_;
 };
 
 // The quantile of 99 % of all ways that are known: those found, and those of surfaces.
-double farthest_way(const ChainTracer& next, const std::vector<ChainView>& views, const std::vector<ChainMotion>& found);
+double farthest_displacement(const ChainTracer& next, const std::vector<ChainView>& views, const std::vector<ChainMotion>& found);
 
 }  // namespace gradus::tool

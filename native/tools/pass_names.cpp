@@ -18,13 +18,13 @@ uint64_t parse_names(const PassNames& names, const std::string& text) {
   return mask;
 }
 
-HeldPasses find_held(const PassNames& names, uint64_t asked, const std::function<bool(uint32_t pass)>& holds) {
-  HeldPasses held;
+AvailablePasses find_available(const PassNames& names, uint64_t requested, const std::function<bool(uint32_t pass)>& holds) {
+  AvailablePasses held;
   for (uint32_t pass = 0; pass < names.count; ++pass) {
     if (holds(pass)) {
       held.mask |= uint64_t{1} << pass;
       add_item(&held.names, names.of(pass));
-    } else if ((asked >> pass & 1) != 0) {
+    } else if ((requested >> pass & 1) != 0) {
       add_item(&held.missing, names.of(pass));
     }
   }

@@ -17,10 +17,10 @@ struct PassNames {
 // there are.
 uint64_t parse_names(const PassNames& names, const std::string& text);
 
-struct HeldPasses {
+struct AvailablePasses {
   uint64_t mask = 0;
   std::string names, missing;  // missing: those of the asked that are not held
 };
-HeldPasses find_held(const PassNames& names, uint64_t asked, const std::function<bool(uint32_t pass)>& holds);
+AvailablePasses find_available(const PassNames& names, uint64_t requested, const std::function<bool(uint32_t pass)>& holds);
 
 }  // namespace gradus::tool

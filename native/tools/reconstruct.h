@@ -18,8 +18,8 @@ struct ReconstructArguments {
   std::optional<uint32_t> window_size, window_overlap;  // not given: as the library has them, and half of the size
 };
 
-// Those of `asked` that are there: all of them, unless it is everything. Throws with the names of what is missing.
-uint64_t held_passes(const Frame& frame, uint64_t asked);
+// Those of `requested` that are there: all of them, unless it is everything. Throws with the names of what is missing.
+uint64_t available_passes(const Film& film, uint64_t requested);
 
 // input: a folder with frames of an animation; output: one for their pictures. Returns the exit code.
 int reconstruct_sequence(const ReconstructArguments& args);

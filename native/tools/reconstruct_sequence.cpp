@@ -90,11 +90,11 @@ client::Sequence open(const client::Device& device, const ReconstructArguments& 
 
 uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
   if (args.passes.empty()) return 1;
-  const std::shared_ptr<const Frame> first = load_frame(path);
-  const Frame& frame = *first;
-  const uint64_t asked = parse_passes(args.passes), held = held_passes(frame, asked);
-  const bool has_error = wants(frame.settings.passes, GRADUS_PASS_ERROR);  // windows estimate it where frames were sampled for it
-  return asked == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
+  const std::shared_ptr<const Film> first = load_film(path);
+  const Film& frame = *first;
+  const uint64_t requested = parse_passes(args.passes), held = available_passes(frame, requested);
+  const bool has_error = has_bit(frame.settings.passes, GRADUS_PASS_ERROR);  // windows estimate it where frames were sampled for it
+  return requested == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
 }
 
 // Of their files. Those of another size are of another animation.
@@ -117,7 +117,7 @@ struct PassesToWrite {
 };
 
 void write_picture(const client::Render& render, const PassesToWrite& wanted, const GradusSettings& settings, const std::string& path) {
-  const auto [width, height] = render.frame().size();
+  const auto [width, height] = render.film().size();
   std::vector<ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if ((wanted.passes >> pass & 1) == 0) continue;
@@ -143,7 +143,7 @@ struct Job {
 // Pictures of frames that follow one another.
 void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<std::string>* warnings) {
   const client::Sequence sequence =
-      open(job.device, job.args, job.stored, {frames.front(), frames.back()}, take_two_frames(job.wanted.of_components));
+      open(job.device, job.args, job.stored, {frames.front(), frames.back()}, need_two_frames(job.wanted.of_components));
   const SequenceFolder folder(job.args.input);
   for (const int32_t frame : frames) {
     // Exposure and the like may change from frame to frame, of frames that share their files, too.
@@ -164,9 +164,9 @@ void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<st
 int reconstruct_sequence(const ReconstructArguments& args) {
   check_usage(args);
   const StoredSequence stored(args.input);
-  const Range asked = range_of(args.frames, stored);
-  const std::vector<std::vector<int32_t>> chains = stored.chains(asked.first, asked.last);
-  const std::string missing = stored.missing(asked.first, asked.last), unlinked = stored.unlinked(asked.first, asked.last);
+  const Range requested = range_of(args.frames, stored);
+  const std::vector<std::vector<int32_t>> chains = stored.chains(requested.first, requested.last);
+  const std::string missing = stored.missing(requested.first, requested.last), unlinked = stored.unlinked(requested.first, requested.last);
   if (chains.empty()) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, args.input + " holds none of the frames " + args.frames);
   if (!missing.empty()) {
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
@@ -174,7 +174,7 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   }
   const std::map<int32_t, GradusSettings> of_files = settings_of_files(stored, chains);
   const std::string first = stored.path(chains.front().front());
-  const uint32_t of_components = held_component_passes(load_header(first), parse_component_passes(args.component_passes));
+  const uint32_t of_components = available_component_passes(load_header(first), parse_component_passes(args.component_passes));
   const PassesToWrite wanted{passes_of(args, first), of_components};
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   fs::create_directories(args.output);

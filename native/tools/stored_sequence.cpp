@@ -45,7 +45,7 @@ std::string advice(const std::string& folder) {
 }
 
 // Gaps between frames and those that they replay, or repeat; 0: none does.
-int32_t step_of_replays(const std::map<int32_t, FrameForm>& forms) {
+int32_t step_of_replays(const std::map<int32_t, FrameTraits>& forms) {
   int32_t step = 0;
   std::map<int32_t, int32_t> last_with;  // frames by their stream: it may be that of an earlier one
   for (const auto& [frame, form] : forms) {
@@ -106,19 +106,19 @@ std::vector<int32_t> joined(const std::vector<std::vector<int32_t>>& chains) {
 }  // namespace
 
 StoredSequence::StoredSequence(const std::string& folder, const std::set<int32_t>& left_out) : folder_(folder) {
-  const std::set<int32_t> base = numbers_in(folder, "base"), offset = numbers_in(folder, "offset");
-  std::set_intersection(base.begin(), base.end(), offset.begin(), offset.end(), std::back_inserter(frames_));
+  const std::set<int32_t> fresh = numbers_in(folder, "base"), replayed = numbers_in(folder, "offset");
+  std::set_intersection(fresh.begin(), fresh.end(), replayed.begin(), replayed.end(), std::back_inserter(frames_));
   std::erase_if(frames_, [&](int32_t frame) { return left_out.count(frame) > 0; });
   if (frames_.empty()) {
-    const bool has_none = base.empty() && numbers_in(folder, "").empty();
+    const bool has_none = fresh.empty() && numbers_in(folder, "").empty();
     throw invalid_argument(folder + (has_none ? " holds no stored frames" + advice(folder)
                                               : " holds stored frames, but none of a sequence: reconstruct them one by one"));
   }
   for (const int32_t frame : frames_) {
-    const FrameHeader header = load_header((fs::path(folder_) / frame_name(frame, "offset.exr")).string());
-    forms_[frame] = form_of(header, header);
+    const FilmHeader header = load_header((fs::path(folder_) / frame_name(frame, "offset.exr")).string());
+    traits_[frame] = traits_of(header, header);
   }
-  const int32_t of_replays = step_of_replays(forms_), step = of_replays > 0 ? of_replays : step_of_gaps(frames_);
+  const int32_t of_replays = step_of_replays(traits_), step = of_replays > 0 ? of_replays : step_of_gaps(frames_);
   if (step > 0) step_ = step;
 }
 
@@ -138,13 +138,13 @@ std::vector<std::vector<int32_t>> StoredSequence::chains(int32_t first, int32_t 
 }
 
 std::string StoredSequence::missing(int32_t first, int32_t last) const {
-  return name_runs(joined(chains(first, last)), [&](int32_t frame) { return forms_.count(frame) == 0; });
+  return name_runs(joined(chains(first, last)), [&](int32_t frame) { return traits_.count(frame) == 0; });
 }
 
 bool StoredSequence::is_unlinked(int32_t frame) const {
-  const auto here = forms_.find(frame), before = forms_.find(frame - step_);
-  if (here == forms_.end() || before == forms_.end()) return false;
-  const FrameForm& form = here->second;
+  const auto here = traits_.find(frame), before = traits_.find(frame - step_);
+  if (here == traits_.end() || before == traits_.end()) return false;
+  const FrameTraits& form = here->second;
   if (form.stream == frame && form.replayed_stream == frame) return false;  // a cut, or the first of a job
   const bool follows = form.stream == before->second.stream || form.replayed_stream == before->second.stream;
   return !follows || follows_another_frame(before->second, form);
@@ -155,15 +155,15 @@ std::string StoredSequence::unlinked(int32_t first, int32_t last) const {
 }
 
 FolderFaults find_faults(const std::string& folder) {
-  const std::set<int32_t> base = numbers_in(folder, "base"), offset = numbers_in(folder, "offset");
-  std::set<int32_t> frames = base;
-  frames.insert(offset.begin(), offset.end());
+  const std::set<int32_t> fresh = numbers_in(folder, "base"), replayed = numbers_in(folder, "offset");
+  std::set<int32_t> frames = fresh;
+  frames.insert(replayed.begin(), replayed.end());
   const SequenceFolder files(folder);
   FolderFaults faults;
   for (const int32_t frame : frames) {
     for (const char* kind : {"base.exr", "offset.exr"}) {
       const std::string name = frame_name(frame, kind), path = (fs::path(folder) / name).string();
-      const std::string error = fs::exists(path) ? refusal([&] { load_frame(path); }) : "it is missing";
+      const std::string error = fs::exists(path) ? refusal([&] { load_film(path); }) : "it is missing";
       if (error.empty()) continue;
       faults.files[name] = cause_of(error, path);
       faults.frames.insert(frame);

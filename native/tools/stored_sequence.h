@@ -34,7 +34,7 @@ class StoredSequence {
 
   std::string folder_;
   std::vector<int32_t> frames_;
-  std::map<int32_t, FrameForm> forms_;
+  std::map<int32_t, FrameTraits> traits_;
   int32_t step_ = 1;
 };
 

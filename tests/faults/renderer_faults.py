@@ -54,7 +54,7 @@ RENDERER = (
         "native/src/frame/gate.h",
         "inline bool fits(float v) { return std::fabs(v) <= kLargestSum; }",
         "inline bool fits(float v) { return !(std::fabs(v) > kInfinity); }",
-        (native("B6_Gate.*"), Test("stress", "NonFinite.*")),
+        (native("B6_FiniteCheck.*"), Test("stress", "NonFinite.*")),
     ),
     Fault(
         5,

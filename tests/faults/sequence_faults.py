@@ -108,7 +108,7 @@ SEQUENCES = (
         LINKS,
         "    if (!nearest) links[i] = kNoLink;\n",
         "",
-        (native("LinkedFrames.ShrinkingIsOneToOne"),),
+        (native("CorrespondingFrames.ShrinkingIsOneToOne"),),
     ),
     Fault(
         24,
@@ -117,7 +117,7 @@ SEQUENCES = (
         LINKS,
         "distances[i] < distances[size_t(other)]",
         "distances[i] > distances[size_t(other)]",
-        (native("LinkedFrames.OfTwoThatMeetInAPixelTheNearestHasIt"),),
+        (native("CorrespondingFrames.OfTwoThatMeetInAPixelTheNearestHasIt"),),
     ),
     Fault(
         24,
@@ -126,7 +126,7 @@ SEQUENCES = (
         LINKS,
         "if (next == kNoLink || !returns(back, from, i, next)) return;",
         "if (next == kNoLink || (i > links.size() && !returns(back, from, i, next))) return;",
-        (native("LinkedFrames.WhatAppearsHasNoPartner"),),
+        (native("CorrespondingFrames.WhatAppearsHasNoPartner"),),
     ),
     Fault(
         24,
@@ -135,7 +135,7 @@ SEQUENCES = (
         MOTION,
         "if (from.instances[i].mesh->topology_hash !=",
         "if (false && from.instances[i].mesh->topology_hash !=",
-        (native("LinkedFrames.WhatVanishesOrBecomesAnotherMeshHasNoPartner"),),
+        (native("CorrespondingFrames.WhatVanishesOrBecomesAnotherMeshHasNoPartner"),),
     ),
     Fault(
         24,
@@ -162,7 +162,7 @@ SEQUENCES = (
         LINKS,
         "    if (!links.off_centre.empty()) inverse.off_centre[end] = links.off_centre[i];\n",
         "",
-        (native("LinkedFrames.KeepWhereTheirWaysEndInBothDirections"),),
+        (native("CorrespondingFrames.KeepWhereTheirWaysEndInBothDirections"),),
     ),
     Fault(
         24,
@@ -171,7 +171,7 @@ SEQUENCES = (
         REGRESS_CHANGE,
         ") + rounding.row(y, c)[x];",
         ") + 0.0f * rounding.row(y, c)[x];",
-        (native("B2_RoundedWays.AreInTheRegressedChange"),),
+        (native("B2_RoundedDisplacements.AreInTheRegressedChange"),),
     ),
     Fault(
         24,
@@ -180,7 +180,7 @@ SEQUENCES = (
         REGRESS_CHANGE,
         "  keep_sampled_share(change.image.mean, rounding);\n",
         "",
-        (native("B2_RoundedWays.AreNotInAChangeThatWasNotSampled"),),
+        (native("B2_RoundedDisplacements.AreNotInAChangeThatWasNotSampled"),),
     ),
     Fault(
         25,
@@ -198,7 +198,7 @@ SEQUENCES = (
         LINKS,
         "zoom < kCutZoom && zoom > 1.0f / kCutZoom",
         "zoom > 0.0f * kCutZoom",
-        (native("LinkedFrames.C8_ACutIsNoMotion"),),
+        (native("CorrespondingFrames.C8_ACutIsNoMotion"),),
     ),
     Fault(
         25,

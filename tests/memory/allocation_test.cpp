@@ -88,7 +88,7 @@ TEST(G5_Registry, ARefusedHandleLosesNoSlot) {
     refuse(k);
     for (int i = 0; i < 20; ++i) {
       try {
-        registry.add(api::HandleType::Frame, object);
+        registry.add(api::HandleType::Film, object);
         ++added;
       } catch (const std::bad_alloc&) {
       }

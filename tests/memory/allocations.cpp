@@ -14,13 +14,13 @@ namespace {
 
 std::atomic<uint64_t> requests{0}, refused_request{0};
 std::atomic<bool> refused{false};
-std::atomic<int64_t> pieces{0}, bytes{0}, most_bytes{0};
+std::atomic<int64_t> pieces{0}, bytes{0}, max_bytes{0};
 std::atomic<int> unrefused{0};
 
 void count(void* memory) noexcept {
   const int64_t now = bytes += int64_t(malloc_usable_size(memory));
-  int64_t most = most_bytes;
-  while (now > most && !most_bytes.compare_exchange_weak(most, now)) {
+  int64_t maximum = max_bytes;
+  while (now > maximum && !max_bytes.compare_exchange_weak(maximum, now)) {
   }
 }
 
@@ -72,8 +72,8 @@ Unrefused::~Unrefused() { --unrefused; }
 bool was_refused() { return refused; }
 int64_t live() { return pieces; }
 int64_t live_bytes() { return bytes; }
-int64_t peak_bytes() { return most_bytes; }
-void forget_peak() { most_bytes = bytes.load(); }
+int64_t peak_bytes() { return max_bytes; }
+void forget_peak() { max_bytes = bytes.load(); }
 
 uint64_t resident_bytes() {
   malloc_trim(0);  // what the allocator keeps for later is no leak

@@ -13,11 +13,11 @@ GradusError prepare(GradusScene scene) {
 
 GradusError finish(GradusRender render, std::vector<float>* image) {
   if (const GradusError code = gradus_render_wait(render, -1.0); code != GRADUS_OK) return code;
-  GradusFrame frame = 0;
-  if (const GradusError code = gradus_render_frame(render, &frame); code != GRADUS_OK) return code;
+  GradusFilm film = 0;
+  if (const GradusError code = gradus_render_film(render, &film); code != GRADUS_OK) return code;
   const GradusError code =
-      gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, image->data(), image->size(), nullptr);
-  gradus_frame_release(frame);
+      gradus_film_reconstruct(film, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, image->data(), image->size(), nullptr);
+  gradus_film_release(film);
   return code != GRADUS_OK ? code : gradus_render_read_pass(render, GRADUS_PASS_COMBINED, image->data(), image->size());
 }
 

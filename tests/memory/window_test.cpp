@@ -27,7 +27,7 @@ class PairOf final : public HalvedWindowSource {
   void read_half_differences(RowKind kind, int t, int y, float* out) const override {
     source_.read_half_differences(kind, first_ + t, y, out);
   }
-  void read_links(int t, int y, int32_t* out) const override { source_.read_links(first_ + t, y, out); }
+  void read_correspondence(int t, int y, int32_t* out) const override { source_.read_correspondence(first_ + t, y, out); }
 
  private:
   const HalvedWindowSource& source_;
@@ -41,7 +41,7 @@ class NoisySource final : public HalvedWindowSource {
   NoisySource(const WindowSize& size, test::Motion motion) : size_(size), row_(size_t(size.width) * size_t(size.channels)) {
     test::Window window(size.width, size.height, 0, size.frames);
     test::link(&window, motion);
-    links_ = std::move(window.links);
+    correspondence_ = std::move(window.correspondence);
     for (const RowKind kind : kRowKinds) {
       values_.emplace_back(row_ * size_t(size.height) * size_t(size.frames));
       fill(kind, uint32_t(kind) + 1);
@@ -50,8 +50,8 @@ class NoisySource final : public HalvedWindowSource {
   WindowSize size() const override { return size_; }
   void read_row(RowKind kind, int t, int y, float* out) const override { std::copy_n(&values_[size_t(kind)][at(t, y)], row_, out); }
   void read_half_differences(RowKind kind, int t, int y, float* out) const override { read_row(kind, (t + 1) % size_.frames, y, out); }
-  void read_links(int t, int y, int32_t* out) const override {
-    std::copy_n(links_[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
+  void read_correspondence(int t, int y, int32_t* out) const override {
+    std::copy_n(correspondence_[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
   }
 
  private:
@@ -72,23 +72,23 @@ class NoisySource final : public HalvedWindowSource {
   WindowSize size_;
   size_t row_;
   std::vector<std::vector<float>> values_;
-  std::vector<std::vector<int32_t>> links_;
+  std::vector<std::vector<int32_t>> correspondence_;
 };
 
 constexpr WindowSize small_window() { return {320, 180, 3, 10}; }
 constexpr WindowSize full_window() { return {1280, 720, 3, 10}; }
 
 // Most bytes per pixel and frame: of the full window, and of the small one, whose rims are wider for its size.
-double most_bytes() { return test::full_run() ? 95.0 : 102.0; }
+double max_bytes() { return test::full_run() ? 95.0 : 102.0; }
 
 // Steps of all systems. Where links lead anywhere, weights by noise are those of four decades in disorder, in time, too.
-int most_steps(test::Motion motion, uint32_t reconstruction) {
+int max_steps(test::Motion motion, uint32_t reconstruction) {
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) return 7;
   const bool smooth = motion == test::Motion::kStatic || motion == test::Motion::kPan;
   return smooth ? 19 : motion == test::Motion::kTurn ? 30 : 55;
 }
 // CPU-s of the full window, where pixels move alike. The small one is over before it can be timed.
-double most_seconds(test::Motion motion) {
+double max_seconds(test::Motion motion) {
   return test::full_run() && (motion == test::Motion::kStatic || motion == test::Motion::kPan) ? 15.0 : 1e3;
 }
 
@@ -106,9 +106,9 @@ TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
       const double seconds = 1e-9 * double(process_cpu_nanoseconds() - start), bytes = double(peak_bytes() - before) / pixels;
       std::printf("  motion %d, reconstruction %u: %.1f bytes, %.2f CPU-s, %d steps, residual %.1e\n", int(motion), reconstruction, bytes,
                   seconds, report.inner_steps, double(report.residual));
-      EXPECT_LE(bytes, most_bytes());
-      EXPECT_LE(report.inner_steps, most_steps(motion, reconstruction));
-      EXPECT_LE(seconds, most_seconds(motion));
+      EXPECT_LE(bytes, max_bytes());
+      EXPECT_LE(report.inner_steps, max_steps(motion, reconstruction));
+      EXPECT_LE(seconds, max_seconds(motion));
       EXPECT_FALSE(report.hit_cap);
     }
   }
@@ -117,9 +117,9 @@ TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
 // A frame's samples among it: it is opened when its turn comes.
 TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
   const WindowSize size = test::full_run() ? full_window() : small_window();
-  test::FeatureFrame description = test::room(size.width, size.height);
+  test::FeatureFilm description = test::room(size.width, size.height);
   description.gradients = true;
-  const auto open = [&](int) { return std::make_shared<Frame>(test::make_feature_frame(description)); };
+  const auto open = [&](int) { return std::make_shared<Film>(test::make_feature_film(description)); };
   const NoisySource source(size, test::Motion::kPan);
   const int64_t before = live_bytes();
   forget_peak();
@@ -127,13 +127,13 @@ TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
   uint64_t opening = 0;
   SolveReport report;
   RegularizedWindows windows(
-      [&](int frame, const CancelTest&) {
+      [&](int frame, const CancelCheck&) {
         const uint64_t begin = process_cpu_nanoseconds();
         auto opened = open(frame);
         opening += process_cpu_nanoseconds() - begin;
         return opened;
       },
-      [&](int frame, const CancelTest&) {
+      [&](int frame, const CancelCheck&) {
         ComponentSources sources;
         sources.push_back(std::make_unique<PairOf>(source, frame));
         return sources;
@@ -144,8 +144,8 @@ TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
   EXPECT_LE(bytes, 160.0);
 }
 
-std::shared_ptr<Frame> flat_frame(const WindowSize& size, int32_t number) {
-  auto frame = std::make_shared<Frame>(uint32_t(size.width), uint32_t(size.height), Region{0, 0, size.width, size.height}, 3, 1, true);
+std::shared_ptr<Film> flat_film(const WindowSize& size, int32_t number) {
+  auto frame = std::make_shared<Film>(uint32_t(size.width), uint32_t(size.height), Region{0, 0, size.width, size.height}, 3, 1, true);
   for (auto& counts : frame->count) std::fill(counts.begin(), counts.end(), 1u);
   frame->frame_number = number;
   return frame;
@@ -155,17 +155,17 @@ std::shared_ptr<Frame> flat_frame(const WindowSize& size, int32_t number) {
 TEST(J1_Window, InputsAreNotHeld) {
   const WindowSize size = test::full_run() ? full_window() : small_window();
   const double pixels = double(size.width) * size.height * size.frames;
-  const auto open = [&](int place, const CancelTest&) { return flat_frame(size, place); };
+  const auto open = [&](int place, const CancelCheck&) { return flat_film(size, place); };
   const int64_t before = live_bytes();
   forget_peak();
   const uint64_t start = process_cpu_nanoseconds();
   SpooledFrames frames(open, open, {});
   const auto window = frames.window(0, size.frames - 1);
   const double seconds = 1e-9 * double(process_cpu_nanoseconds() - start);
-  const double held = double(live_bytes() - before) / pixels, most = double(peak_bytes() - before) / pixels;
-  std::printf("  %.3f bytes, at most %.1f while they are read, %.2f CPU-s\n", held, most, seconds);
+  const double held = double(live_bytes() - before) / pixels, maximum = double(peak_bytes() - before) / pixels;
+  std::printf("  %.3f bytes, at most %.1f while they are read, %.2f CPU-s\n", held, maximum, seconds);
   EXPECT_LE(held, 0.1);
-  EXPECT_LE(most, 80.0);
+  EXPECT_LE(maximum, 80.0);
 }
 
 // What is kept does not grow with the length of a sequence.
@@ -177,7 +177,7 @@ TEST(J1_Window, SequencesOfAnyLengthNeedTheMemoryOfOneWindow) {
     int delivered = 0;
     {
       SequencePictures pictures({0, frames - 1}, {},
-                                {[](const FrameRange& range, const CancelTest&) {
+                                {[](const FrameRange& range, const CancelCheck&) {
                                    return std::make_unique<NoisySource>(WindowSize{96, 64, 3, range.count()}, test::Motion::kStatic);
                                  },
                                  {},

@@ -31,14 +31,14 @@ Measured measure(const IntegratorContext& base, bool gradient, uint32_t count) {
   for (int seed = 0; seed < seeds(); ++seed) {
     IntegratorContext context = base;
     context.settings.seed = uint32_t(seed);
-    Frame frame = test::make_test_frame(context.settings, gradient);
-    frame.settings = context.settings;
+    Film film = test::make_test_film(context.settings, gradient);
+    film.settings = context.settings;
     const uint64_t began = thread_cpu_nanoseconds();
-    test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, count, &frame);
+    test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, count, &film);
     result.seconds += 1e-9 * double(thread_cpu_nanoseconds() - began);
     SolveReport report;
     moments.add(combine(
-        frame, gradient ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE, 0.0f, frame.region, [] { return false; }, &report));
+        film, gradient ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE, 0.0f, film.region, [] { return false; }, &report));
   }
   for (size_t i = 0; i < moments.size(); i += 4) {
     const double gray = (moments.mean(i) + moments.mean(i + 1) + moments.mean(i + 2)) / 3.0;
@@ -56,7 +56,7 @@ TEST(B5_Benefit, MostScenesAreBetterInTheSameTimeAndNoneMuchWorse) {
   for (const Scenario scenario : kScenarios) {
     test::PathScene scene;
     test::build(scenario, &scene);
-    // The lamp is out of the picture: at its edge, 160 times as bright as the wall behind, L2 spreads the noise of coverage.
+    // The light is out of the picture: at its edge, 160 times as bright as the wall behind, L2 spreads the noise of coverage.
     scene.camera(Vec3(0.0f, -0.3f, 3.2f), Vec3(0.0f, -0.4f, 0.0f), 0.6f);
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.independent_sampler = 0;

@@ -29,12 +29,12 @@ void build_mixed(PathScene* scene) {
 }
 
 // Mean of the picture's channels, by components.
-std::vector<float> means(const Frame& frame) {
+std::vector<float> means(const Film& film) {
   std::vector<float> result;
-  for (int c = 0; c < int(frame.components.size()); ++c) {
+  for (int c = 0; c < int(film.components.size()); ++c) {
     double sum = 0.0;
-    for (const float value : read_images(frame, c).primal) sum += value;
-    result.push_back(float(sum / double(frame.region.area() * 3)));
+    for (const float value : read_images(film, c).primal) sum += value;
+    result.push_back(float(sum / double(film.region.area() * 3)));
   }
   return result;
 }
@@ -51,16 +51,16 @@ TEST(Components, HaveTheMeansThatAnIndependentTracerFinds) {
     test::Moments ours, truth;
     for (uint32_t seed = 0; seed < 48; ++seed) {
       context.settings.seed = seed;
-      Frame frame = test::make_test_frame(settings, true, set.count());
-      test::sample_frame(*make_gradient_integrator(context), 0, 16, &frame);
-      ours.add(means(frame));
+      Film film = test::make_test_film(settings, true, set.count());
+      test::sample_film(*make_gradient_integrator(context), 0, 16, &film);
+      ours.add(means(film));
       testing::Random random(seed + 1);
       std::vector<double> sums(size_t(set.count()), 0.0);
       constexpr int kSamples = 64;
       for (int i = 0; i < kSamples * int(kSide * kSide); ++i) {
         const int x = i % int(kSide), y = i / int(kSide) % int(kSide);
-        test::bsdf_only_path(context, x, y, &random, [&](const std::string& word, const Rgb& light) {
-          sums[size_t(set.classify(word))] += double(light.x) + light.y + light.z;
+        test::bsdf_only_path(context, x, y, &random, [&](const std::string& path, const Rgb& light) {
+          sums[size_t(set.classify(path))] += double(light.x) + light.y + light.z;
         });
       }
       std::vector<float> image;
@@ -80,7 +80,7 @@ TEST(Components, HaveTheMeansThatAnIndependentTracerFinds) {
   }
 }
 
-struct Parted {
+struct PartitionCase {
   Scenario scenario;
   const char* components;
   std::vector<const char*> checked;
@@ -88,13 +88,13 @@ struct Parted {
 
 TEST(Components, HaveGradientsThatAreDifferencesOfTheirImages) {
   const char* const by_bounces = "Once=E.L;Twice=E..L";
-  const Parted cases[] = {{Scenario::DiffuseArea, by_bounces, {"Once", "Twice", "Residual"}},
+  const PartitionCase cases[] = {{Scenario::DiffuseArea, by_bounces, {"Once", "Twice", "Residual"}},
                           {Scenario::GlossyFloor, "", {"Diffuse", "Reflection"}},
                           {Scenario::Mirror, "", {"Diffuse", "Reflection"}},
                           {Scenario::Glass, "", {"Diffuse", "Transmission", "Residual"}},
                           {Scenario::RoughGlass, by_bounces, {"Once", "Twice", "Residual"}},
                           {Scenario::Transparent, by_bounces, {"Once", "Twice", "Residual"}}};
-  for (const Parted& c : cases) {
+  for (const PartitionCase& c : cases) {
     PathScene scene;
     test::build(c.scenario, &scene);
     IntegratorContext context = scene.context(test::test_settings(kSide, kSide));
@@ -102,10 +102,10 @@ TEST(Components, HaveGradientsThatAreDifferencesOfTheirImages) {
     std::vector<test::BothDirections> differences(c.checked.size());
     for (uint32_t seed = 0; seed < 24; ++seed) {
       context.settings.seed = 100 + seed;
-      Frame frame = test::make_test_frame(context.settings, true, context.components.count());
-      test::sample_frame(*make_gradient_integrator(context), 0, 24, &frame);
+      Film film = test::make_test_film(context.settings, true, context.components.count());
+      test::sample_film(*make_gradient_integrator(context), 0, 24, &film);
       for (size_t i = 0; i < c.checked.size(); ++i) {
-        differences[i].add(read_images(frame, context.components.find(c.checked[i])));
+        differences[i].add(read_images(film, context.components.find(c.checked[i])));
       }
     }
     for (size_t i = 0; i < c.checked.size(); ++i) {

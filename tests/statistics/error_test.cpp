@@ -20,14 +20,14 @@ using test::Scenario;
 
 constexpr uint32_t kSize = 48, kPixels = kSize * kSize;
 
-Frame render(const IntegratorContext& scene, bool gradients, uint32_t seed, uint32_t samples) {
+Film render(const IntegratorContext& scene, bool gradients, uint32_t seed, uint32_t samples) {
   IntegratorContext context = scene;
   context.settings.seed = seed;
-  Frame frame = test::make_test_frame(context.settings, gradients);
-  frame.settings = context.settings;
-  frame.passes = make_pass_planes(feature_passes(), kPixels);
-  test::sample_frame(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &frame);
-  return frame;
+  Film film = test::make_test_film(context.settings, gradients);
+  film.settings = context.settings;
+  film.passes = make_pass_planes(feature_passes(), kPixels);
+  test::sample_film(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &film);
+  return film;
 }
 
 // Mean of many samples and its variance, the latter mean over RGB: what it adds to squared distances from it.
@@ -86,7 +86,7 @@ Parts compare(const std::vector<Reconstructed>& results, const Reference& refere
 struct Kind {
   uint32_t reconstruction;
   bool gradients = true;
-  double most = 1.3, least_of_better_half = 0.5;
+  double maximum = 1.3, min_of_better_half = 0.5;
 };
 
 // REGULARIZED's allows for what its weights hide of the noise of rare bright samples (reconstruct/regression_error.cpp), of which these
@@ -107,23 +107,23 @@ TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
   const IntegratorContext context = scene.context(settings);
   const Reference reference = make_reference(context);
   const size_t seeds = test::full_run() ? 64 : 16;
-  for (const auto [reconstruction, gradients, most, least_of_better_half] : kKinds) {
+  for (const auto [reconstruction, gradients, maximum, min_of_better_half] : kKinds) {
     std::vector<Reconstructed> results(seeds);
     tbb::parallel_for(size_t{0}, seeds, [&](size_t k) {
       SolveReport report;
-      const Frame frame = render(context, gradients, uint32_t(k), 16);
-      results[k] = reconstruct_frame(
-          frame, reconstruction, 0.0f, {.error = true}, [] { return false; }, &report);
+      const Film film = render(context, gradients, uint32_t(k), 16);
+      results[k] = reconstruct_film(
+          film, reconstruction, 0.0f, {.error = true}, [] { return false; }, &report);
     });
     const auto [all, better_half, worst_tenth] = compare(results, reference);
     const std::string name = choice_name(*find_option("reconstruction"), reconstruction);
     std::printf("  %s %.3f, better half %.3f, worst tenth %.3f\n", name.c_str(), all.ratio(), better_half.ratio(), worst_tenth.ratio());
     EXPECT_GT(all.ratio(), 0.7) << name;
-    EXPECT_LT(all.ratio(), most) << name;
-    EXPECT_GT(better_half.ratio(), least_of_better_half) << name;
+    EXPECT_LT(all.ratio(), maximum) << name;
+    EXPECT_GT(better_half.ratio(), min_of_better_half) << name;
     EXPECT_LT(better_half.estimated, 2.0 * better_half.actual + 0.1 * all.actual) << name;
     EXPECT_GT(worst_tenth.ratio(), 0.5) << name;
-    EXPECT_LT(worst_tenth.ratio(), std::max(2.0, 1.1 * most)) << name;
+    EXPECT_LT(worst_tenth.ratio(), std::max(2.0, 1.1 * maximum)) << name;
   }
 }
 

@@ -36,10 +36,10 @@ TEST_P(A1_Furnace, RadianceIsOne) {
   GradusSettings settings = test::test_settings(10, 10);
   settings.independent_sampler = independent ? 1 : 0;
   const IntegratorContext context = scene.context(settings);
-  Frame frame = test::make_test_frame(settings, gradient);
-  test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, test::full_run() ? 256 : 64,
-                     &frame);
-  const GradientImages images = read_images(frame, 0);
+  Film film = test::make_test_film(settings, gradient);
+  test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, test::full_run() ? 256 : 64,
+                     &film);
+  const GradientImages images = read_images(film, 0);
   double sum = 0.0;
   for (float value : images.primal) sum += value;
   EXPECT_NEAR(sum / double(images.primal.size()), 1.0, 0.025);

@@ -19,9 +19,9 @@ void check_difference(PathScene* scene, GradusSettings settings, uint32_t sample
   double sum = 0.0, squares = 0.0;
   for (uint32_t seed = 0; seed < renders; ++seed) {
     context.settings.seed = seed;
-    Frame frame = test::make_test_frame(context.settings, true);
-    test::sample_frame(*make_gradient_integrator(context), 0, samples, &frame);
-    const GradientImages images = read_images(frame, 0);
+    Film film = test::make_test_film(context.settings, true);
+    test::sample_film(*make_gradient_integrator(context), 0, samples, &film);
+    const GradientImages images = read_images(film, 0);
     const double off = images.dx[0] - (double(images.primal[3]) - double(images.primal[0]));
     sum += off;
     squares += off * off;

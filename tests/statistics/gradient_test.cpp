@@ -46,9 +46,9 @@ class Scenarios : public testing::TestWithParam<Scenario> {
     BothDirections differences;
     for (uint32_t seed = first_seed; seed < first_seed + 24; ++seed) {
       const IntegratorContext c = context(seed);
-      Frame frame = test::make_test_frame(c.settings, true);
-      sample(*make_gradient_integrator(c), &frame);
-      differences.add(read_images(frame, 0));
+      Film film = test::make_test_film(c.settings, true);
+      sample(*make_gradient_integrator(c), &film);
+      differences.add(read_images(film, 0));
     }
     differences.check();
   }
@@ -57,10 +57,10 @@ class Scenarios : public testing::TestWithParam<Scenario> {
 
 TEST_P(Scenarios, PrimalOfBothIntegratorsIsBitEqual) {
   const IntegratorContext c = context(1, false);
-  Frame plain = test::make_test_frame(c.settings, false);
-  Frame gradient = test::make_test_frame(c.settings, true);
-  test::sample_frame(*make_path_integrator(c), 0, 16, &plain);
-  test::sample_frame(*make_gradient_integrator(c), 0, 16, &gradient);
+  Film plain = test::make_test_film(c.settings, false);
+  Film gradient = test::make_test_film(c.settings, true);
+  test::sample_film(*make_path_integrator(c), 0, 16, &plain);
+  test::sample_film(*make_gradient_integrator(c), 0, 16, &gradient);
   for (int half = 0; half < kHalves; ++half) {
     EXPECT_EQ(plain.components[0].primal[half], gradient.components[0].primal[half]);
   }
@@ -75,10 +75,10 @@ TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
   Counters counters;
   for (uint32_t seed = 0; seed < 32; ++seed) {
     const IntegratorContext c = context(100 + seed);
-    Frame frame = test::make_test_frame(c.settings, true);
-    test::sample_frame(*make_gradient_integrator(c), 0, 24, &frame);
-    differences.add(read_images(frame, 0));
-    counters.add(frame.counters);
+    Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*make_gradient_integrator(c), 0, 24, &film);
+    differences.add(read_images(film, 0));
+    counters.add(film.counters);
   }
   differences.check();
   std::printf(
@@ -97,11 +97,11 @@ TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
   const Plan plan = make_plan(c.settings, *c.snapshot);
   const bool skipped =
       std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const auto& entry) { return entry.first == "half-vector shifts"; });
-  Frame frame = test::make_test_frame(c.settings, true);
-  test::sample_frame(*make_gradient_integrator(c), 0, 16, &frame);
-  EXPECT_GT(frame.counters.shifts_attempted, 0u);
+  Film film = test::make_test_film(c.settings, true);
+  test::sample_film(*make_gradient_integrator(c), 0, 16, &film);
+  EXPECT_GT(film.counters.shifts_attempted, 0u);
   if (skipped) {
-    EXPECT_EQ(frame.counters.shifts_half_vector, 0u);
+    EXPECT_EQ(film.counters.shifts_half_vector, 0u);
   }
   switch (GetParam()) {
     case Scenario::DiffuseArea:
@@ -112,7 +112,7 @@ TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
     case Scenario::Mirror:
     case Scenario::Glass:
       EXPECT_FALSE(skipped);
-      EXPECT_GT(frame.counters.shifts_half_vector, 0u);
+      EXPECT_GT(film.counters.shifts_half_vector, 0u);
       break;
     default:
       break;
@@ -121,28 +121,28 @@ TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
 
 // Contract 1.5: neighbours with different counts, some with none, over two batches.
 TEST_P(Scenarios, B7_UnequalCounts) {
-  check_differences(500, [](const Integrator& integrator, Frame* frame) {
+  check_differences(500, [](const Integrator& integrator, Film* film) {
     const std::atomic<bool> stop{false};
-    std::vector<uint32_t> counts(static_cast<size_t>(frame->region.area()));
+    std::vector<uint32_t> counts(static_cast<size_t>(film->region.area()));
     for (const uint32_t batch : {0u, 1u}) {
       for (size_t i = 0; i < counts.size(); ++i) counts[i] = batch == 0 ? 8 + 8 * (i % 3) : (i / 3 % 2 == 0 ? 0 : 32);
-      integrator.sample(WorkUnit{frame->region, 64 * batch, 0, &counts}, frame, &frame->counters, stop);
+      integrator.sample(WorkUnit{film->region, 64 * batch, 0, &counts}, film, &film->counters, stop);
     }
   });
 }
 
 // Adaptive sampling: cells that differ in their counts and in the numbers of their samples, even and odd.
 TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
-  check_differences(900, [](const Integrator& integrator, Frame* frame) {
+  check_differences(900, [](const Integrator& integrator, Film* film) {
     const std::atomic<bool> stop{false};
-    std::vector<uint32_t> first(static_cast<size_t>(frame->region.area())), count(first);
+    std::vector<uint32_t> first(static_cast<size_t>(film->region.area())), count(first);
     for (const uint32_t batch : {0u, 1u}) {
       for (size_t i = 0; i < first.size(); ++i) {
-        const bool right = int(i) % frame->region.width() >= kLattice, low = int(i) / frame->region.width() < kLattice;
+        const bool right = int(i) % film->region.width() >= kPixelBlockSide, low = int(i) / film->region.width() < kPixelBlockSide;
         first[i] += count[i];
         count[i] = batch == 0 ? (right ? 9 : 4) : (low ? 24 : 7);
       }
-      integrator.sample(WorkUnit{frame->region, 0, 0, &count, &first}, frame, &frame->counters, stop);
+      integrator.sample(WorkUnit{film->region, 0, 0, &count, &first}, film, &film->counters, stop);
     }
   });
 }
@@ -150,12 +150,12 @@ TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
 // A cancel between tiles leaves pairs whose ends took different numbers of samples; their gradients kept the norm of whole batches and
 // came out too small.
 TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
-  check_differences(700, [](const Integrator& integrator, Frame* frame) {
+  check_differences(700, [](const Integrator& integrator, Film* film) {
     const std::atomic<bool> stop{false};
-    test::sample_frame(integrator, 0, 16, frame);
+    test::sample_film(integrator, 0, 16, film);
     for (int32_t y = 0; y < static_cast<int32_t>(kHeight); ++y) {
       for (int32_t x = y % 2; x < static_cast<int32_t>(kWidth); x += 2) {  // every other pixel, so that every pair is cut
-        integrator.sample(WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, frame, &frame->counters, stop);
+        integrator.sample(WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, film, &film->counters, stop);
       }
     }
   });
@@ -165,9 +165,9 @@ TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
 TEST_P(Scenarios, L3_BatchesAndTilesDoNotMatter) {
   const IntegratorContext c = context(3, false);
   const auto integrator = make_gradient_integrator(c);
-  Frame whole = test::make_test_frame(c.settings, true);
-  Frame parts = test::make_test_frame(c.settings, true);
-  test::sample_frame(*integrator, 0, 8, &whole);
+  Film whole = test::make_test_film(c.settings, true);
+  Film parts = test::make_test_film(c.settings, true);
+  test::sample_film(*integrator, 0, 8, &whole);
   const std::atomic<bool> stop{false};
   for (uint32_t first : {0u, 2u}) {
     const uint32_t count = first == 0 ? 2 : 6;
@@ -205,9 +205,9 @@ GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
   settings.max_bounces = 1;
   test::sample_at_pixel_centres(&settings);
   const IntegratorContext c = scene.context(settings);
-  Frame frame = test::make_test_frame(c.settings, true);
-  test::sample_frame(*make_gradient_integrator(c), 0, 8192, &frame);
-  return read_images(frame, 0);
+  Film film = test::make_test_film(c.settings, true);
+  test::sample_film(*make_gradient_integrator(c), 0, 8192, &film);
+  return read_images(film, 0);
 }
 
 // An offset that has joined its base scatters at the shared vertex with a density of its own; a light that BSDF sampling found next was
@@ -239,9 +239,9 @@ TEST(B7_Lens, DifferencesAreThoseOfTheBlurredImage) {
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.seed = seed;
     const IntegratorContext c = scene.context(settings);
-    Frame frame = test::make_test_frame(settings, true);
-    test::sample_frame(*make_gradient_integrator(c), 0, 16, &frame);
-    difference.add(read_images(frame, 0), true);
+    Film film = test::make_test_film(settings, true);
+    test::sample_film(*make_gradient_integrator(c), 0, 16, &film);
+    difference.add(read_images(film, 0), true);
   }
   difference.check("dx");
 }
@@ -278,9 +278,9 @@ class Kinds : public testing::TestWithParam<KindCase> {
     settings.max_bounces = 3;
     settings.diffuse_bounces = GetParam().diffuse_bounces;
     const IntegratorContext c = scene.context(settings);
-    Frame frame = test::make_test_frame(c.settings, true);
-    test::sample_frame(*make_gradient_integrator(c), 0, samples, &frame);
-    return read_images(frame, 0);
+    Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*make_gradient_integrator(c), 0, samples, &film);
+    return read_images(film, 0);
   }
 };
 
@@ -311,13 +311,13 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Kinds,
                                          KindCase{"EmissionByDepth", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_DIFFUSE_DEPTH}),
                          [](const testing::TestParamInfo<KindCase>& info) { return std::string(info.param.name); });
 
-// Two pixels, left and right, that look straight at a plane of two halves, lit by a lamp. right: no material, no surface.
+// Two pixels, left and right, that look straight at a plane of two halves, lit by a light. right: no material, no surface.
 struct Halves {
   const char* name;
   Surface left;
   bool has_right;
   Surface right;
-  enum { NoHole, Object, Shader } left_hole = NoHole;
+  enum { NoHoldout, Object, Shader } left_holdout = NoHoldout;
 };
 
 class Edges : public testing::TestWithParam<Halves> {
@@ -326,10 +326,10 @@ class Edges : public testing::TestWithParam<Halves> {
     PathScene scene;
     Surface light;
     light.emission = Rgb(6.0f);
-    const bool hole = GetParam().left_hole != Halves::NoHole;
-    const uint64_t left = GetParam().left_hole == Halves::Shader ? holdout(&scene) : scene.material(GetParam().left);
+    const bool hole = GetParam().left_holdout != Halves::NoHoldout;
+    const uint64_t left = GetParam().left_holdout == Halves::Shader ? holdout(&scene) : scene.material(GetParam().left);
     scene.quad(Vec3(-1, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), left,
-               GetParam().left_hole == Halves::Object ? GRADUS_VISIBLE_ALL | GRADUS_HOLDOUT : GRADUS_VISIBLE_ALL);
+               GetParam().left_holdout == Halves::Object ? GRADUS_VISIBLE_ALL | GRADUS_HOLDOUT : GRADUS_VISIBLE_ALL);
     if (GetParam().has_right) {
       scene.quad(Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), scene.material(GetParam().right));
     }
@@ -342,9 +342,9 @@ class Edges : public testing::TestWithParam<Halves> {
     settings.max_bounces = 4;
     settings.film_transparent = hole ? 1 : 0;
     const IntegratorContext c = scene.context(settings);
-    Frame frame = test::make_test_frame(c.settings, true);
-    test::sample_frame(*make_gradient_integrator(c), 0, 64, &frame);
-    return read_images(frame, 0);
+    Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*make_gradient_integrator(c), 0, 64, &film);
+    return read_images(film, 0);
   }
 
  private:
@@ -399,7 +399,7 @@ struct Above {
   const char* name;
   void (*add)(PathScene*);
   Surface floor;
-  float most;  // variance of the sampled difference over that of the image
+  float maximum;  // variance of the sampled difference over that of the image
 };
 
 uint64_t wall(PathScene* scene) { return scene->material(test::matte(Rgb(0.8f))); }
@@ -436,9 +436,9 @@ class Reflections : public testing::TestWithParam<Above> {
     settings.seed = seed;
     settings.max_bounces = 4;
     const IntegratorContext c = scene.context(settings);
-    Frame frame = test::make_test_frame(c.settings, true);
-    test::sample_frame(*make_gradient_integrator(c), 0, 256, &frame);
-    return read_images(frame, 0);
+    Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*make_gradient_integrator(c), 0, 256, &film);
+    return read_images(film, 0);
   }
 };
 
@@ -458,7 +458,7 @@ TEST_P(Reflections, B7_WhatTheyCastOnTheFloorIsSharedByNeighbours) {
   const auto variance = [&](int i) { return squares[i] / renders - (sum[i] / renders) * (sum[i] / renders); };
   std::printf("  variance %.4f of the image's, difference of means %.2f sigma\n", variance(0) / variance(1),
               sum[2] / renders / std::sqrt(variance(2) / renders));
-  EXPECT_LT(variance(0), GetParam().most * variance(1));
+  EXPECT_LT(variance(0), GetParam().maximum * variance(1));
   EXPECT_LT(std::fabs(sum[2] / renders), 4.0 * std::sqrt(variance(2) / renders));
 }
 

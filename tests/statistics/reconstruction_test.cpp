@@ -24,18 +24,18 @@ std::vector<Scenario> all_scenarios() {
   return all;
 }
 
-Frame render(IntegratorContext context, bool gradient, uint32_t seed, int samples) {
+Film render(IntegratorContext context, bool gradient, uint32_t seed, int samples) {
   context.settings.seed = seed;
-  Frame frame = test::make_test_frame(context.settings, gradient);
-  frame.passes = make_pass_planes(feature_passes(), size_t(frame.region.area()));
-  test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, uint32_t(samples), &frame);
-  return frame;
+  Film film = test::make_test_film(context.settings, gradient);
+  film.passes = make_pass_planes(feature_passes(), size_t(film.region.area()));
+  test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, uint32_t(samples), &film);
+  return film;
 }
 
-std::vector<float> reconstructed(const Frame& frame, GradusReconstruction reconstruction) {
+std::vector<float> reconstructed(const Film& film, GradusReconstruction reconstruction) {
   SolveReport report;
-  return reconstruct_frame(
-             frame, reconstruction, 0.0f, {}, [] { return false; }, &report)
+  return reconstruct_film(
+             film, reconstruction, 0.0f, {}, [] { return false; }, &report)
       .image;
 }
 
@@ -167,7 +167,7 @@ TEST(B3_L2, DifferencesHaveNoSign) {
 struct Biased {
   GradusReconstruction reconstruction;
   const char* name;
-  double most_mean = 0.005, most_block = 0.03;
+  double max_mean = 0.005, max_block = 0.03;
 };
 
 // REGULARIZED is dark where rare samples carry the light: windows take them for outliers.
@@ -180,16 +180,16 @@ struct Differences {
 };
 
 void check_bias(const Moments& truth, const Moments& differences, const Biased& biased) {
-  const auto& [reconstruction, name, most_mean, most_block] = biased;
+  const auto& [reconstruction, name, max_mean, max_block] = biased;
   double sum = 0.0, sum_of_differences = 0.0, worst = 0.0;
   for (size_t i = 0; i < truth.size(); ++i) {
     sum += truth.mean(i);
     sum_of_differences += differences.mean(i);
     const double noise = std::sqrt(differences.variance_of_mean(i));
-    EXPECT_LE(std::fabs(differences.mean(i)), most_block * truth.mean(i) + 4.0 * noise) << name << ", block " << i;
+    EXPECT_LE(std::fabs(differences.mean(i)), max_block * truth.mean(i) + 4.0 * noise) << name << ", block " << i;
     worst = std::max(worst, std::fabs(differences.mean(i)) / truth.mean(i));
   }
-  EXPECT_LE(std::fabs(sum_of_differences), most_mean * sum) << name;
+  EXPECT_LE(std::fabs(sum_of_differences), max_mean * sum) << name;
   std::printf("  %s: mean %+.3f %%, worst block %.2f %%\n", name, 100.0 * sum_of_differences / sum, 100.0 * worst);
 }
 
@@ -204,11 +204,11 @@ TEST_P(B3_Consistent, BiasStaysWithinItsBound) {
   const IntegratorContext context = scene.context(settings);
   std::vector<Differences> all(test::full_run() ? 64 : 8);
   tbb::parallel_for(size_t(0), all.size(), [&](size_t k) {
-    const Frame frame = render(context, true, uint32_t(k), samples);
-    all[k].truth = block_means(gray(read_images(frame, 0).primal), width, height, side);
+    const Film film = render(context, true, uint32_t(k), samples);
+    all[k].truth = block_means(gray(read_images(film, 0).primal), width, height, side);
     for (size_t r = 0; r < std::size(kBiased); ++r) {
       std::vector<float>& difference = all[k].from_truth[r];
-      difference = block_means(gray(reconstructed(frame, kBiased[r].reconstruction)), width, height, side);
+      difference = block_means(gray(reconstructed(film, kBiased[r].reconstruction)), width, height, side);
       for (size_t i = 0; i < difference.size(); ++i) difference[i] -= all[k].truth[i];
     }
   });
@@ -224,9 +224,9 @@ TEST_P(B3_Consistent, BiasStaysWithinItsBound) {
 double bias_of_regularized(const IntegratorContext& context, int samples, size_t seeds) {
   std::vector<double> sampled(seeds), solved(seeds);
   tbb::parallel_for(size_t(0), seeds, [&](size_t k) {
-    const Frame frame = render(context, false, uint32_t(k), samples);
-    const std::vector<float> before = gray(read_images(frame, 0).primal),
-                             after = gray(reconstructed(frame, GRADUS_RECONSTRUCTION_REGULARIZED));
+    const Film film = render(context, false, uint32_t(k), samples);
+    const std::vector<float> before = gray(read_images(film, 0).primal),
+                             after = gray(reconstructed(film, GRADUS_RECONSTRUCTION_REGULARIZED));
     sampled[k] = std::accumulate(before.begin(), before.end(), 0.0);
     solved[k] = std::accumulate(after.begin(), after.end(), 0.0);
   });
@@ -234,7 +234,7 @@ double bias_of_regularized(const IntegratorContext& context, int samples, size_t
 }
 
 TEST(B3_Regularized, BiasFallsWithSamples) {
-  for (const Scenario scenario : {Scenario::DiffuseArea, Scenario::Mirror, Scenario::LampsUnseen}) {
+  for (const Scenario scenario : {Scenario::DiffuseArea, Scenario::Mirror, Scenario::LightsUnseen}) {
     PathScene scene;
     test::build(scenario, &scene);
     GradusSettings settings = test::test_settings(64, 48);

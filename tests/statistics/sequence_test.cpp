@@ -89,8 +89,8 @@ std::vector<std::vector<float>> sequence_pictures(const Snapshots& frames, uint3
 std::vector<float> plain_picture(const std::shared_ptr<const Snapshot>& frame, int t, uint32_t seed, uint32_t samples) {
   GradusSettings settings = settings_of(t, seed, samples);
   const IntegratorContext context{frame, Camera(frame->camera, kSide, kSide), settings};
-  Frame sampled = test::make_test_frame(settings, false);
-  test::sample_frame(*make_path_integrator(context), 0, samples, &sampled);
+  Film sampled = test::make_test_film(settings, false);
+  test::sample_film(*make_path_integrator(context), 0, samples, &sampled);
   const std::vector<float> rgb = read_images(sampled, 0).primal;
   std::vector<float> result(rgb.size() / 3);
   for (size_t i = 0; i < result.size(); ++i) result[i] = (rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2]) / 3.0f;
@@ -98,7 +98,7 @@ std::vector<float> plain_picture(const std::shared_ptr<const Snapshot>& frame, i
 }
 
 // By the same reconstruction, without the frames beside it.
-std::vector<float> still_picture(const std::shared_ptr<const Snapshot>& frame, const GradusSettings& settings) {
+std::vector<float> single_frame_picture(const std::shared_ptr<const Snapshot>& frame, const GradusSettings& settings) {
   Render render(test::test_device(), frame, settings);
   render.wait(-1.0);
   std::vector<float> rgba(size_t(kSide) * kSide * 4);
@@ -119,18 +119,18 @@ struct Sampling {
 };
 
 Compared compare(const Snapshots& frames, const std::function<std::vector<float>(const std::vector<float>&)>& read,
-                 const Sampling& asked = {}) {
-  const bool by_paths = asked.reconstruction == GRADUS_RECONSTRUCTION_L2;
-  std::vector<std::vector<std::vector<float>>> of_sequence(size_t(asked.seeds)), of_plain(size_t(asked.seeds));
-  tbb::parallel_for(0, asked.seeds, [&](int k) {
-    for (const auto& picture : sequence_pictures(frames, uint32_t(k), asked.samples, asked.reconstruction, asked.noise_threshold)) {
+                 const Sampling& requested = {}) {
+  const bool by_paths = requested.reconstruction == GRADUS_RECONSTRUCTION_L2;
+  std::vector<std::vector<std::vector<float>>> of_sequence(size_t(requested.seeds)), of_plain(size_t(requested.seeds));
+  tbb::parallel_for(0, requested.seeds, [&](int k) {
+    for (const auto& picture : sequence_pictures(frames, uint32_t(k), requested.samples, requested.reconstruction, requested.noise_threshold)) {
       of_sequence[size_t(k)].push_back(read(picture));
     }
     for (size_t t = 0; t < frames.size(); ++t) {
       const auto seed = uint32_t(1000 + k);
       of_plain[size_t(k)].push_back(
-          read(by_paths ? plain_picture(frames[t], int(t), seed, 4 * asked.samples)
-                        : still_picture(frames[t], settings_of(int32_t(t), seed, asked.samples, asked.reconstruction))));
+          read(by_paths ? plain_picture(frames[t], int(t), seed, 4 * requested.samples)
+                        : single_frame_picture(frames[t], settings_of(int32_t(t), seed, requested.samples, requested.reconstruction))));
     }
   });
   Compared result;
@@ -204,17 +204,17 @@ TEST(B3_SequenceL2, HasTheMeanOfPlainPathsThroughALensWithBlurAndDeformation) {
 // Replays have the counts of what they replay: pixels of a frame have as many samples as their noise asks for. What that moves the mean by
 // (contract 2.2) is less than what can be seen here: a percent or two of a block, half a percent of the picture.
 TEST(B3_SequenceL2, HasTheMeanOfPlainPathsWithANoiseThreshold) {
-  const Sampling asked{.samples = 40, .noise_threshold = 0.035f, .seeds = 12};
+  const Sampling requested{.samples = 40, .noise_threshold = 0.035f, .seeds = 12};
   const Snapshots frames = blurred(Scenario::DiffuseArea, 3);
-  GradusSettings settings = settings_of(0, 0, asked.samples);
-  settings.noise_threshold = asked.noise_threshold;
+  GradusSettings settings = settings_of(0, 0, requested.samples);
+  settings.noise_threshold = requested.noise_threshold;
   const auto sequence = std::make_shared<Sequence>(test::test_device(), SequenceSettings{0, 2, 1, {}, ""});
   const auto task = sequence->sample(frames[0], settings);
   run(task.get());
-  const std::vector<uint32_t> counts = samples_of_pixels(*task->frame());
-  const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
-  EXPECT_LT(*least, *most) << "the test says something";
-  expect_means_of_plain_paths(compare(frames, blocks_and_whole, asked), "noise threshold", 1);
+  const std::vector<uint32_t> counts = samples_of_pixels(*task->film());
+  const auto [minimum, maximum] = std::minmax_element(counts.begin(), counts.end());
+  EXPECT_LT(*minimum, *maximum) << "the test says something";
+  expect_means_of_plain_paths(compare(frames, blocks_and_whole, requested), "noise threshold", 1);
 }
 
 class Ghosts : public testing::TestWithParam<uint32_t> {
@@ -254,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(All, Ghosts,
                                          GRADUS_RECONSTRUCTION_AUTO),
                          kNameOfParam);
 
-// A lamp that goes off: its light is gone in that very frame (impulse lag 0).
+// A light that goes off: its light is gone in that very frame (impulse lag 0).
 TEST_P(Ghosts, C5_ALampThatGoesOffLeavesNoLight) {
   check(frames_of(6,
                   [](int t, PathScene* scene) {
@@ -317,7 +317,7 @@ TEST(C4_Sequence, FlickersLessThanFramesByThemselves) {
   for (const uint32_t reconstruction :
        {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_AUTO}) {
     std::vector<std::vector<float>> stills;
-    for (size_t t = 0; t < frames.size(); ++t) stills.push_back(still_picture(frames[t], settings_of(int32_t(t), 5, 8, reconstruction)));
+    for (size_t t = 0; t < frames.size(); ++t) stills.push_back(single_frame_picture(frames[t], settings_of(int32_t(t), 5, 8, reconstruction)));
     const double ratio = flicker(sequence_pictures(frames, 5, 8, reconstruction)) / flicker(stills);
     EXPECT_LT(ratio, 0.5) << name_of_reconstruction(reconstruction);
     std::printf("  %s: flicker %.3f of that of frames by themselves\n", name_of_reconstruction(reconstruction).c_str(), ratio);

@@ -23,7 +23,7 @@ constexpr int kPixels = int(kWidth * kHeight);
 int samples() { return test::full_run() ? 56 : 6; }
 int reference_samples() { return test::full_run() ? 280 : 28; }
 // The z-test takes a few dozen samples for normal: single pixels in full, else squares of 4×4.
-uint32_t cell_side() { return test::full_run() ? 1 : 4; }
+uint32_t block_side() { return test::full_run() ? 1 : 4; }
 
 // Light sources are large, so that BSDF sampling alone finds them.
 enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, Sky, ManyLights, Motion, Count };
@@ -116,7 +116,7 @@ std::vector<float> run_means(const std::vector<float>& image, uint32_t side) {
 // Neighbours of a row share their sub-pixel jitter (contract 1.6), so that variances of sums are those of whole runs; rows do not, because
 // they take other sample numbers.
 struct Statistics {
-  test::Moments pixels, cell_runs, lattice_runs;
+  test::Moments pixels, block_runs, jitter_block_runs;
 };
 
 // Samples of all pixels as images, one by one, spread over the threads by rows.
@@ -127,8 +127,8 @@ Statistics sample_images(int count, const SampleRow& sample_row) {
   for (int i = 0; i < count; ++i) {
     tbb::parallel_for(0, int(kHeight), [&](int y) { sample_row(i, y, image.data() + size_t(y) * kWidth * 3); });
     moments.pixels.add(image);
-    moments.cell_runs.add(run_means(image, cell_side()));
-    moments.lattice_runs.add(run_means(image, kLattice));
+    moments.block_runs.add(run_means(image, block_side()));
+    moments.jitter_block_runs.add(run_means(image, kPixelBlockSide));
   }
   return moments;
 }
@@ -146,11 +146,11 @@ Statistics estimate(const IntegratorContext& context, Estimator estimator) {
   const auto integrator = estimator == Estimator::Gradient ? make_gradient_integrator(context) : make_path_integrator(context);
   return sample_images(samples(), [&](int i, int y, float* row) {
     // Rows above and below are in the frame, so that all pairs of pixels are present.
-    Frame frame(kWidth, kHeight, Region{0, y - 1, int32_t(kWidth), y + 2}, 3, 1, estimator == Estimator::Gradient);
-    WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1}, uint32_t(2 * (i * kLattice + y % kLattice)), 1, nullptr};
-    integrator->sample(unit, &frame, &frame.counters, std::atomic<bool>{false});
+    Film film(kWidth, kHeight, Region{0, y - 1, int32_t(kWidth), y + 2}, 3, 1, estimator == Estimator::Gradient);
+    WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1}, uint32_t(2 * (i * kPixelBlockSide + y % kPixelBlockSide)), 1, nullptr};
+    integrator->sample(unit, &film, &film.counters, std::atomic<bool>{false});
     for (int x = 0; x < int(kWidth); ++x) {
-      for (int c = 0; c < 3; ++c) row[3 * x + c] = frame.components[0].primal[0][frame.index(x, y)][c];
+      for (int c = 0; c < 3; ++c) row[3 * x + c] = film.components[0].primal[0][film.index(x, y)][c];
     }
   });
 }
@@ -171,19 +171,19 @@ const Statistics& moments(Truth truth, Estimator estimator) {
 using Case = std::tuple<Truth, Estimator>;
 class Truths : public ::testing::TestWithParam<Case> {};
 
-struct CellTest {
+struct BlockTest {
   size_t tests = 0, failed = 0;
 };
 
 // z-tests of cells and channels, with the variances of their runs pooled.
-CellTest test_cells(const Statistics& image, const Statistics& truth, double factor) {
-  const test::Moments &runs = image.cell_runs, &true_runs = truth.cell_runs;
-  const uint32_t side = cell_side();
+BlockTest test_blocks(const Statistics& image, const Statistics& truth, double factor) {
+  const test::Moments &runs = image.block_runs, &true_runs = truth.block_runs;
+  const uint32_t side = block_side();
   const size_t tests = size_t(kWidth / side) * (kHeight / side) * 3;
   const double level = test::sidak(tests * 2 * size_t(Truth::Count));
-  CellTest result;
-  for (uint32_t cell = 0; cell < tests; ++cell) {
-    const uint32_t channel = cell % 3, column = cell / 3 % (kWidth / side), row = cell / 3 / (kWidth / side);
+  BlockTest result;
+  for (uint32_t block = 0; block < tests; ++block) {
+    const uint32_t channel = block % 3, column = block / 3 % (kWidth / side), row = block / 3 / (kWidth / side);
     double difference = 0.0, variance = 0.0;
     for (uint32_t y = row * side; y < (row + 1) * side; ++y) {
       const size_t i = 3 * (size_t(y) * (kWidth / side) + column) + channel;
@@ -212,11 +212,11 @@ Bias measure_bias(const Statistics& all, const Statistics& all_true, double fact
     bias.truth += truth.mean(i) / double(image.size());
     difference[i / 3] += factor * image.mean(i) - truth.mean(i);
   }
-  for (size_t i = 0; i < all.lattice_runs.size(); ++i) {
-    variance += factor * factor * all.lattice_runs.variance_of_mean(i) + all_true.lattice_runs.variance_of_mean(i);
+  for (size_t i = 0; i < all.jitter_block_runs.size(); ++i) {
+    variance += factor * factor * all.jitter_block_runs.variance_of_mean(i) + all_true.jitter_block_runs.variance_of_mean(i);
   }
   // Channels of a pixel come from the same paths: as if they were fully correlated.
-  bias.deviation = std::sqrt(3.0 * variance) / double(all.lattice_runs.size());
+  bias.deviation = std::sqrt(3.0 * variance) / double(all.jitter_block_runs.size());
   test::SignRatio ratio;
   ratio.add(difference, int(kWidth), int(kHeight));
   bias.sign_ratio = ratio.value();
@@ -226,7 +226,7 @@ Bias measure_bias(const Statistics& all, const Statistics& all_true, double fact
 
 TEST_P(Truths, A5_PixelsAgree) {
   const auto [truth, estimator] = GetParam();
-  const CellTest result = test_cells(moments(truth, estimator), moments(truth, Estimator::BsdfOnly), 1.0);
+  const BlockTest result = test_blocks(moments(truth, estimator), moments(truth, Estimator::BsdfOnly), 1.0);
   EXPECT_LE(double(result.failed), 0.0025 * double(result.tests)) << result.failed << " of " << result.tests;
 }
 
@@ -276,9 +276,9 @@ double mean_squared_error(const IntegratorContext& base, int n, int images, cons
   for (int k = 0; k < images; ++k) {
     IntegratorContext context = base;
     context.settings.seed = uint32_t(1000 * n + k);
-    Frame frame = test::make_test_frame(context.settings, false);
-    test::sample_frame(*make_path_integrator(context), 0, uint32_t(n), &frame);
-    const std::vector<float> image = read_images(frame, 0).primal;
+    Film film = test::make_test_film(context.settings, false);
+    test::sample_film(*make_path_integrator(context), 0, uint32_t(n), &film);
+    const std::vector<float> image = read_images(film, 0).primal;
     for (size_t pixel = 0; pixel < image.size() / 3; ++pixel) {
       const double gray = (reference[3 * pixel] + reference[3 * pixel + 1] + reference[3 * pixel + 2]) / 3.0;
       for (size_t c = 0; c < 3; ++c) error += std::pow(image[3 * pixel + c] - reference[3 * pixel + c], 2) / (1e-3 + gray * gray);
@@ -295,9 +295,9 @@ TEST(A7_Convergence, FourTimesTheSamplesQuarterTheError) {
     GradusSettings settings = test::test_settings(24, 16);
     settings.max_bounces = 4;
     const IntegratorContext context = scene.context(settings);
-    Frame frame = test::make_test_frame(settings, false);
-    test::sample_frame(*make_path_integrator(context), 0, 2048, &frame);
-    const std::vector<float> image = read_images(frame, 0).primal;
+    Film film = test::make_test_film(settings, false);
+    test::sample_film(*make_path_integrator(context), 0, 2048, &film);
+    const std::vector<float> image = read_images(film, 0).primal;
     const std::vector<double> reference(image.begin(), image.end());
     const int images = test::full_run() ? 16 : 4;
     const double ratio = mean_squared_error(context, 64, images, reference) / mean_squared_error(context, 16, 4 * images, reference);

@@ -37,7 +37,7 @@ double block_sum(uint32_t width, uint32_t x0, uint32_t y0, const Value& value) {
   return sum;
 }
 
-// At the pixels' centres: along the edges of a bright lamp a whole cell shares its jitter, and a few of them would decide. Both integrators
+// At the pixels' centres: along the edges of a bright light a whole cell shares its jitter, and a few of them would decide. Both integrators
 // have this primal, bit for bit.
 TEST_P(A8_Variance, HalfBuffersAgreeWithTheSpreadOverSeeds) {
   test::PathScene scene;
@@ -50,10 +50,10 @@ TEST_P(A8_Variance, HalfBuffersAgreeWithTheSpreadOverSeeds) {
   test::Moments images, variances;
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = static_cast<uint32_t>(seed);
-    Frame frame = test::make_test_frame(context.settings, false);
-    test::sample_frame(*make_path_integrator(context), 0, 16, &frame);
-    images.add(read_images(frame, 0).primal);
-    variances.add(read_variance(frame));
+    Film film = test::make_test_film(context.settings, false);
+    test::sample_film(*make_path_integrator(context), 0, 16, &film);
+    images.add(read_images(film, 0).primal);
+    variances.add(read_variance(film));
   }
   for (const uint32_t y : {0u, 16u}) {
     for (const uint32_t x : {0u, 16u}) {
@@ -69,7 +69,7 @@ TEST_P(A8_Variance, HalfBuffersAgreeWithTheSpreadOverSeeds) {
 
 INSTANTIATE_TEST_SUITE_P(All, A8_Variance,
                          testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::RoughMetal,
-                                         Scenario::Glass, Scenario::LampsSeen),
+                                         Scenario::Glass, Scenario::LightsSeen),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 // Features behind a lens, which alone gives them noise here.
@@ -83,10 +83,10 @@ TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
   test::Moments images[3], variances[3];
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = static_cast<uint32_t>(seed);
-    Frame frame = test::make_test_frame(context.settings, false);
-    frame.passes = make_pass_planes(feature_passes(), frame.count[0].size());
-    test::sample_frame(*make_path_integrator(context), 0, 16, &frame);
-    const Features features = read_features(frame);
+    Film film = test::make_test_film(context.settings, false);
+    film.passes = make_pass_planes(feature_passes(), film.count[0].size());
+    test::sample_film(*make_path_integrator(context), 0, 16, &film);
+    const Features features = read_features(film);
     const FeatureImage* all[3] = {&features.normal, &features.albedo, &features.depth};
     for (int k = 0; k < 3; ++k) {
       images[k].add(all[k]->values);
@@ -109,7 +109,7 @@ TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
 // Samples that are given where the noise is: the estimate is still that of the spread, and the mean that of equal counts. Both could be
 // off, as counts depend on the samples that they weigh: what was bright by chance is followed by more samples and counts for less.
 TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
-  constexpr uint32_t size = 40, samples = 32;  // 9 cells; a lamp in the picture, its shadow and walls differ in noise
+  constexpr uint32_t size = 40, samples = 32;  // 9 cells; a light in the picture, its shadow and walls differ in noise
   test::PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
   GradusSettings settings = sobol_settings(size);
@@ -119,7 +119,7 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
   const int seeds = test::full_run() ? 64 : 16;
   test::Moments shared, equal;
   double estimated = 0.0;
-  uint32_t least = UINT32_MAX, most = 0;
+  uint32_t minimum = UINT32_MAX, maximum = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     settings.seed = uint32_t(seed);
     for (const float threshold : {1e-6f, 0.0f}) {
@@ -128,26 +128,26 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
       settings.integrator = threshold > 0.0f ? GRADUS_INTEGRATOR_GRADIENT : GRADUS_INTEGRATOR_PATH;
       Render render(nullptr, snapshot, settings);
       ASSERT_TRUE(render.wait(-1.0));
-      const std::shared_ptr<const Frame> frame = render.frame();
-      (threshold > 0.0f ? shared : equal).add(read_images(*frame, 0).primal);
+      const std::shared_ptr<const Film> film = render.film();
+      (threshold > 0.0f ? shared : equal).add(read_images(*film, 0).primal);
       if (!(threshold > 0.0f)) continue;
-      for (const float v : read_variance(*frame)) estimated += v / seeds;
-      for (size_t i = 0; i < frame->count[0].size(); ++i) {
-        const uint32_t n = samples_at(*frame, i);
-        least = std::min(least, n);
-        most = std::max(most, n);
+      for (const float v : read_variance(*film)) estimated += v / seeds;
+      for (size_t i = 0; i < film->count[0].size(); ++i) {
+        const uint32_t n = samples_at(*film, i);
+        minimum = std::min(minimum, n);
+        maximum = std::max(maximum, n);
       }
     }
   }
-  EXPECT_LT(least, samples * 3 / 4);
-  EXPECT_GT(most, samples * 5 / 4);  // twice the least, with what REGULARIZED leaves of the noise
+  EXPECT_LT(minimum, samples * 3 / 4);
+  EXPECT_GT(maximum, samples * 5 / 4);  // twice the least, with what REGULARIZED leaves of the noise
   double empirical = 0.0, difference = 0.0, sum = 0.0;
   for (size_t i = 0; i < shared.size(); ++i) {
     empirical += shared.variance_of_mean(i) * seeds;
     difference += shared.mean(i) - equal.mean(i);
     sum += equal.mean(i);
   }
-  std::printf("  counts %u to %u, estimate/spread %.3f, mean %+.3f %%\n", least, most, estimated / empirical, 100.0 * difference / sum);
+  std::printf("  counts %u to %u, estimate/spread %.3f, mean %+.3f %%\n", minimum, maximum, estimated / empirical, 100.0 * difference / sum);
   EXPECT_GT(estimated / empirical, 0.85);
   EXPECT_LT(estimated / empirical, 1.2);  // 1.14 over 64 seeds, 1.17 over 16
   EXPECT_LT(std::fabs(difference), 0.005 * sum);
@@ -157,16 +157,16 @@ class A8_Delivered : public testing::TestWithParam<Scenario> {};
 
 constexpr uint32_t kReconstructions[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1};
 
-std::vector<float> reconstructed(const Frame& frame, uint32_t reconstruction) {
+std::vector<float> reconstructed(const Film& film, uint32_t reconstruction) {
   SolveReport report;
-  return reconstruction == GRADUS_RECONSTRUCTION_NONE ? read_images(frame, 0).primal
+  return reconstruction == GRADUS_RECONSTRUCTION_NONE ? read_images(film, 0).primal
                                                       : reconstruct(
-                                                            frame, 0, reconstruction, 0.0f, [] { return false; }, &report);
+                                                            film, 0, reconstruction, 0.0f, [] { return false; }, &report);
 }
 
 // Σ squared error over the values of an image, as what stops cells estimates it.
-double estimated_error(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image) {
-  const double relative = estimate_noise(frame, {frame.region}, reconstruction, 0.0f, [] { return false; }).front().relative_error;
+double estimated_error(const Film& film, uint32_t reconstruction, const std::vector<float>& image) {
+  const double relative = estimate_noise(film, {film.region}, reconstruction, 0.0f, [] { return false; }).front().relative_error;
   double signal = 0.0;
   for (size_t i = 0; i < image.size(); i += 3) {
     const double gray = (double(image[i]) + image[i + 1] + image[i + 2]) / 3.0;
@@ -188,13 +188,13 @@ TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
   double estimated[3] = {};
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = uint32_t(seed);
-    Frame frame = test::make_test_frame(context.settings, true);
-    frame.settings = context.settings;
-    test::sample_frame(*make_gradient_integrator(context), 0, 16, &frame);
+    Film film = test::make_test_film(context.settings, true);
+    film.settings = context.settings;
+    test::sample_film(*make_gradient_integrator(context), 0, 16, &film);
     for (int k = 0; k < 3; ++k) {
-      const std::vector<float> image = reconstructed(frame, kReconstructions[k]);
+      const std::vector<float> image = reconstructed(film, kReconstructions[k]);
       images[k].add(image);
-      estimated[k] += estimated_error(frame, kReconstructions[k], image) / seeds;
+      estimated[k] += estimated_error(film, kReconstructions[k], image) / seeds;
     }
   }
   for (int k = 0; k < 3; ++k) {
@@ -221,9 +221,9 @@ std::vector<std::vector<double>> residuals(uint32_t size, int seeds) {
   std::vector<double> mean(size * size, 0.0);
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = static_cast<uint32_t>(seed);
-    Frame frame = test::make_test_frame(context.settings, false);
-    test::sample_frame(*make_path_integrator(context), 0, 2, &frame);
-    const std::vector<float> image = read_images(frame, 0).primal;
+    Film film = test::make_test_film(context.settings, false);
+    test::sample_film(*make_path_integrator(context), 0, 2, &film);
+    const std::vector<float> image = read_images(film, 0).primal;
     std::vector<double>& residual = images.emplace_back(mean.size());
     for (size_t i = 0; i < mean.size(); ++i) {
       residual[i] = image[3 * i + 1];

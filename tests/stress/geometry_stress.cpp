@@ -105,7 +105,7 @@ TEST_P(Grazing, ALowSun) {
   PathScene scene;
   build_box(&scene);
   const float angle = GetParam();
-  Mat4 low(1.0f);  // shines along -z of the lamp: into the box, downwards by the angle
+  Mat4 low(1.0f);  // shines along -z of the light: into the box, downwards by the angle
   low[1] = Vec4(0, std::cos(angle), -std::sin(angle), 0);
   low[2] = Vec4(0, std::sin(angle), std::cos(angle), 0);
   scene.light(test::make_light(GRADUS_LIGHT_SUN, low, Rgb(5.0f)));

@@ -18,25 +18,25 @@ class Injecting : public Integrator {
   using Value = std::function<Radiance(int32_t x, int32_t y, uint32_t sample)>;
   Injecting(const IntegratorContext& context, Value value) : fake_(context, true), value_(std::move(value)) {}
 
-  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
-    fake_.sample(unit, frame, counters, stop);
+  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
+    fake_.sample(unit, film, counters, stop);
     for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
       for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
-        for (uint32_t s = unit.first_sample; s < unit.first_sample + unit.count; ++s) inject(x, y, s, frame, counters);
+        for (uint32_t s = unit.first_sample; s < unit.first_sample + unit.count; ++s) inject(x, y, s, film, counters);
       }
     }
   }
 
  private:
   // As the gradient integrator would: a firefly of a pixel whose shifts fail stands in all of its differences.
-  void inject(int32_t x, int32_t y, uint32_t s, Frame* frame, Counters* counters) const {
+  void inject(int32_t x, int32_t y, uint32_t s, Film* film, Counters* counters) const {
     const Radiance value = value_(x, y, s);
     if (value == Radiance(0.0f)) return;
-    const size_t i = frame->index(x, y);
-    add_radiance(value, &frame->components[0].primal[s % 2][i], counters);
+    const size_t i = film->index(x, y);
+    add_radiance(value, &film->components[0].primal[s % 2][i], counters);
     for (int k = 0; k < kOffsets; ++k) {
-      if (frame->region.contains(x + kOffsetX[k], y + kOffsetY[k])) {
-        add_gradient(-0.5f * value, &frame->components[0].gradient[s % 2][k][i], counters);
+      if (film->region.contains(x + kOffsetX[k], y + kOffsetY[k])) {
+        add_gradient(-0.5f * value, &film->components[0].gradient[s % 2][k][i], counters);
       }
     }
   }
@@ -55,13 +55,13 @@ Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) 
   Render render(nullptr, test::empty_snapshot(), settings, nullptr,
                 [&](const IntegratorContext& context, uint32_t) { return std::make_unique<Injecting>(context, value); });
   EXPECT_TRUE(render.wait(-1.0));
-  const auto frame = render.frame();
+  const auto film = render.film();
   SolveReport report;
   const auto image = [&](uint32_t how) {
     return combine(
-        *frame, how, 0.0f, frame->region, [] { return false; }, &report);
+        *film, how, 0.0f, film->region, [] { return false; }, &report);
   };
-  Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1), frame->counters};
+  Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1), film->counters};
   for (const auto* i : {&images.noisy, &images.l2, &images.l1}) expect_finite(*i, "image");
   return images;
 }

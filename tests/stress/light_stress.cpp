@@ -9,13 +9,13 @@ namespace {
 using test::make_light;
 using test::translation;
 
-struct LampCase {
+struct LightCase {
   const char* name;
   GradusLight light;
 };
 
-GradusLight lamp(GradusLightType type, float strength) {
-  Mat4 down = translation(Vec3(0.2f, 0.6f, 0.2f));  // shines along -z of the lamp
+GradusLight make_test_light(GradusLightType type, float strength) {
+  Mat4 down = translation(Vec3(0.2f, 0.6f, 0.2f));  // shines along -z of the light
   down[1] = Vec4(0, 0, -1, 0);
   down[2] = Vec4(0, 1, 0, 0);
   GradusLight light = make_light(type, down, Rgb(strength));
@@ -25,36 +25,36 @@ GradusLight lamp(GradusLightType type, float strength) {
   return light;
 }
 
-std::vector<LampCase> without_extent() {
-  std::vector<LampCase> cases;
+std::vector<LightCase> without_extent() {
+  std::vector<LightCase> cases;
   for (const float size : {0.0f, 1e-30f, 1e-6f}) {
     for (const GradusLightType type :
          {GRADUS_LIGHT_POINT, GRADUS_LIGHT_SPOT, GRADUS_LIGHT_SUN, GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
-      GradusLight light = lamp(type, 1.0f);
+      GradusLight light = make_test_light(type, 1.0f);
       light.radius = light.angle = light.size[0] = light.size[1] = size;
       cases.push_back({"lamp without extent", light});
     }
   }
   for (const float cone : {0.0f, 1e-6f, kPi}) {
-    GradusLight light = lamp(GRADUS_LIGHT_SPOT, 1.0f);
+    GradusLight light = make_test_light(GRADUS_LIGHT_SPOT, 1.0f);
     light.cone = cone;
     cases.push_back({"spot", light});
   }
   for (const float spread : {0.0f, 1e-6f}) {
-    GradusLight light = lamp(GRADUS_LIGHT_RECTANGLE, 1.0f);
+    GradusLight light = make_test_light(GRADUS_LIGHT_RECTANGLE, 1.0f);
     light.spread = spread;
     cases.push_back({"area without spread", light});
   }
   return cases;
 }
 
-std::string name_of(const LampCase& c) {
+std::string name_of(const LightCase& c) {
   return std::string(c.name) + ": type " + std::to_string(c.light.type) + ", size " + text_of(c.light.size[0]) + ", cone " +
          text_of(c.light.cone) + ", spread " + text_of(c.light.spread);
 }
 
-TEST(Lamps, WithoutExtent) {
-  for (const LampCase& c : without_extent()) {
+TEST(AnalyticLights, WithoutExtent) {
+  for (const LightCase& c : without_extent()) {
     PathScene scene;
     build_box(&scene);
     scene.light(c.light);
@@ -63,32 +63,32 @@ TEST(Lamps, WithoutExtent) {
 }
 
 // 1e38 W are 8e36 W/sr: at a tenth of a metre 8e38 W/m², beyond float. What overflows is dropped, what would let a sum overflow, too; the
-// rest of the picture is there. The lamps of areas are seen by one pixel in 40, whose samples are dropped with four gradients and some
+// rest of the picture is there. The lights of areas are seen by one pixel in 40, whose samples are dropped with four gradients and some
 // passes.
-TEST(Lamps, Of1e38Watts) {
+TEST(AnalyticLights, Of1e38Watts) {
   const GradusSettings settings = small_picture();
   const uint64_t all = uint64_t(settings.width) * settings.height * settings.samples;
   for (const GradusLightType type :
        {GRADUS_LIGHT_POINT, GRADUS_LIGHT_SPOT, GRADUS_LIGHT_SUN, GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
     PathScene scene;
     build_box(&scene);
-    scene.light(lamp(type, 1e38f));
+    scene.light(make_test_light(type, 1e38f));
     render("lamp of 1e38, type " + std::to_string(type), &scene, Bounds().dropping(all / 4).without_double());
   }
 }
 
-TEST(Lamps, DarkAndNegative) {
+TEST(AnalyticLights, DarkAndNegative) {
   for (const float strength : {0.0f, 1e-38f, 1e-45f, -1.0f}) {
     PathScene scene;
     build_box(&scene);
-    scene.light(lamp(GRADUS_LIGHT_POINT, strength));
-    scene.light(lamp(GRADUS_LIGHT_RECTANGLE, strength));
+    scene.light(make_test_light(GRADUS_LIGHT_POINT, strength));
+    scene.light(make_test_light(GRADUS_LIGHT_RECTANGLE, strength));
     render("lamps of " + text_of(strength), &scene, {});
   }
 }
 
 // It faces away from the box, behind its back wall.
-TEST(Lamps, AHugeOneThatShinesAwayAddsNothing) {
+TEST(AnalyticLights, AHugeOneThatShinesAwayAddsNothing) {
   PathScene scene;
   build_box(&scene);
   const Outcome alone = render("box without it", &scene, {});
@@ -97,7 +97,7 @@ TEST(Lamps, AHugeOneThatShinesAwayAddsNothing) {
   EXPECT_NEAR(mean(outcome.noisy) / mean(alone.noisy), 1.0, 0.05);
 }
 
-TEST(Lamps, EmissiveTrianglesOfAnySize) {
+TEST(AnalyticLights, EmissiveTrianglesOfAnySize) {
   for (const float size : {1e-12f, 1e-6f, 1e4f}) {
     PathScene scene;
     build_box(&scene);

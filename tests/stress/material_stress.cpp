@@ -53,7 +53,7 @@ TEST_P(Roughness, GlassMakesNoLight) {
   expect_furnace(render(named("glass, roughness", GetParam()), &scene, Bounds::alone()), 0.6);
 }
 
-// Lit by a small lamp, lobes are as sharp as their light.
+// Lit by a small light, lobes are as sharp as their light.
 TEST_P(Roughness, InTheBox) {
   PathScene scene;
   build_box(&scene);

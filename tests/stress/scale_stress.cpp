@@ -58,7 +58,7 @@ class D6_Distance : public ::testing::TestWithParam<float> {};
 
 TEST_P(D6_Distance, TheBoxLooksTheSame) {
   const float far = GetParam();
-  // Matrices come in float: at 1e5 the camera and the lamp stand on a grid of 8 mm, which moves edges and caustics.
+  // Matrices come in float: at 1e5 the camera and the light stand on a grid of 8 mm, which moves edges and caustics.
   expect_like_reference(boxed("box at " + text_of(far) + " along all axes", test::translation(Vec3(far, -far, far))), 0.3);
 }
 

@@ -151,12 +151,12 @@ Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds, 
   Outcome outcome;
   outcome.noisy = read(render, GRADUS_PASS_NOISY_IMAGE, settings);
   outcome.l2 = read(render, GRADUS_PASS_COMBINED, settings);
-  const auto frame = render.frame();
+  const auto film = render.film();
   SolveReport report;
   const std::vector<float> l1 = combine(
-      *frame, GRADUS_RECONSTRUCTION_L1, 0.0f, frame->region, [] { return false; }, &report);
+      *film, GRADUS_RECONSTRUCTION_L1, 0.0f, film->region, [] { return false; }, &report);
   expect_finite(l1, "L1");
-  outcome.counters = frame->counters;
+  outcome.counters = film->counters;
   check(outcome.counters, bounds);
   const double from_double = bounds.from_double < 0.0 ? 0.0 : compare_with_double(context);
   if (bounds.from_double >= 0.0) {
@@ -178,9 +178,9 @@ void build_box(PathScene* scene) {
   scene->ball(Vec3(-0.3f, -0.7f, 0.5f), 0.3f, scene->material(test::glass(0.0f)), 12, true);
   const float scale = scene->place[0][0];
   const Vec3 centre = Vec3(scene->place * Vec4(0.5f, 0.3f, 0.3f, 1.0f));
-  GradusLight lamp = test::make_light(GRADUS_LIGHT_POINT, test::translation(centre), Rgb(0.3f * scale * scale));
-  lamp.radius = 0.1f * scale;
-  scene->light(lamp);
+  GradusLight light = test::make_light(GRADUS_LIGHT_POINT, test::translation(centre), Rgb(0.3f * scale * scale));
+  light.radius = 0.1f * scale;
+  scene->light(light);
   scene->camera_desc.clip_start *= scale;
   scene->camera_desc.clip_end *= scale;
 }

@@ -64,7 +64,7 @@ Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds, 
 // A row that was measured elsewhere.
 void enter_row(const std::string& name, const Counters& counters, const std::string& note = "");
 
-// A box with a ceiling light, a lamp, a matte, a metal and a glass ball. Lengths scale with scene->place.
+// A box with a ceiling light, a light, a matte, a metal and a glass ball. Lengths scale with scene->place.
 void build_box(PathScene* scene);
 // Constant light of 1 from everywhere: what is white looks like it.
 void build_furnace(PathScene* scene, const Surface& ball);

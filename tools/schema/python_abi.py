@@ -28,7 +28,7 @@ ARGUMENTS = {
     "double": "c_double",
     "GradusError": "c_int",
 }
-HANDLES = ("Device", "Scene", "Render", "Sequence", "Frame")
+HANDLES = ("Device", "Scene", "Render", "Sequence", "Film")
 
 HEAD = '''"""The structs, enums and functions of gradus.h as ctypes declarations, by the header's names without prefix.
 

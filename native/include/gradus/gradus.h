@@ -75,7 +75,7 @@ GRADUS_API GradusError gradus_struct_layout(const char* name, size_t* size, size
 typedef uint64_t GradusDevice;
 typedef uint64_t GradusScene;
 typedef uint64_t GradusRender;
-typedef uint64_t GradusFrame;
+typedef uint64_t GradusFilm;
 
 /* Settings of a device. */
 typedef struct GradusDeviceSettings {
@@ -712,7 +712,7 @@ GRADUS_API GradusError gradus_render_start(GradusScene scene, const GradusSettin
 /* Starts to render as gradus_render_start does, but goes on from the samples of `frame`, which had the same scene and
  * sampling settings. 16 and then 48 samples give the same bits as 64 at once. settings.samples counts from the
  * beginning. `frame` itself does not change. */
-GRADUS_API GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFrame frame,
+GRADUS_API GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFilm film,
                                             GradusRender* render);
 GRADUS_API GradusError gradus_render_poll(GradusRender render, GradusProgress* progress);
 /* Asks the render to stop. Its samples stay readable. Combined is then the last picture that was shown, even if that
@@ -734,7 +734,7 @@ GRADUS_API GradusError gradus_render_read_component(GradusRender render, const c
  * stays valid until the render is released. */
 GRADUS_API GradusError gradus_render_stats(GradusRender render, const char** json);
 /* Returns the film of a finished render: planes with half-buffers. */
-GRADUS_API GradusError gradus_render_frame(GradusRender render, GradusFrame* frame);
+GRADUS_API GradusError gradus_render_film(GradusRender render, GradusFilm* film);
 
 /* -------------------------------------------------------------------------------------------------------- sequence */
 
@@ -786,25 +786,25 @@ GRADUS_API GradusError gradus_sequence_release(GradusSequence sequence);
 
 /* ------------------------------------------------------------------------------------------------------------ film */
 
-GRADUS_API GradusError gradus_frame_save(GradusFrame frame, const char* path);
-GRADUS_API GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame* frame);
+GRADUS_API GradusError gradus_film_save(GradusFilm film, const char* path);
+GRADUS_API GradusError gradus_film_load(GradusDevice device, const char* path, GradusFilm* film);
 /* Adds the samples of `other` to `frame`. Both have the same size, scene and sampling settings, and different sample
  * numbers. The result equals rendering them together up to float rounding of the sums; equal bits need
  * gradus_render_resume. Sample numbers in between may be missing and be added later, but a render does not go on from
  * such a film. */
-GRADUS_API GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other);
+GRADUS_API GradusError gradus_film_merge(GradusFilm film, GradusFilm other);
 /* Returns the size of the delivered region, which read_pass and reconstruct return. */
-GRADUS_API GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height);
+GRADUS_API GradusError gradus_film_size(GradusFilm film, uint32_t* width, uint32_t* height);
 /* Reconstructs Combined as RGBA. `alpha` is the weight of the primal against the gradients (0 = automatic) and
  * `denoiser` a GradusDenoiser; AUTO leaves out the denoiser if the film has fewer than 8 samples per pixel. `error`
  * receives pass Error as count / 4 floats and may be NULL. */
-GRADUS_API GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha,
+GRADUS_API GradusError gradus_film_reconstruct(GradusFilm film, uint32_t reconstruction, float alpha,
                                                 uint32_t denoiser, float* rgba, size_t count, float* error);
-GRADUS_API GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count);
+GRADUS_API GradusError gradus_film_read_pass(GradusFilm film, uint32_t pass, float* pixels, size_t count);
 /* Copies a component's pass. Color and Irradiance are reconstructed as Combined is, without the denoiser. */
-GRADUS_API GradusError gradus_frame_read_component(GradusFrame frame, const char* component, uint32_t pass,
+GRADUS_API GradusError gradus_film_read_component(GradusFilm film, const char* component, uint32_t pass,
                                                    float* pixels, size_t count);
-GRADUS_API GradusError gradus_frame_release(GradusFrame frame);
+GRADUS_API GradusError gradus_film_release(GradusFilm film);
 
 /* clang-format on */
 

@@ -126,19 +126,19 @@ inline std::string pass_name(uint32_t pass) {
   return name;
 }
 
-class Frame : public Handle<GradusFrame, gradus_frame_release> {
+class Film : public Handle<GradusFilm, gradus_film_release> {
  public:
   using Handle::Handle;
-  static Frame load(const Device& device, const std::string& path) {
-    GradusFrame id = 0;
-    check(gradus_frame_load(device.id(), path.c_str(), &id));
-    return Frame(id);
+  static Film load(const Device& device, const std::string& path) {
+    GradusFilm id = 0;
+    check(gradus_film_load(device.id(), path.c_str(), &id));
+    return Film(id);
   }
-  void save(const std::string& path) const { check(gradus_frame_save(id_, path.c_str())); }
-  void merge(const Frame& other) { check(gradus_frame_merge(id_, other.id())); }
+  void save(const std::string& path) const { check(gradus_film_save(id_, path.c_str())); }
+  void merge(const Film& other) { check(gradus_film_merge(id_, other.id())); }
   std::pair<uint32_t, uint32_t> size() const {
     uint32_t width = 0, height = 0;
-    check(gradus_frame_size(id_, &width, &height));
+    check(gradus_film_size(id_, &width, &height));
     return {width, height};
   }
   // error: filled with the pass, if given.
@@ -147,12 +147,12 @@ class Frame : public Handle<GradusFrame, gradus_frame_release> {
     std::vector<float> rgba(pixels() * 4);
     if (error != nullptr) error->resize(pixels());
     float* wanted = error != nullptr ? error->data() : nullptr;
-    check(gradus_frame_reconstruct(id_, reconstruction, alpha, denoiser, rgba.data(), rgba.size(), wanted));
+    check(gradus_film_reconstruct(id_, reconstruction, alpha, denoiser, rgba.data(), rgba.size(), wanted));
     return rgba;
   }
   std::vector<float> read_pass(uint32_t pass) const {
     std::vector<float> values(pixels() * pass_channels(pass));
-    check(gradus_frame_read_pass(id_, pass, values.data(), values.size()));
+    check(gradus_film_read_pass(id_, pass, values.data(), values.size()));
     return values;
   }
 
@@ -166,7 +166,7 @@ class Frame : public Handle<GradusFrame, gradus_frame_release> {
 class Render : public Handle<GradusRender, gradus_render_release> {
  public:
   Render(const Scene& scene, const GradusSettings& settings) { check(gradus_render_start(scene.id(), &settings, &id_)); }
-  Render(const Scene& scene, const GradusSettings& settings, const Frame& resumed) {
+  Render(const Scene& scene, const GradusSettings& settings, const Film& resumed) {
     check(gradus_render_resume(scene.id(), &settings, resumed.id(), &id_));
   }
   GradusProgress poll() const {
@@ -194,10 +194,10 @@ class Render : public Handle<GradusRender, gradus_render_release> {
     check(gradus_render_stats(id_, &json));
     return json;
   }
-  Frame frame() const {
-    GradusFrame id = 0;
-    check(gradus_render_frame(id_, &id));
-    return Frame(id);
+  Film film() const {
+    GradusFilm id = 0;
+    check(gradus_render_film(id_, &id));
+    return Film(id);
   }
 
  private:
@@ -212,7 +212,7 @@ class Sequence : public Handle<GradusSequence, gradus_sequence_release> {
   }
   Render deliver(int32_t frame, const GradusSettings& settings) const {
     GradusRender render = 0;
-    check(gradus_sequence_deliver(id_, frame, &settings, &render));
+    check(gradus_sequence_deliver(id_, film, &settings, &render));
     return Render(render);
   }
 };

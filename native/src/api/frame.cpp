@@ -31,11 +31,11 @@ void check_count(size_t count, const Region& region, uint32_t channels) {
     throw invalid_argument("expected " + std::to_string(expected) + " floats, " + std::to_string(count) + " were given");
 }
 
-uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
+uint32_t resolve(uint32_t reconstruction, const Film& film) {
   switch (reconstruction) {
     case GRADUS_RECONSTRUCTION_AUTO:
-      if (has_features(frame)) return GRADUS_RECONSTRUCTION_REGULARIZED;
-      return frame.gradients ? GRADUS_RECONSTRUCTION_L1 : GRADUS_RECONSTRUCTION_NONE;
+      if (has_features(film)) return GRADUS_RECONSTRUCTION_REGULARIZED;
+      return film.gradients ? GRADUS_RECONSTRUCTION_L1 : GRADUS_RECONSTRUCTION_NONE;
     case GRADUS_RECONSTRUCTION_NONE:
     case GRADUS_RECONSTRUCTION_L2:
     case GRADUS_RECONSTRUCTION_L1:
@@ -46,17 +46,17 @@ uint32_t resolve(uint32_t reconstruction, const Frame& frame) {
   }
 }
 
-uint32_t threads_for(const FrameObject& object, const Frame& frame) {
-  return frame.settings.threads > 0 ? frame.settings.threads : object.device->threads();
+uint32_t threads_for(const FilmObject& object, const Film& film) {
+  return film.settings.threads > 0 ? film.settings.threads : object.device->threads();
 }
 
 // RGBA, and the error unless it is nullptr, by as many threads as a render with the frame's settings has.
-MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* error) {
+DevelopedPicture develop_picture(FilmObject* object, const Film& film, uint32_t reconstruction, float alpha, uint32_t denoiser, float* error) {
   const auto never = [] { return false; };
-  reconstruction = resolve(reconstruction, frame);
-  const uint32_t threads = threads_for(*object, frame);
+  reconstruction = resolve(reconstruction, film);
+  const uint32_t threads = threads_for(*object, film);
   std::string why_not;
-  if (denoiser == GRADUS_DENOISER_AUTO && !denoiser_pays(mean_samples(frame))) denoiser = GRADUS_DENOISER_NONE;
+  if (denoiser == GRADUS_DENOISER_AUTO && !denoiser_pays(mean_samples(film))) denoiser = GRADUS_DENOISER_NONE;
   const auto library = choose_denoiser(denoiser, object->device.get(), &why_not);
   std::vector<float> image, estimate;
   std::vector<std::vector<float>> components;
@@ -64,14 +64,14 @@ MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t recon
   arena.execute([&] {
     const FlushDenormals flush;
     SolveReport report;
-    image = combine(frame, reconstruction, alpha, delivered_region(frame), never, &report, error != nullptr ? &estimate : nullptr,
-                    frame.components.size() > 1 ? &components : nullptr);
+    image = combine(film, reconstruction, alpha, delivered_region(film), never, &report, error != nullptr ? &estimate : nullptr,
+                    film.components.size() > 1 ? &components : nullptr);
   });
   if (library) {
-    if (!has_features(frame)) object->device->warnings().add("the frame holds no features to guide the denoiser");
+    if (!has_features(film)) object->device->warnings().add("the frame holds no features to guide the denoiser");
     std::string failure;
     std::vector<float> denoised =
-        denoise_combined(*library, frame, reconstruction, delivered_region(frame), threads, never, image, &failure);
+        denoise_combined(*library, film, reconstruction, delivered_region(film), threads, never, image, &failure);
     if (denoised.empty()) {
       object->device->warnings().add(failure);
     } else {
@@ -85,55 +85,55 @@ MadePicture make_picture(FrameObject* object, const Frame& frame, uint32_t recon
 }
 
 // Light passes and components that are read from now on are those of this picture.
-std::shared_ptr<MadePicture> keep_made(FrameObject* object, const std::shared_ptr<const Frame>& frame, MadePicture made) {
-  auto kept = std::make_shared<MadePicture>(std::move(made));
+std::shared_ptr<DevelopedPicture> store_developed(FilmObject* object, const std::shared_ptr<const Film>& film, DevelopedPicture developed) {
+  auto kept = std::make_shared<DevelopedPicture>(std::move(developed));
   const std::lock_guard lock(object->mutex);
-  if (object->frame == frame && (has_light_passes(*frame) || frame->components.size() > 1)) object->made = kept;
+  if (object->film == film && (has_light_passes(*film) || film->components.size() > 1)) object->developed = kept;
   return kept;
 }
 
-void reconstruct_into(FrameObject* object, const std::shared_ptr<const Frame>& frame, uint32_t reconstruction, float alpha,
+void reconstruct_into(FilmObject* object, const std::shared_ptr<const Film>& film, uint32_t reconstruction, float alpha,
                       uint32_t denoiser, float* rgba, float* error) {
-  MadePicture made = make_picture(object, *frame, reconstruction, alpha, denoiser, error);
-  std::copy(made.rgba.begin(), made.rgba.end(), rgba);
-  keep_made(object, frame, std::move(made));
+  DevelopedPicture developed = develop_picture(object, *film, reconstruction, alpha, denoiser, error);
+  std::copy(developed.rgba.begin(), developed.rgba.end(), rgba);
+  store_developed(object, film, std::move(developed));
 }
 
-std::vector<float> read_error(FrameObject* object, const Frame& frame) {
-  const GradusSettings& s = frame.settings;
-  std::vector<float> error(size_t(delivered_region(frame).area()));
-  make_picture(object, frame, s.reconstruction, s.reconstruction_alpha, GRADUS_DENOISER_NONE, error.data());
+std::vector<float> read_error(FilmObject* object, const Film& film) {
+  const GradusSettings& s = film.settings;
+  std::vector<float> error(size_t(delivered_region(film).area()));
+  develop_picture(object, film, s.reconstruction, s.reconstruction_alpha, GRADUS_DENOISER_NONE, error.data());
   return error;
 }
 
 // The picture that was made last; that of the frame's own settings where none was.
-std::shared_ptr<MadePicture> made_of(FrameObject* object, const std::shared_ptr<const Frame>& frame) {
+std::shared_ptr<DevelopedPicture> developed_picture_of(FilmObject* object, const std::shared_ptr<const Film>& film) {
   {
     const std::lock_guard lock(object->mutex);
-    if (object->frame == frame && object->made) return object->made;
+    if (object->film == film && object->developed) return object->developed;
   }
-  const GradusSettings& s = frame->settings;
-  return keep_made(object, frame, make_picture(object, *frame, s.reconstruction, s.reconstruction_alpha, s.denoiser, nullptr));
+  const GradusSettings& s = film->settings;
+  return store_developed(object, film, develop_picture(object, *film, s.reconstruction, s.reconstruction_alpha, s.denoiser, nullptr));
 }
 
 // Reads a pass of what was sampled, by as many threads.
-void read_sampled(const FrameObject& object, const Frame& frame, uint32_t pass, float* pixels) {
-  tbb::task_arena arena(arena_size(threads_for(object, frame)));
-  arena.execute([&] { read_frame_pass(frame, pass, delivered_region(frame), pixels); });
+void read_sampled(const FilmObject& object, const Film& film, uint32_t pass, float* pixels) {
+  tbb::task_arena arena(arena_size(threads_for(object, film)));
+  arena.execute([&] { read_film_pass(film, pass, delivered_region(film), pixels); });
 }
 
-void read_light(FrameObject* object, const std::shared_ptr<const Frame>& frame, uint32_t pass, float* pixels) {
-  const std::shared_ptr<MadePicture> made = made_of(object, frame);
-  const Region region = delivered_region(*frame);
-  if (made->is_noisy) return read_sampled(*object, *frame, pass, pixels);
+void read_light(FilmObject* object, const std::shared_ptr<const Film>& film, uint32_t pass, float* pixels) {
+  const std::shared_ptr<DevelopedPicture> developed = developed_picture_of(object, film);
+  const Region region = delivered_region(*film);
+  if (developed->is_noisy) return read_sampled(*object, *film, pass, pixels);
   const std::lock_guard lock(object->mutex);
-  if (!made->light) {
-    tbb::task_arena(arena_size(threads_for(*object, *frame))).execute([&] {
+  if (!developed->light) {
+    tbb::task_arena(arena_size(threads_for(*object, *film))).execute([&] {
       const FlushDenormals flush;
-      made->light = LightPasses(*frame, region, made->rgba, [] { return false; });
+      developed->light = LightPasses(*film, region, developed->rgba, [] { return false; });
     });
   }
-  made->light->read(pass, pixels);
+  developed->light->read(pass, pixels);
 }
 
 std::vector<float> rgb_of(const std::vector<float>& rgba) {
@@ -142,58 +142,58 @@ std::vector<float> rgb_of(const std::vector<float>& rgba) {
   return rgb;
 }
 
-std::vector<float> component_color(FrameObject* object, const std::shared_ptr<const Frame>& frame, int component) {
-  const std::shared_ptr<MadePicture> made = made_of(object, frame);
-  return frame->components.size() > 1 ? made->components[size_t(component)] : rgb_of(made->rgba);
+std::vector<float> component_color(FilmObject* object, const std::shared_ptr<const Film>& film, int component) {
+  const std::shared_ptr<DevelopedPicture> developed = developed_picture_of(object, film);
+  return film->components.size() > 1 ? developed->components[size_t(component)] : rgb_of(developed->rgba);
 }
 
 }  // namespace
 }  // namespace gradus::api
 
-GradusError gradus_frame_save(GradusFrame frame, const char* path) {
+GradusError gradus_film_save(GradusFilm film, const char* path) {
   return api::guard([&] {
-    const auto object = api::find_handle<api::FrameObject>(frame);
+    const auto object = api::find_handle<api::FilmObject>(film);
     const std::string file = &api::require(path, "path");
-    object->device->arena().execute([&] { save_frame(*object->get(), file); });
+    object->device->arena().execute([&] { save_film(*object->get(), file); });
   });
 }
 
-GradusError gradus_frame_load(GradusDevice device, const char* path, GradusFrame* frame) {
+GradusError gradus_film_load(GradusDevice device, const char* path, GradusFilm* film) {
   return api::guard([&] {
-    api::require(frame, "frame") = 0;
-    auto object = std::make_shared<api::FrameObject>(api::find_handle<Device>(device));
+    api::require(film, "frame") = 0;
+    auto object = std::make_shared<api::FilmObject>(api::find_handle<Device>(device));
     const std::string file = &api::require(path, "path");
-    object->device->arena().execute([&] { object->frame = load_frame(file); });
+    object->device->arena().execute([&] { object->film = load_film(file); });
     for (const std::string& warning : load_header(file).warnings) object->device->warnings().add(file + ": " + warning);
-    *frame = api::add_handle(std::move(object));
+    *film = api::add_handle(std::move(object));
   });
 }
 
-GradusError gradus_frame_merge(GradusFrame frame, GradusFrame other) {
+GradusError gradus_film_merge(GradusFilm film, GradusFilm other) {
   return api::guard([&] {
-    const auto to = api::find_handle<api::FrameObject>(frame);
-    const std::shared_ptr<const Frame> from = api::find_handle<api::FrameObject>(other)->get();
+    const auto to = api::find_handle<api::FilmObject>(film);
+    const std::shared_ptr<const Film> from = api::find_handle<api::FilmObject>(other)->get();
     const std::lock_guard lock(to->mutex);
-    auto merged = std::make_shared<Frame>(*to->frame);
-    merge_frames(merged.get(), *from);
-    to->frame = std::move(merged);
-    to->made = nullptr;
+    auto merged = std::make_shared<Film>(*to->film);
+    merge_films(merged.get(), *from);
+    to->film = std::move(merged);
+    to->developed = nullptr;
   });
 }
 
-GradusError gradus_frame_size(GradusFrame frame, uint32_t* width, uint32_t* height) {
+GradusError gradus_film_size(GradusFilm film, uint32_t* width, uint32_t* height) {
   return api::guard([&] {
-    const Region region = delivered_region(*api::find_handle<api::FrameObject>(frame)->get());
+    const Region region = delivered_region(*api::find_handle<api::FilmObject>(film)->get());
     api::require(width, "width") = uint32_t(region.width());
     api::require(height, "height") = uint32_t(region.height());
   });
 }
 
-GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba, size_t count,
+GradusError gradus_film_reconstruct(GradusFilm film, uint32_t reconstruction, float alpha, uint32_t denoiser, float* rgba, size_t count,
                                      float* error) {
   return api::guard([&] {
-    const auto object = api::find_handle<api::FrameObject>(frame);
-    const std::shared_ptr<const Frame> content = object->get();
+    const auto object = api::find_handle<api::FilmObject>(film);
+    const std::shared_ptr<const Film> content = object->get();
     api::check_count(count, delivered_region(*content), 4);
     api::check_array(rgba, count, "rgba");
     if (error != nullptr) api::check_array(error, count / 4, "error");
@@ -202,10 +202,10 @@ GradusError gradus_frame_reconstruct(GradusFrame frame, uint32_t reconstruction,
   });
 }
 
-GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixels, size_t count) {
+GradusError gradus_film_read_pass(GradusFilm film, uint32_t pass, float* pixels, size_t count) {
   return api::guard([&] {
-    const auto object = api::find_handle<api::FrameObject>(frame);
-    const std::shared_ptr<const Frame> content = object->get();
+    const auto object = api::find_handle<api::FilmObject>(film);
+    const std::shared_ptr<const Film> content = object->get();
     const Region region = delivered_region(*content);
     api::check_count(count, region, pass_info(pass).channels);
     api::check_array(pixels, count, "pixels");
@@ -214,15 +214,15 @@ GradusError gradus_frame_read_pass(GradusFrame frame, uint32_t pass, float* pixe
       return api::reconstruct_into(object.get(), content, s.reconstruction, s.reconstruction_alpha, s.denoiser, pixels, nullptr);
     }
     if (pass == GRADUS_PASS_ERROR) return static_cast<void>(std::ranges::copy(api::read_error(object.get(), *content), pixels));
-    if (wants(light_passes(), pass) && has_pass(*content, pass)) return api::read_light(object.get(), content, pass, pixels);
+    if (has_bit(light_passes(), pass) && has_pass(*content, pass)) return api::read_light(object.get(), content, pass, pixels);
     api::read_sampled(*object, *content, pass, pixels);
   });
 }
 
-GradusError gradus_frame_read_component(GradusFrame frame, const char* component, uint32_t pass, float* pixels, size_t count) {
+GradusError gradus_film_read_component(GradusFilm film, const char* component, uint32_t pass, float* pixels, size_t count) {
   return api::guard([&] {
-    const auto object = api::find_handle<api::FrameObject>(frame);
-    const std::shared_ptr<const Frame> content = object->get();
+    const auto object = api::find_handle<api::FilmObject>(film);
+    const std::shared_ptr<const Film> content = object->get();
     const std::string name = &api::require(component, "component");
     const Region region = delivered_region(*content);
     api::check_count(count, region, component_pass_info(pass).channels);
@@ -235,6 +235,6 @@ GradusError gradus_frame_read_component(GradusFrame frame, const char* component
   });
 }
 
-GradusError gradus_frame_release(GradusFrame frame) {
-  return api::guard([&] { api::remove_handle<api::FrameObject>(frame); });
+GradusError gradus_film_release(GradusFilm film) {
+  return api::guard([&] { api::remove_handle<api::FilmObject>(film); });
 }

@@ -37,7 +37,7 @@ struct SceneObject {
 
 struct RenderObject {
   RenderObject(std::shared_ptr<Device> shared_device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-               std::shared_ptr<const Frame> resumed)
+               std::shared_ptr<const Film> resumed)
       : device(std::move(shared_device)), render(device, std::move(snapshot), settings, std::move(resumed)) {}
   RenderObject(std::shared_ptr<Device> shared_device, std::unique_ptr<RenderTask> task)
       : device(std::move(shared_device)), render(std::move(task)) {}
@@ -57,7 +57,7 @@ struct SequenceObject {
 };
 
 // What was last made of a frame, and its light passes once they are read: none of the noisy image, whose own they are.
-struct MadePicture {
+struct DevelopedPicture {
   std::vector<float> rgba;
   std::vector<std::vector<float>> components;  // RGB of each
   bool is_noisy = false;
@@ -65,15 +65,15 @@ struct MadePicture {
 };
 
 // Frames of renders are shared and immutable; merging replaces the frame by a new one.
-struct FrameObject {
-  explicit FrameObject(std::shared_ptr<Device> shared_device) : device(std::move(shared_device)) {}
+struct FilmObject {
+  explicit FilmObject(std::shared_ptr<Device> shared_device) : device(std::move(shared_device)) {}
   std::mutex mutex;
   std::shared_ptr<Device> device;
-  std::shared_ptr<const Frame> frame;
-  std::shared_ptr<MadePicture> made;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no parts
-  std::shared_ptr<const Frame> get() {
+  std::shared_ptr<const Film> film;
+  std::shared_ptr<DevelopedPicture> developed;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no parts
+  std::shared_ptr<const Film> get() {
     const std::lock_guard lock(mutex);
-    return frame;
+    return film;
   }
 };
 
@@ -94,8 +94,8 @@ struct HandleOf<SequenceObject> {
   static constexpr HandleType type = HandleType::Sequence;
 };
 template <>
-struct HandleOf<FrameObject> {
-  static constexpr HandleType type = HandleType::Frame;
+struct HandleOf<FilmObject> {
+  static constexpr HandleType type = HandleType::Film;
 };
 
 }  // namespace gradus::api

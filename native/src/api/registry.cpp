@@ -21,7 +21,7 @@ const char* name_of(HandleType type) {
       return "scene";
     case HandleType::Render:
       return "render";
-    case HandleType::Frame:
+    case HandleType::Film:
       return "frame";
     case HandleType::Sequence:
       return "sequence";

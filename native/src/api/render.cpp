@@ -12,7 +12,7 @@ using namespace gradus;
 namespace gradus::api {
 namespace {
 
-std::shared_ptr<RenderObject> start(GradusScene scene, const GradusSettings* settings, std::shared_ptr<const Frame> resumed) {
+std::shared_ptr<RenderObject> start(GradusScene scene, const GradusSettings* settings, std::shared_ptr<const Film> resumed) {
   const GradusSettings copy = read_struct(settings, "settings", default_settings());
   const auto object = find_handle<SceneObject>(scene);
   return std::make_shared<RenderObject>(object->scene.device(), object->snapshot(), copy, std::move(resumed));
@@ -28,10 +28,10 @@ GradusError gradus_render_start(GradusScene scene, const GradusSettings* setting
   });
 }
 
-GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFrame frame, GradusRender* render) {
+GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFilm film, GradusRender* render) {
   return api::guard([&] {
     api::require(render, "render") = 0;
-    *render = api::add_handle(api::start(scene, settings, api::find_handle<api::FrameObject>(frame)->get()));
+    *render = api::add_handle(api::start(scene, settings, api::find_handle<api::FilmObject>(film)->get()));
   });
 }
 
@@ -91,12 +91,12 @@ GradusError gradus_render_stats(GradusRender render, const char** json) {
   });
 }
 
-GradusError gradus_render_frame(GradusRender render, GradusFrame* frame) {
+GradusError gradus_render_film(GradusRender render, GradusFilm* film) {
   return api::guard([&] {
-    api::require(frame, "frame") = 0;
+    api::require(film, "frame") = 0;
     const auto from = api::find_handle<api::RenderObject>(render);
-    auto object = std::make_shared<api::FrameObject>(from->device);
-    object->frame = from->render.frame();
-    *frame = api::add_handle(std::move(object));
+    auto object = std::make_shared<api::FilmObject>(from->device);
+    object->film = from->render.film();
+    *film = api::add_handle(std::move(object));
   });
 }

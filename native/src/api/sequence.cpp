@@ -20,7 +20,7 @@ SequenceSettings settings_of(const GradusSequenceSettings& given) {
 }
 
 // With the sequence's lock.
-void require_rest(const SequenceObject& object) {
+void require_idle(const SequenceObject& object) {
   const auto running = object.running.lock();
   if (running && !running->render.wait(0.0)) throw invalid_operation("a frame of the sequence is still being rendered");
 }
@@ -66,7 +66,7 @@ GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene, c
     const GradusSettings copy = api::read_struct(settings, "settings", default_settings());
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
-    api::require_rest(*object);
+    api::require_idle(*object);
     *render = api::run(object.get(), object->sequence->sample(api::find_handle<api::SceneObject>(scene)->snapshot(), copy));
   });
 }
@@ -76,7 +76,7 @@ GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusScene scene, 
     const GradusSettings copy = api::read_struct(settings, "settings", default_settings());
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
-    api::require_rest(*object);
+    api::require_idle(*object);
     object->sequence->pass_by(api::find_handle<api::SceneObject>(scene)->snapshot(), copy);
   });
 }
@@ -85,7 +85,7 @@ GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last) {
   return api::guard([&] {
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
-    api::require_rest(*object);
+    api::require_idle(*object);
     object->sequence->end_at(last);
   });
 }
@@ -100,7 +100,7 @@ GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, cons
     }
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
-    api::require_rest(*object);
+    api::require_idle(*object);
     *render = api::run(object.get(), object->sequence->deliver(frame, settings != nullptr ? &copy : nullptr));
   });
 }

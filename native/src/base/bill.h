@@ -8,15 +8,15 @@
 namespace gradus {
 
 // Adds what passes while it lives: wall time, and CPU time of the whole process.
-class Bill {
+class ScopedTimer {
  public:
-  Bill(double* seconds, double* cpu_seconds) : seconds_(seconds), cpu_seconds_(cpu_seconds) {}
-  ~Bill() {
+  ScopedTimer(double* seconds, double* cpu_seconds) : seconds_(seconds), cpu_seconds_(cpu_seconds) {}
+  ~ScopedTimer() {
     *seconds_ += clock_.seconds();
     *cpu_seconds_ += 1e-9 * double(process_cpu_nanoseconds() - cpu_);
   }
-  Bill(const Bill&) = delete;
-  Bill& operator=(const Bill&) = delete;
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
 
  private:
   double *const seconds_, *const cpu_seconds_;

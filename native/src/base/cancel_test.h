@@ -5,6 +5,6 @@
 
 namespace gradus {
 
-using CancelTest = std::function<bool()>;
+using CancelCheck = std::function<bool()>;
 
 }  // namespace gradus

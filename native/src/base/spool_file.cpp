@@ -12,7 +12,7 @@
 
 namespace gradus {
 
-SpoolFile::SpoolFile() : folder_(temporary_place()) {
+SpoolFile::SpoolFile() : folder_(temporary_path()) {
   std::string name = folder_ + "/gradus-XXXXXX";
   descriptor_ = mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) fail("make", errno);

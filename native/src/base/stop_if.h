@@ -7,7 +7,7 @@
 namespace gradus {
 
 // Throws the Error CANCELLED where it is to end.
-inline void stop_if(const CancelTest& cancel) {
+inline void throw_if_cancelled(const CancelCheck& cancel) {
   if (cancel()) throw cancelled();
 }
 

@@ -28,7 +28,7 @@ void remove_unlocked(const fs::path& folder) {
   close(lock);
 }
 
-void remove_dead_folders(const fs::path& place) {
+void remove_stale_folders(const fs::path& place) {
   std::error_code problem;
   for (fs::directory_iterator entry(place, problem), end; !problem && entry != end; entry.increment(problem)) {
     if (entry->path().filename().string().rfind(kPrefix, 0) == 0) remove_unlocked(entry->path());
@@ -37,15 +37,15 @@ void remove_dead_folders(const fs::path& place) {
 
 }  // namespace
 
-std::string temporary_place() {
+std::string temporary_path() {
   std::error_code error;
   const fs::path place = fs::temp_directory_path(error);
   return error ? "/tmp" : place.string();
 }
 
 TemporaryFolder::TemporaryFolder() {
-  const fs::path place = temporary_place();
-  remove_dead_folders(place);
+  const fs::path place = temporary_path();
+  remove_stale_folders(place);
   const auto fail = [&](int reason) {
     throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make a temporary folder in " + place.string() + ": " + std::strerror(reason));
   };

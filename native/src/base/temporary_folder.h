@@ -22,6 +22,6 @@ class TemporaryFolder {
 };
 
 // Where temporary files lie: TMPDIR or what the system has in its place.
-std::string temporary_place();
+std::string temporary_path();
 
 }  // namespace gradus

@@ -7,8 +7,8 @@
 namespace gradus {
 
 int arena_size(uint32_t threads) {
-  const size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return int(std::clamp<size_t>(threads, 1, std::max<size_t>(most, 1)));
+  const size_t maximum = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return int(std::clamp<size_t>(threads, 1, std::max<size_t>(maximum, 1)));
 }
 
 }  // namespace gradus

@@ -82,12 +82,12 @@ void Closures::make_room() {
   }
   // There are fewer kinds of lobes than places: some two are of one kind.
   size_t first = 0, second = 1;
-  float least = kInfinity;
+  float minimum = kInfinity;
   for (size_t i = 0; i < lobes_.size(); i++) {
     for (size_t j = i + 1; j < lobes_.size(); j++) {
       const float cost = merge_cost(lobes_[i], lobes_[j]);
-      if (cost < least) {
-        least = cost;
+      if (cost < minimum) {
+        minimum = cost;
         first = i;
         second = j;
       }
@@ -179,9 +179,9 @@ void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold)
   float reflected = mean_component(albedo.reflected);
   float transmitted = mean_component(albedo.transmitted);
   const uint8_t sides = sides_of(lobe.type);
-  const float least = is_dirac(lobe.type) ? 0.0f : kSmallestShare * mean_component(lobe.weight);
-  reflected = sides & kReflects ? std::max(reflected, least) : 0.0f;
-  transmitted = sides & kTransmits ? std::max(transmitted, least) : 0.0f;
+  const float minimum = is_dirac(lobe.type) ? 0.0f : kSmallestShare * mean_component(lobe.weight);
+  reflected = sides & kReflects ? std::max(reflected, minimum) : 0.0f;
+  transmitted = sides & kTransmits ? std::max(transmitted, minimum) : 0.0f;
   lobe.sample_weight = reflected + transmitted;
   if (is_dirac(lobe.type)) {
     dirac_count_[static_cast<size_t>(ScatterClass::Reflection)] += (sides & kReflects) != 0;

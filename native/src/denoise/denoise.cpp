@@ -26,7 +26,7 @@ Image packed(const float* pixels, size_t stride, size_t count) {
 // The network, for images of one size.
 class Network {
  public:
-  Network(const OidnApi& api, int width, int height, uint32_t threads, const CancelTest& cancel)
+  Network(const OidnApi& api, int width, int height, uint32_t threads, const CancelCheck& cancel)
       : api_(api), width_(size_t(width)), height_(size_t(height)), cancel_(cancel), device_(api.new_device(kOidnCpu), api.release_device) {
     if (!device_) throw failure("no device");
     api_.set_device_int(device_.get(), "numThreads", int(threads));
@@ -55,37 +55,37 @@ class Network {
     api_.set_filter_bool(filter.get(), "hdr", true);
     api_.set_filter_bool(filter.get(), "cleanAux", true);
     api_.set_filter_int(filter.get(), "quality", kOidnQualityHigh);
-    api_.set_filter_progress(filter.get(), &goes_on, const_cast<CancelTest*>(&cancel_));
+    api_.set_filter_progress(filter.get(), &continues, const_cast<CancelCheck*>(&cancel_));
     api_.commit_filter(filter.get());
     check();
     api_.execute_filter(filter.get());
     check();
   }
 
-  static bool goes_on(void* cancel, double /*done*/) { return !(*static_cast<const CancelTest*>(cancel))(); }
+  static bool continues(void* cancel, double /*done*/) { return !(*static_cast<const CancelCheck*>(cancel))(); }
 
   void check() const {
     const char* text = nullptr;
     const int code = api_.get_device_error(device_.get(), &text);
     if (code == kOidnCancelled || cancel_()) throw cancelled();
-    if (code != 0) throw Error(GRADUS_ERROR_UNKNOWN, said(text));
+    if (code != 0) throw Error(GRADUS_ERROR_UNKNOWN, message_of(text));
   }
   Error failure(const char* otherwise) const {
     const char* text = nullptr;
     api_.get_device_error(device_.get(), &text);
-    return Error(GRADUS_ERROR_UNKNOWN, said(text ? text : otherwise));
+    return Error(GRADUS_ERROR_UNKNOWN, message_of(text ? text : otherwise));
   }
-  static std::string said(const char* text) { return std::string("Open Image Denoise: ") + (text ? text : "unknown error"); }
+  static std::string message_of(const char* text) { return std::string("Open Image Denoise: ") + (text ? text : "unknown error"); }
 
   const OidnApi& api_;
   const size_t width_, height_;
-  const CancelTest& cancel_;
+  const CancelCheck& cancel_;
   const std::unique_ptr<OidnApi::Device, void (*)(OidnApi::Device*)> device_;
 };
 
 }  // namespace
 
-std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const CancelTest& cancel) {
+std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const CancelCheck& cancel) {
   const size_t count = size_t(picture.width) * size_t(picture.height);
   Image color = packed(picture.color, picture.stride, count);
   Image albedo = picture.albedo ? packed(picture.albedo, 3, count) : Image();

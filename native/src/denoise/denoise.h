@@ -23,6 +23,6 @@ struct NoisyPicture {
 
 // RGB, 3 floats per pixel, finite. Numbers that are not count as 0. Throws Error CANCELLED, or UNKNOWN with the library's text. Call it
 // from outside of TBB's arenas: it brings its own, of `threads`.
-std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const CancelTest& cancel);
+std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const CancelCheck& cancel);
 
 }  // namespace gradus

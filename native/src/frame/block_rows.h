@@ -13,7 +13,7 @@ class BlockRows {
   BlockRows(std::vector<StoredPlane> planes, int width, int height);
   int blocks() const { return (height_ + kBlockRows - 1) / kBlockRows; }
   size_t bytes(int block) const { return size_t(rows(block)) * planes_.size() * row_bytes_; }
-  size_t most_bytes() const { return size_t{kBlockRows} * planes_.size() * row_bytes_; }  // of any
+  size_t max_bytes() const { return size_t{kBlockRows} * planes_.size() * row_bytes_; }  // of any
   // *bytes has their number.
   void gather(int block, Bytes* bytes) const;
   void scatter(const Bytes& bytes, int block) const;

@@ -15,10 +15,10 @@ constexpr float kObjects = 16777216.0f;
 bool is_sound(float value) { return is_finite(value); }
 bool is_sound(const Vec4& value) { return is_finite(Vec3(value)) && is_finite(value.w); }
 bool is_sound(const ShownPoint& shown) { return shown.object >= 0.0f && shown.object <= kObjects && is_finite(shown.depth); }
-bool is_sound(const RoughVertices& rough) {
-  return is_finite(rough.reflectance) && is_finite(rough.normal) && is_finite(rough.inverse_depth) && is_finite(rough.samples);
+bool is_sound(const NonSpecularVertices& non_specular) {
+  return is_finite(non_specular.reflectance) && is_finite(non_specular.normal) && is_finite(non_specular.inverse_depth) && is_finite(non_specular.samples);
 }
-bool is_sound(const RoughDetails& details) {
+bool is_sound(const NonSpecularDetails& details) {
   return is_finite(details.uv) && is_finite(details.emission) && is_finite(details.segments) && is_finite(details.object) &&
          is_finite(details.face);
 }
@@ -36,9 +36,9 @@ void check(const std::vector<Value>& plane, const char* what) {
 
 }  // namespace
 
-void check_planes(const Frame& frame) {
-  for (const ComponentPlanes& planes : frame.components) {
-    for (const auto& half : planes.rough) check(half, "first rough vertices");
+void check_planes(const Film& film) {
+  for (const ComponentPlanes& planes : film.components) {
+    for (const auto& half : planes.non_specular) check(half, "first rough vertices");
     check(planes.details, "details of vertices");
     check(planes.motion, "motion");
     check(planes.tracked, "causes of lost motion");

@@ -6,6 +6,6 @@
 namespace gradus {
 
 // Of what passes of components are made of, by the threads of the caller's arena. Throws invalid_argument.
-void check_planes(const Frame& frame);
+void check_planes(const Film& film);
 
 }  // namespace gradus

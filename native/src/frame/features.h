@@ -21,11 +21,11 @@ struct Features {
   FeatureImage depth;   // length of the path to where the others are taken, 0 where it meets nothing such
 };
 
-bool has_features(const Frame& frame);
-bool has_features(const FrameHeader& header);
+bool has_features(const Film& film);
+bool has_features(const FilmHeader& header);
 // All three. halves: both, or one alone. Throws invalid_operation for a frame without them.
-Features read_features(const Frame& frame, HalfRange halves = {});
+Features read_features(const Film& film, HalfRange halves = {});
 // One of the passes that are kept in halves; else as above.
-FeatureImage read_feature(const Frame& frame, uint32_t pass, HalfRange halves = {});
+FeatureImage read_feature(const Film& film, uint32_t pass, HalfRange halves = {});
 
 }  // namespace gradus

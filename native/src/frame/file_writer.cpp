@@ -25,12 +25,12 @@ void sync_folder_of(const std::string& path) {
 }
 
 // A sync cannot be cancelled. That of half a frame of 4K, all at its end, takes seconds, or many on a slow disk.
-constexpr size_t kMostUnsynced = size_t{1} << 25;
+constexpr size_t kMaxUnsynced = size_t{1} << 25;
 
 }  // namespace
 
 FileWriter::FileWriter(const std::string& path, Durable durable) : path_(path), durable_(durable) {
-  const PartFile part = make_part_file(path);
+  const TemporaryFile part = make_temporary_file(path);
   if (part.descriptor < 0) fail("create");
   temporary_ = part.name;
   file_ = fdopen(part.descriptor, "wb");
@@ -54,7 +54,7 @@ void FileWriter::fail(const char* action) const {
 void FileWriter::write(const void* data, size_t size) {
   if (size > 0 && std::fwrite(data, 1, size, file_) != size) fail("write");
   unsynced_ += size;
-  if (durable_ == Durable::kYes && unsynced_ >= kMostUnsynced) sync();
+  if (durable_ == Durable::kYes && unsynced_ >= kMaxUnsynced) sync();
 }
 
 void FileWriter::sync() {

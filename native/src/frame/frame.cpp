@@ -15,7 +15,7 @@ void Counters::add(const Counters& other) {
   }
 }
 
-Frame::Frame(uint32_t full_width_, uint32_t full_height_, const Region& region_, int channels_, int components_, bool gradients_)
+Film::Film(uint32_t full_width_, uint32_t full_height_, const Region& region_, int channels_, int components_, bool gradients_)
     : full_width(full_width_), full_height(full_height_), region(region_), channels(channels_), gradients(gradients_) {
   const auto pixels = static_cast<size_t>(region.area());
   components.resize(static_cast<size_t>(components_));
@@ -37,19 +37,19 @@ Frame::Frame(uint32_t full_width_, uint32_t full_height_, const Region& region_,
 
 namespace {
 
-uint64_t bytes_of(const PixelLinks& links) { return links.pixel.size() * sizeof(int32_t) + links.off_centre.size() * sizeof(Vec2); }
+uint64_t bytes_of(const PixelCorrespondence& correspondence) { return correspondence.pixel.size() * sizeof(int32_t) + correspondence.off_centre.size() * sizeof(Vec2); }
 
 }  // namespace
 
-uint64_t Frame::memory_bytes() const {
-  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + bytes_of(replayed.links);
-  for (const PixelLinks& own : replayed.of_component) bytes += bytes_of(own);
+uint64_t Film::memory_bytes() const {
+  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + bytes_of(replayed.correspondence);
+  for (const PixelCorrespondence& own : replayed.of_component) bytes += bytes_of(own);
   for (const ComponentPlanes& component : components) {
     bytes +=
         component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float) + component.shown.size() * sizeof(ShownPoint);
-    bytes += component.details.size() * sizeof(RoughDetails);
+    bytes += component.details.size() * sizeof(NonSpecularDetails);
     for (int half = 0; half < kHalves; ++half) {
-      bytes += component.primal[half].size() * sizeof(Radiance) + component.rough[half].size() * sizeof(RoughVertices);
+      bytes += component.primal[half].size() * sizeof(Radiance) + component.non_specular[half].size() * sizeof(NonSpecularVertices);
       for (const auto& plane : component.gradient[half]) {
         bytes += plane.size() * sizeof(Radiance);
       }
@@ -67,19 +67,19 @@ uint64_t Frame::memory_bytes() const {
   return bytes;
 }
 
-std::string component_names(const Frame& frame) {
+std::string component_names(const Film& film) {
   std::string names;
-  for (const ComponentPlanes& planes : frame.components) add_item(&names, planes.name);
+  for (const ComponentPlanes& planes : film.components) add_item(&names, planes.name);
   return names;
 }
 
-bool same_components(const Frame& a, const Frame& b) {
+bool same_components(const Film& a, const Film& b) {
   const auto same = [](const ComponentPlanes& p, const ComponentPlanes& q) { return p.name == q.name && p.expression == q.expression; };
   return std::equal(a.components.begin(), a.components.end(), b.components.begin(), b.components.end(), same);
 }
 
-int find_component(const Frame& frame, std::string_view name) {
-  const auto& list = frame.components;
+int find_component(const Film& film, std::string_view name) {
+  const auto& list = film.components;
   const auto found = std::find_if(list.begin(), list.end(), [&](const ComponentPlanes& planes) { return planes.name == name; });
   return found != list.end() ? int(found - list.begin()) : -1;
 }
@@ -92,56 +92,56 @@ ComponentPlanes black_component(std::string_view name, const ComponentPlanes& li
   std::fill(black.motion.begin(), black.motion.end(), Vec4(0.0f));
   std::fill(black.tracked.begin(), black.tracked.end(), kNothingToTrack);
   std::fill(black.shown.begin(), black.shown.end(), ShownPoint{});
-  std::fill(black.details.begin(), black.details.end(), RoughDetails{});
+  std::fill(black.details.begin(), black.details.end(), NonSpecularDetails{});
   for (int half = 0; half < kHalves; ++half) {
     std::fill(black.primal[half].begin(), black.primal[half].end(), Radiance(0.0f));
     for (auto& plane : black.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));
-    std::fill(black.rough[half].begin(), black.rough[half].end(), RoughVertices{});
+    std::fill(black.non_specular[half].begin(), black.non_specular[half].end(), NonSpecularVertices{});
   }
   return black;
 }
 
 }  // namespace
 
-void keep_component(std::string_view name, Frame* frame) {
-  keep_components({std::string(name)}, frame);
-  SampleSources& replayed = frame->replayed;
-  if (replayed.has_own(0)) replayed.links = std::move(replayed.of_component[0]);
+void select_component(std::string_view name, Film* film) {
+  select_components({std::string(name)}, film);
+  ReplayMap& replayed = film->replayed;
+  if (replayed.has_component_map(0)) replayed.correspondence = std::move(replayed.of_component[0]);
   replayed.of_component.clear();
 }
 
-void keep_components(const std::vector<std::string>& names, Frame* frame) {
+void select_components(const std::vector<std::string>& names, Film* film) {
   std::vector<ComponentPlanes> kept;
-  std::vector<PixelLinks> sources;
+  std::vector<PixelCorrespondence> sources;
   for (const std::string& name : names) {
-    const int place = find_component(*frame, name);
-    const bool has_own = place >= 0 && frame->replayed.has_own(place);
-    kept.push_back(place >= 0 ? ComponentPlanes{} : black_component(name, frame->components[0]));
-    sources.push_back(has_own ? std::move(frame->replayed.of_component[size_t(place)]) : PixelLinks{});
+    const int place = find_component(*film, name);
+    const bool has_component_map = place >= 0 && film->replayed.has_component_map(place);
+    kept.push_back(place >= 0 ? ComponentPlanes{} : black_component(name, film->components[0]));
+    sources.push_back(has_component_map ? std::move(film->replayed.of_component[size_t(place)]) : PixelCorrespondence{});
   }
   for (size_t k = 0; k < names.size(); ++k) {
-    const int place = find_component(*frame, names[k]);
-    if (place >= 0) kept[k] = std::move(frame->components[size_t(place)]);
+    const int place = find_component(*film, names[k]);
+    if (place >= 0) kept[k] = std::move(film->components[size_t(place)]);
   }
-  frame->components = std::move(kept);
-  frame->replayed.of_component = std::move(sources);
+  film->components = std::move(kept);
+  film->replayed.of_component = std::move(sources);
 }
 
-double mean_samples(const Frame& frame) {
+double mean_samples(const Film& film) {
   uint64_t sum = 0;
-  for (const std::vector<uint32_t>& counts : frame.count) sum = std::accumulate(counts.begin(), counts.end(), sum);
-  return frame.region.area() > 0 ? double(sum) / double(frame.region.area()) : 0.0;
+  for (const std::vector<uint32_t>& counts : film.count) sum = std::accumulate(counts.begin(), counts.end(), sum);
+  return film.region.area() > 0 ? double(sum) / double(film.region.area()) : 0.0;
 }
 
-std::vector<uint32_t> samples_of_pixels(const Frame& frame) {
-  std::vector<uint32_t> samples = frame.count[0];
-  for (size_t i = 0; i < samples.size(); ++i) samples[i] += frame.count[1][i];
+std::vector<uint32_t> samples_of_pixels(const Film& film) {
+  std::vector<uint32_t> samples = film.count[0];
+  for (size_t i = 0; i < samples.size(); ++i) samples[i] += film.count[1][i];
   return samples;
 }
 
-Region delivered_region(const Frame& frame) {
-  const uint32_t* r = frame.settings.region;
-  if (r[2] == 0 && r[3] == 0) return frame.region;
+Region delivered_region(const Film& film) {
+  const uint32_t* r = film.settings.region;
+  if (r[2] == 0 && r[3] == 0) return film.region;
   return {int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
 }
 

@@ -29,7 +29,7 @@ inline constexpr int kOffsetY[kOffsets] = {0, 1, 0, -1};
 inline constexpr int kHalves = 2;
 
 // Of the first rough vertices of a component's paths: sums over the samples that have come to one.
-struct RoughVertices {
+struct NonSpecularVertices {
   Rgb reflectance = Rgb(0.0f);
   Vec3 normal = Vec3(0.0f);  // in the world, as shaded
   // 1/length of the path, which is linear over a plane in the picture; 0: infinitely far.
@@ -41,7 +41,7 @@ inline constexpr uint32_t kNoSample = std::numeric_limits<uint32_t>::max();
 
 // More of these vertices, and of what shines, be it rough or not: sums over the segments at whose ends, or on which, there was one or the
 // other; what cannot be averaged is that of the first sample that met a surface.
-struct RoughDetails {
+struct NonSpecularDetails {
   Vec3 uv = Vec3(0.0f);      // u, v, 1; 0 without a UV map
   Rgb emission = Rgb(0.0f);  // radiance that shines from there
   float segments = 0.0f;
@@ -56,13 +56,13 @@ struct ShownPoint {
   float depth = 0.0f;   // length of the way; 0: it does not end
 };
 
-// One component of the decomposition: primal sums and gradient sums of both halves. Row-major over Frame::region.
+// One component of the decomposition: primal sums and gradient sums of both halves. Row-major over Film::region.
 struct ComponentPlanes {
   std::string name, expression;  // path/components.h
   std::array<std::vector<Radiance>, kHalves> primal;
   std::array<std::array<std::vector<Radiance>, kOffsets>, kHalves> gradient;  // empty where the integrator makes none
-  std::array<std::vector<RoughVertices>, kHalves> rough;                      // empty unless asked for
-  std::vector<RoughDetails> details;                                          // likewise
+  std::array<std::vector<NonSpecularVertices>, kHalves> non_specular;                      // empty unless asked for
+  std::vector<NonSpecularDetails> details;                                          // likewise
   // Of what the component shows at the centres of pixels: previous − now, now − next, in pixels; 1, or why that is not known
   // (motion/component_motion.h). Empty unless asked for.
   std::vector<Vec4> motion;
@@ -99,7 +99,7 @@ struct Counters {
 
 // How far an adaptive render has come (render/adaptive_sampling.h), so that it can go on as if it had not ended. By cells of the lattice,
 // row by row; empty where no such render can go on from the frame.
-struct SharedSamples {
+struct AdaptiveState {
   uint32_t mean = 0;             // samples of a pixel, on average over those that went on
   uint32_t uncounted = 0;        // the first of each pixel, taken by a render that was not adaptive: what they have cost is not known
   std::vector<uint64_t> rays;    // that the samples of a cell have cost
@@ -107,10 +107,10 @@ struct SharedSamples {
   bool is_done() const { return !stopped.empty() && std::find(stopped.begin(), stopped.end(), 0) == stopped.end(); }
 };
 
-class Frame {
+class Film {
  public:
   // full: size of the full frame; region: what is sampled (guard ring included); channels: 3, or 4 with a transparent film.
-  Frame(uint32_t full_width, uint32_t full_height, const Region& region, int channels, int components, bool gradients);
+  Film(uint32_t full_width, uint32_t full_height, const Region& region, int channels, int components, bool gradients);
 
   size_t index(int32_t x, int32_t y) const { return size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0); }
   uint64_t memory_bytes() const;
@@ -130,8 +130,8 @@ class Frame {
 
   // Sample numbers that were taken; of some pixels fewer, where tiles stopped early or the render was cancelled.
   SampleRanges samples;
-  SharedSamples shared;
-  SampleSources replayed;  // whose random numbers they have taken; no pixels: their own
+  AdaptiveState shared;
+  ReplayMap replayed;  // whose random numbers they have taken; no pixels: their own
   // Keys of what was sampled (contract 7.2) and settings that reading needs.
   GradusSettings settings{};
   uint64_t scene_key = 0;
@@ -139,22 +139,22 @@ class Frame {
 };
 
 // For people: "Diffuse, Residual".
-std::string component_names(const Frame& frame);
-bool same_components(const Frame& a, const Frame& b);
+std::string component_names(const Film& film);
+bool same_components(const Film& a, const Film& b);
 // -1: there is none.
-int find_component(const Frame& frame, std::string_view name);
+int find_component(const Film& film, std::string_view name);
 // As if no other had been sampled; black where the frame has none of that name.
-void keep_component(std::string_view name, Frame* frame);
+void select_component(std::string_view name, Film* film);
 // The same of several, which come in this order.
-void keep_components(const std::vector<std::string>& names, Frame* frame);
+void select_components(const std::vector<std::string>& names, Film* film);
 // Samples of the pixel with this index.
-inline uint32_t samples_at(const Frame& frame, size_t i) { return frame.count[0][i] + frame.count[1][i]; }
+inline uint32_t samples_at(const Film& film, size_t i) { return film.count[0][i] + film.count[1][i]; }
 // Samples of a pixel, on average over the region.
-double mean_samples(const Frame& frame);
+double mean_samples(const Film& film);
 // Samples of each pixel.
-std::vector<uint32_t> samples_of_pixels(const Frame& frame);
+std::vector<uint32_t> samples_of_pixels(const Film& film);
 // What was asked for, without the guard ring.
-Region delivered_region(const Frame& frame);
+Region delivered_region(const Film& film);
 
 // Which halves an image is read from: [first, last).
 struct HalfRange {
@@ -166,10 +166,10 @@ struct HalfRange {
 inline constexpr float kAbsentPair = std::numeric_limits<float>::quiet_NaN();
 
 // Rows of what read_images() gives, y counted from the region's first row. `offset`: kRight for dx, kUp for dy.
-void read_primal_row(const Frame& frame, int component, HalfRange halves, int y, float* row);
-void read_difference_row(const Frame& frame, int component, Offset offset, HalfRange halves, int y, float* row);
+void read_primal_row(const Film& film, int component, HalfRange halves, int y, float* row);
+void read_difference_row(const Film& film, int component, Offset offset, HalfRange halves, int y, float* row);
 
-// Images read from a frame: planes of the region, channels interleaved (Frame::channels each).
+// Images read from a frame: planes of the region, channels interleaved (Film::channels each).
 struct GradientImages {
   int width = 0, height = 0, channels = 3;
   std::vector<float> primal;  // mean
@@ -180,12 +180,12 @@ struct GradientImages {
 };
 
 // Merges halves and pairs.
-GradientImages read_images(const Frame& frame, int component);
+GradientImages read_images(const Film& film, int component);
 // Half the differences of the halves, (A − B)/2, in the place of primal, dx and dy: their squares estimate variances (contract 1.2), and
 // what is linear in those is so in these. Of a pixel with samples in one half alone, its mean: the square is no less than the variance on
 // average. A difference that a half lacks is absent.
-GradientImages read_half_differences(const Frame& frame, int component);
+GradientImages read_half_differences(const Film& film, int component);
 // Fills the deviations.
-void read_deviations(const Frame& frame, int component, GradientImages* images);
+void read_deviations(const Film& film, int component, GradientImages* images);
 
 }  // namespace gradus

@@ -6,12 +6,12 @@
 
 namespace gradus {
 
-struct FrameHeader {
+struct FilmHeader {
   Region region;
   int channels = 3;
   bool gradients = false;
   uint64_t planes = 0;  // of passes, a bit each
-  KeptOfComponents of_components;
+  ComponentContent of_components;
   GradusSettings settings{};
   SampleRanges samples;
   uint64_t scene_key = 0;
@@ -19,15 +19,15 @@ struct FrameHeader {
   int32_t replayed_frame = 0;  // of a replay
   uint64_t replayed_key = 0;   // of its scene; 0: not known
   uint32_t replayed_seed = 0;
-  SharedSamples shared;
+  AdaptiveState shared;
   std::vector<std::string> warnings;  // what the file asks for that this version does not have
 };
 
-inline FrameHeader header_of(const Frame& frame) {
-  const SampleSources& replayed = frame.replayed;
-  return {frame.region,       frame.channels, frame.gradients, kept_passes(frame), kept_of_components(frame),
-          frame.settings,     frame.samples,  frame.scene_key, frame.frame_number, replayed.stream_frame,
-          replayed.scene_key, replayed.seed,  frame.shared,    {}};
+inline FilmHeader header_of(const Film& film) {
+  const ReplayMap& replayed = film.replayed;
+  return {film.region,       film.channels, film.gradients, film_passes(film), component_content(film),
+          film.settings,     film.samples,  film.scene_key, film.frame_number, replayed.stream_frame,
+          replayed.scene_key, replayed.seed,  film.shared,    {}};
 }
 
 }  // namespace gradus

@@ -36,8 +36,8 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
 }
 
 // A vertex of one sample.
-inline void add_rough(const RoughVertices& vertex, RoughVertices* sum, Counters* counters) {
-  const RoughVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal, sum->inverse_depth + vertex.inverse_depth,
+inline void add_non_specular(const NonSpecularVertices& vertex, NonSpecularVertices* sum, Counters* counters) {
+  const NonSpecularVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal, sum->inverse_depth + vertex.inverse_depth,
                            sum->samples + vertex.samples};
   if (fits(Radiance(next.reflectance, next.inverse_depth)) && fits(Radiance(next.normal, next.samples))) {
     *sum = next;
@@ -47,8 +47,8 @@ inline void add_rough(const RoughVertices& vertex, RoughVertices* sum, Counters*
 }
 
 // Of a segment of one sample, or of other samples: the first of all tells which object and face it is.
-inline void add_details(const RoughDetails& more, RoughDetails* sum, Counters* counters) {
-  RoughDetails next = more.sample < sum->sample ? more : *sum;
+inline void add_details(const NonSpecularDetails& more, NonSpecularDetails* sum, Counters* counters) {
+  NonSpecularDetails next = more.sample < sum->sample ? more : *sum;
   next.uv = sum->uv + more.uv;
   next.emission = sum->emission + more.emission;
   next.segments = sum->segments + more.segments;

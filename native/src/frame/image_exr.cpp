@@ -119,7 +119,7 @@ std::vector<std::string> image_channels(const std::string& path) {
   });
 }
 
-bool is_frame_file(const std::string& path) {
+bool is_film_file(const std::string& path) {
   return reading(path, [&] { return Imf::InputFile(path.c_str()).header().findTypedAttribute<Imf::StringAttribute>("gradus") != nullptr; });
 }
 

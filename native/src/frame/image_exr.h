@@ -26,6 +26,6 @@ LoadedImage load_rgb(const std::string& path, const std::string& layer);
 // Names of all channels.
 std::vector<std::string> image_channels(const std::string& path);
 // The file is a frame store of Gradus, not an image.
-bool is_frame_file(const std::string& path);
+bool is_film_file(const std::string& path);
 
 }  // namespace gradus

@@ -42,14 +42,14 @@ pid_t process_of(const std::string& name) {
 bool is_alive(pid_t process) { return kill(process, 0) == 0 || errno != ESRCH; }
 
 // By the lock, too: a container on this host may have numbers of its own for its processes.
-void remove_unlocked(const fs::path& part) {
-  const int descriptor = open(part.c_str(), O_WRONLY | O_CLOEXEC);
+void remove_unlocked(const fs::path& temporary) {
+  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor < 0) return;
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(part.c_str());
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(temporary.c_str());
   close(descriptor);
 }
 
-void remove_dead_parts(const fs::path& folder) {
+void remove_stale_files(const fs::path& folder) {
   std::error_code problem;
   for (fs::directory_iterator file(folder, problem), end; !problem && file != end; file.increment(problem)) {
     const pid_t process = process_of(file->path().filename().string());
@@ -82,27 +82,27 @@ std::string first_free(const std::string& path, const Make& make) {
 
 }  // namespace
 
-PartFile make_part_file(const std::string& path) {
+TemporaryFile make_temporary_file(const std::string& path) {
   const fs::path parent = fs::path(path).parent_path(), folder = parent.empty() ? "." : parent;
-  if (is_first_use(folder)) remove_dead_parts(folder);
-  PartFile part;
-  part.name = first_free(path, [&](const std::string& name) {
-    part.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    return part.descriptor >= 0;
+  if (is_first_use(folder)) remove_stale_files(folder);
+  TemporaryFile temporary;
+  temporary.name = first_free(path, [&](const std::string& name) {
+    temporary.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return temporary.descriptor >= 0;
   });
-  if (part.descriptor >= 0) flock(part.descriptor, LOCK_EX | LOCK_NB);  // where it cannot be, the process's number is enough
-  return part;
+  if (temporary.descriptor >= 0) flock(temporary.descriptor, LOCK_EX | LOCK_NB);  // where it cannot be, the process's number is enough
+  return temporary;
 }
 
-bool link_file(const std::string& path, const std::string& name) {
+bool hard_link_file(const std::string& path, const std::string& name) {
   bool linked = false;
-  const std::string part = first_free(name, [&](const std::string& free) {
+  const std::string temporary = first_free(name, [&](const std::string& free) {
     linked = link(path.c_str(), free.c_str()) == 0;
     return linked;
   });
   if (!linked) return false;
-  const bool named = rename(part.c_str(), name.c_str()) == 0;
-  unlink(part.c_str());  // it stays where both were names of one file already
+  const bool named = rename(temporary.c_str(), name.c_str()) == 0;
+  unlink(temporary.c_str());  // it stays where both were names of one file already
   return named;
 }
 

@@ -6,14 +6,14 @@
 
 namespace gradus {
 
-struct PartFile {
+struct TemporaryFile {
   std::string name;
   int descriptor = -1;  // -1: it could not be made, for errno's reason
 };
 
 // New and locked. Those that dead processes of this host have left in its folder are removed.
-PartFile make_part_file(const std::string& path);
+TemporaryFile make_temporary_file(const std::string& path);
 // A second name for a file in the same folder, in the place of what has it. False: not every file system can do it.
-bool link_file(const std::string& path, const std::string& name);
+bool hard_link_file(const std::string& path, const std::string& name);
 
 }  // namespace gradus

@@ -21,41 +21,41 @@ std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
   return planes;
 }
 
-void keep_of_components(const KeptOfComponents& kept, Frame* frame) {
-  const auto pixels = size_t(frame->region.area());
-  for (ComponentPlanes& planes : frame->components) {
-    for (auto& half : planes.rough) half.assign(kept.rough ? pixels : 0, RoughVertices{});
-    planes.details.assign(kept.details ? pixels : 0, RoughDetails{});
-    planes.motion.assign(kept.motion ? pixels : 0, Vec4(0.0f));
-    planes.tracked.assign(kept.motion ? pixels : 0, kNothingToTrack);
-    planes.shown.assign(kept.shown ? pixels : 0, ShownPoint{});
+void allocate_component_content(const ComponentContent& content, Film* film) {
+  const auto pixels = size_t(film->region.area());
+  for (ComponentPlanes& planes : film->components) {
+    for (auto& half : planes.non_specular) half.assign(content.non_specular ? pixels : 0, NonSpecularVertices{});
+    planes.details.assign(content.details ? pixels : 0, NonSpecularDetails{});
+    planes.motion.assign(content.motion ? pixels : 0, Vec4(0.0f));
+    planes.tracked.assign(content.motion ? pixels : 0, kNothingToTrack);
+    planes.shown.assign(content.shown ? pixels : 0, ShownPoint{});
   }
 }
 
-KeptOfComponents kept_of_components(const Frame& frame) {
-  const ComponentPlanes& planes = frame.components.front();
-  return {!planes.rough[0].empty(), !planes.details.empty(), !planes.motion.empty(), !planes.shown.empty()};
+ComponentContent component_content(const Film& film) {
+  const ComponentPlanes& planes = film.components.front();
+  return {!planes.non_specular[0].empty(), !planes.details.empty(), !planes.motion.empty(), !planes.shown.empty()};
 }
 
-uint64_t kept_passes(const Frame& frame) {
+uint64_t film_passes(const Film& film) {
   uint64_t passes = 0;
-  for (const PassPlane& plane : frame.passes) passes |= uint64_t{1} << plane.pass;
+  for (const PassPlane& plane : film.passes) passes |= uint64_t{1} << plane.pass;
   return passes;
 }
 
-const PassPlane* find_plane(const Frame& frame, uint32_t pass) {
-  const auto plane = std::find_if(frame.passes.begin(), frame.passes.end(), [&](const PassPlane& p) { return p.pass == pass; });
-  return plane != frame.passes.end() ? &*plane : nullptr;
+const PassPlane* find_plane(const Film& film, uint32_t pass) {
+  const auto plane = std::find_if(film.passes.begin(), film.passes.end(), [&](const PassPlane& p) { return p.pass == pass; });
+  return plane != film.passes.end() ? &*plane : nullptr;
 }
 
-uint64_t frame_bytes_per_pixel(int components, bool gradients, uint64_t passes, const KeptOfComponents& kept) {
+uint64_t film_bytes_per_pixel(int components, bool gradients, uint64_t passes, const ComponentContent& content) {
   const uint64_t offsets = gradients ? uint64_t{kOffsets} : 0, radiances = uint64_t(components) * (1 + offsets);
-  const uint64_t features = kept.rough ? uint64_t(components) * sizeof(RoughVertices) : 0;
+  const uint64_t features = content.non_specular ? uint64_t(components) * sizeof(NonSpecularVertices) : 0;
   const uint64_t half = radiances * sizeof(Radiance) + features + sizeof(uint32_t) + offsets * sizeof(float);
   const uint64_t others =
-      (kept.details ? sizeof(RoughDetails) : 0) + (kept.motion ? sizeof(Vec4) + sizeof(float) : 0) + (kept.shown ? sizeof(ShownPoint) : 0);
+      (content.details ? sizeof(NonSpecularDetails) : 0) + (content.motion ? sizeof(Vec4) + sizeof(float) : 0) + (content.shown ? sizeof(ShownPoint) : 0);
   return kHalves * half + uint64_t(components) * others + pass_bytes_per_pixel(passes) +
-         (wants(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
+         (has_bit(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
 }
 
 }  // namespace gradus

@@ -28,8 +28,8 @@ struct PlacedBlock {
 // The rows of all parts, as their blocks follow each other in the file.
 class PartRows {
  public:
-  PartRows(const std::vector<StoredPart>& parts, const Frame& frame) {
-    for (const StoredPart& part : parts) rows_.emplace_back(part.planes, frame.region.width(), frame.region.height());
+  PartRows(const std::vector<StoredPart>& parts, const Film& film) {
+    for (const StoredPart& part : parts) rows_.emplace_back(part.planes, film.region.width(), film.region.height());
   }
   int blocks() const { return int(rows_.size()) * rows_.front().blocks(); }
   PlacedBlock at(int i) const { return {i / rows_.front().blocks(), i % rows_.front().blocks()}; }
@@ -44,7 +44,7 @@ struct PackedBlock {
   Bytes bytes;
 };
 
-void write_blocks(const PartRows& rows, const CancelTest& cancel, BlockFile* file) {
+void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* file) {
   tbb::enumerable_thread_specific<BlockCodec> codecs;
   int next = 0;
   const auto number = [&](tbb::flow_control& control) {
@@ -52,7 +52,7 @@ void write_blocks(const PartRows& rows, const CancelTest& cancel, BlockFile* fil
     return next++;
   };
   const auto pack = [&](int i) {
-    stop_if(cancel);
+    throw_if_cancelled(cancel);
     const PlacedBlock place = rows.at(i);
     Bytes bytes(rows.of(place.part).bytes(place.block));
     rows.of(place.part).gather(place.block, &bytes);
@@ -66,7 +66,7 @@ void write_blocks(const PartRows& rows, const CancelTest& cancel, BlockFile* fil
 }
 
 // numbers: of the parts in the file.
-void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std::vector<int>& numbers, const CancelTest& cancel) {
+void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std::vector<int>& numbers, const CancelCheck& cancel) {
   struct Reader {
     BlockCodec codec;
     Bytes packed, bytes;
@@ -76,12 +76,12 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std:
   for (const int number : numbers) inputs.emplace_back(*file, number);
   const int top = file->header(0).dataWindow().min.y;
   tbb::parallel_for(0, rows.blocks(), [&](int i) {
-    stop_if(cancel);
+    throw_if_cancelled(cancel);
     const auto [part, block] = rows.at(i);
     const BlockRows& own = rows.of(part);
     Reader& reader = readers.local();
     reader.bytes.resize(own.bytes(block));
-    reader.packed.resize(own.most_bytes());  // OpenEXR reads as much, if the file says so
+    reader.packed.resize(own.max_bytes());  // OpenEXR reads as much, if the file says so
     int size = int(reader.packed.size());
     inputs[size_t(part)].rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()), size);
     if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes)) throw invalid_argument("a block of its rows is broken");
@@ -89,17 +89,17 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std:
   });
 }
 
-void check_sources(const Frame& frame) {
-  const auto check = [&](const PixelLinks& links) {
-    for (const int32_t pixel : links.pixel) {
-      if (pixel < kNoLink || pixel >= frame.region.area()) throw invalid_argument("it replays pixels that do not exist");
+void check_sources(const Film& film) {
+  const auto check = [&](const PixelCorrespondence& correspondence) {
+    for (const int32_t pixel : correspondence.pixel) {
+      if (pixel < kNoCorrespondence || pixel >= film.region.area()) throw invalid_argument("it replays pixels that do not exist");
     }
-    for (const Vec2& off : links.off_centre) {
+    for (const Vec2& off : correspondence.off_centre) {
       if (!(std::abs(off.x) <= 0.5f && std::abs(off.y) <= 0.5f)) throw invalid_argument("it replays ways that end in no pixel");
     }
   };
-  check(frame.replayed.links);
-  for (const PixelLinks& own : frame.replayed.of_component) check(own);
+  check(film.replayed.correspondence);
+  for (const PixelCorrespondence& own : film.replayed.of_component) check(own);
 }
 
 Imf::MultiPartInputFile open_file(const std::string& path) {
@@ -116,10 +116,10 @@ int number_of(const Imf::MultiPartInputFile& file, const std::string& part) {
 }
 
 // only: the component to be read; nullptr: all.
-Frame read_frame(const std::string& path, StoredContent content, const std::string* only, const CancelTest& cancel) {
+Film read_film(const std::string& path, StoredContent content, const std::string* only, const CancelCheck& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
-  Frame frame = make_frame(file.header(0), content, only);
-  const std::vector<StoredPart> parts = stored_parts(&frame);
+  Film film = make_frame(file.header(0), content, only);
+  const std::vector<StoredPart> parts = stored_parts(&film);
   const bool is_whole = content == StoredContent::kAll && only == nullptr;
   if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
   std::vector<int> numbers;
@@ -127,10 +127,10 @@ Frame read_frame(const std::string& path, StoredContent content, const std::stri
     numbers.push_back(number_of(file, part.name));
     check_part(file.header(numbers.back()), file.header(0), part);
   }
-  read_blocks(&file, PartRows(parts, frame), numbers, cancel);
-  check_sources(frame);
-  check_planes(frame);
-  return frame;
+  read_blocks(&file, PartRows(parts, film), numbers, cancel);
+  check_sources(film);
+  check_planes(film);
+  return film;
 }
 
 // read(): of the file at `path`. What it throws is told with that.
@@ -150,28 +150,28 @@ auto load(const std::string& path, const Read& read) {
 
 }  // namespace
 
-void save_frame(const Frame& frame, const std::string& path, const FrameWriting& how) {
+void save_film(const Film& film, const std::string& path, const FilmWriteOptions& how) {
   // The planes are only read here; the list is shared with reading, which writes them.
-  const std::vector<StoredPart> parts = stored_parts(const_cast<Frame*>(&frame));
+  const std::vector<StoredPart> parts = stored_parts(const_cast<Film*>(&film));
   const auto write = [&](WriterStream* stream) {
-    BlockFile file(make_headers(frame, parts), stream);
-    write_blocks(PartRows(parts, frame), how.cancel, &file);
+    BlockFile file(make_headers(film, parts), stream);
+    write_blocks(PartRows(parts, film), how.cancel, &file);
     file.finish();
   };
   write_exr(path, write, how.durable);
 }
 
-std::shared_ptr<Frame> load_frame(const std::string& path, StoredContent content, const CancelTest& cancel) {
-  return load(path, [&] { return std::make_shared<Frame>(read_frame(path, content, nullptr, cancel)); });
+std::shared_ptr<Film> load_film(const std::string& path, StoredContent content, const CancelCheck& cancel) {
+  return load(path, [&] { return std::make_shared<Film>(read_film(path, content, nullptr, cancel)); });
 }
 
-std::shared_ptr<Frame> load_component(const std::string& path, const std::string& name, StoredContent content, const CancelTest& cancel) {
-  auto frame = load(path, [&] { return std::make_shared<Frame>(read_frame(path, content, &name, cancel)); });
-  keep_component(name, frame.get());
-  return frame;
+std::shared_ptr<Film> load_component(const std::string& path, const std::string& name, StoredContent content, const CancelCheck& cancel) {
+  auto film = load(path, [&] { return std::make_shared<Film>(read_film(path, content, &name, cancel)); });
+  select_component(name, film.get());
+  return film;
 }
 
-FrameHeader load_header(const std::string& path) {
+FilmHeader load_header(const std::string& path) {
   return load(path, [&] { return read_header(open_file(path).header(0)); });
 }
 

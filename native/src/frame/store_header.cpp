@@ -21,11 +21,11 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormat = 9;
-constexpr size_t kMostStoredComponents = 64;
+constexpr size_t kMaxStoredComponents = 64;
 constexpr int kMaxSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
 
-// What is wrong with a file, as the exception that load_frame() throws.
+// What is wrong with a file, as the exception that load_film() throws.
 Error damaged(const std::string& why) { return invalid_argument(why); }
 
 std::string hex(uint64_t value) {
@@ -61,74 +61,74 @@ SampleRanges ranges_from_json(const json& j) {
   return SampleRanges(std::move(list));
 }
 
-json shared_to_json(const SharedSamples& shared) {
+json adaptive_state_to_json(const AdaptiveState& shared) {
   return {{"mean", shared.mean}, {"uncounted", shared.uncounted}, {"rays", shared.rays}, {"stopped", shared.stopped}};
 }
 
-SharedSamples shared_from_json(const json& j, const Region& region) {
-  SharedSamples shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
+AdaptiveState adaptive_state_from_json(const json& j, const Region& region) {
+  AdaptiveState shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
                        j.at("stopped").get<std::vector<uint8_t>>()};
-  const size_t cells = make_cells(region).size();
-  if (shared.rays.size() != cells || shared.stopped.size() != cells) throw damaged("its cells are wrong");
+  const size_t blocks = make_pixel_blocks(region).size();
+  if (shared.rays.size() != blocks || shared.stopped.size() != blocks) throw damaged("its cells are wrong");
   return shared;
 }
 
-json components_to_json(const Frame& frame) {
+json components_to_json(const Film& film) {
   json list = json::array();
-  for (const ComponentPlanes& planes : frame.components) list.push_back({planes.name, planes.expression});
+  for (const ComponentPlanes& planes : film.components) list.push_back({planes.name, planes.expression});
   return list;
 }
 
-void name_components(const json& list, Frame* frame) {
-  for (size_t i = 0; i < frame->components.size(); ++i) {
-    frame->components[i].name = list.at(i).at(0);
-    frame->components[i].expression = list.at(i).at(1);
+void name_components(const json& list, Film* film) {
+  for (size_t i = 0; i < film->components.size(); ++i) {
+    film->components[i].name = list.at(i).at(0);
+    film->components[i].expression = list.at(i).at(1);
   }
 }
 
-KeptOfComponents kept_from_json(const json& j) {
+ComponentContent component_content_from_json(const json& j) {
   return {j.at("rough"), j.value("details", false), j.at("motion"), j.at("shown")};  // once there were no details
 }
 
-json describe_samples(const Frame& frame) {
-  const KeptOfComponents kept = kept_of_components(frame);
+json describe_samples(const Film& film) {
+  const ComponentContent kept = component_content(film);
   return {{"format", kFormat},
           {"version", gradus_version_text()},
-          {"frame", frame.frame_number},
-          {"channels", frame.channels},
-          {"components", components_to_json(frame)},
-          {"rough", kept.rough},
+          {"frame", film.frame_number},
+          {"channels", film.channels},
+          {"components", components_to_json(film)},
+          {"rough", kept.non_specular},
           {"details", kept.details},
           {"motion", kept.motion},
           {"shown", kept.shown},
-          {"gradients", frame.gradients},
-          {"sampling_key", hex(sampling_key(frame.settings))},
-          {"scene_key", hex(frame.scene_key)},
-          {"settings", settings_to_json(frame.settings)},
-          {"planes", kept_passes(frame)},
-          {"samples", ranges_to_json(frame.samples)},
-          {"counters", counters_to_json(frame.counters)}};
+          {"gradients", film.gradients},
+          {"sampling_key", hex(sampling_key(film.settings))},
+          {"scene_key", hex(film.scene_key)},
+          {"settings", settings_to_json(film.settings)},
+          {"planes", film_passes(film)},
+          {"samples", ranges_to_json(film.samples)},
+          {"counters", counters_to_json(film.counters)}};
 }
 
-json describe(const Frame& frame) {
-  json j = describe_samples(frame);
-  if (!frame.shared.rays.empty()) j["shared"] = shared_to_json(frame.shared);
-  if (frame.replayed.links.empty()) return j;
-  j["replayed_frame"] = frame.replayed.stream_frame;
-  j["replayed_scene_key"] = hex(frame.replayed.scene_key);
-  j["replayed_seed"] = frame.replayed.seed;
-  j["off_centre"] = !frame.replayed.links.off_centre.empty();
-  for (int c = 0; c < int(frame.components.size()); ++c) {
-    if (frame.replayed.has_own(c)) j["own_sources"].push_back(c);
+json describe(const Film& film) {
+  json j = describe_samples(film);
+  if (!film.shared.rays.empty()) j["shared"] = adaptive_state_to_json(film.shared);
+  if (film.replayed.correspondence.empty()) return j;
+  j["replayed_frame"] = film.replayed.stream_frame;
+  j["replayed_scene_key"] = hex(film.replayed.scene_key);
+  j["replayed_seed"] = film.replayed.seed;
+  j["off_centre"] = !film.replayed.correspondence.off_centre.empty();
+  for (int c = 0; c < int(film.components.size()); ++c) {
+    if (film.replayed.has_component_map(c)) j["own_sources"].push_back(c);
   }
   return j;
 }
 
 Imf::PixelType type_of(const StoredPlane& plane) { return plane.integer ? Imf::UINT : Imf::FLOAT; }
 
-Imf::Header make_header(const Frame& frame, const StoredPart& part) {
-  const int width = int(frame.full_width), height = int(frame.full_height);
-  const Region& r = frame.region;
+Imf::Header make_header(const Film& film, const StoredPart& part) {
+  const int width = int(film.full_width), height = int(film.full_height);
+  const Region& r = film.region;
   // OpenEXR's rows run downwards.
   const Imath::Box2i display({0, 0}, {width - 1, height - 1});
   const Imath::Box2i data({r.x0, height - r.y1}, {r.x1 - 1, height - 1 - r.y0});
@@ -156,15 +156,15 @@ void check_size(const Imath::Box2i& display, const Imath::Box2i& data) {
   }
 }
 
-void check_regions(const Frame& frame) {
-  const uint32_t* r = frame.settings.region;
+void check_regions(const Film& film) {
+  const uint32_t* r = film.settings.region;
   const bool whole = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
   const Region delivered{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
-  if (!whole && (r[2] > frame.full_width || r[3] > frame.full_height || delivered.x0 < frame.region.x0 || delivered.y0 < frame.region.y0 ||
-                 delivered.x1 > frame.region.x1 || delivered.y1 > frame.region.y1 || delivered.width() <= 0 || delivered.height() <= 0)) {
+  if (!whole && (r[2] > film.full_width || r[3] > film.full_height || delivered.x0 < film.region.x0 || delivered.y0 < film.region.y0 ||
+                 delivered.x1 > film.region.x1 || delivered.y1 > film.region.y1 || delivered.width() <= 0 || delivered.height() <= 0)) {
     throw damaged("its region lies outside of it");
   }
-  if (frame.settings.width != frame.full_width || frame.settings.height != frame.full_height)
+  if (film.settings.width != film.full_width || film.settings.height != film.full_height)
     throw damaged("its settings name another size");
 }
 
@@ -175,90 +175,90 @@ Region region_of(const Imf::Header& header) {
   return {data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
 }
 
-FrameHeader read_header(const Imf::Header& header, const json& description) {
-  FrameHeader frame;
-  frame.region = region_of(header);
-  frame.channels = description.at("channels");
-  if (frame.channels != 3 && frame.channels != 4) throw damaged("its planes are wrong");
-  frame.gradients = description.at("gradients");
-  frame.planes = description.at("planes");
-  frame.of_components = kept_from_json(description);
-  frame.settings = settings_from_json(description.at("settings"), &frame.warnings);
-  frame.samples = ranges_from_json(description.at("samples"));
-  frame.replayed_frame = description.value("replayed_frame", 0);
-  if (description.contains("replayed_scene_key")) frame.replayed_key = key_from_json(description.at("replayed_scene_key"));
-  frame.replayed_seed = description.value("replayed_seed", frame.settings.seed);  // once replays took that of their own frame
-  if (description.contains("shared")) frame.shared = shared_from_json(description.at("shared"), frame.region);
-  frame.scene_key = key_from_json(description.at("scene_key"));
-  frame.frame_number = description.at("frame");
-  return frame;
+FilmHeader read_header(const Imf::Header& header, const json& description) {
+  FilmHeader film;
+  film.region = region_of(header);
+  film.channels = description.at("channels");
+  if (film.channels != 3 && film.channels != 4) throw damaged("its planes are wrong");
+  film.gradients = description.at("gradients");
+  film.planes = description.at("planes");
+  film.of_components = component_content_from_json(description);
+  film.settings = settings_from_json(description.at("settings"), &film.warnings);
+  film.samples = ranges_from_json(description.at("samples"));
+  film.replayed_frame = description.value("replayed_frame", 0);
+  if (description.contains("replayed_scene_key")) film.replayed_key = key_from_json(description.at("replayed_scene_key"));
+  film.replayed_seed = description.value("replayed_seed", film.settings.seed);  // once replays took that of their own frame
+  if (description.contains("shared")) film.shared = adaptive_state_from_json(description.at("shared"), film.region);
+  film.scene_key = key_from_json(description.at("scene_key"));
+  film.frame_number = description.at("frame");
+  return film;
 }
 
-// 0 where there is none: whoever asks for one that is not there gets planes all the same (keep_component()).
+// 0 where there is none: whoever asks for one that is not there gets planes all the same (select_component()).
 size_t place_of(const json& names, const std::string& name) {
   const auto found = std::find_if(names.begin(), names.end(), [&](const json& item) { return item.at(0) == name; });
   return found != names.end() ? size_t(found - names.begin()) : 0;
 }
 
 // The frame's one component takes a place among so many, of which the others have no planes.
-void place_component(size_t place, size_t count, Frame* frame) {
+void place_component(size_t place, size_t count, Film* film) {
   std::vector<ComponentPlanes> components(count);
-  components[place] = std::move(frame->components.front());
-  frame->components = std::move(components);
+  components[place] = std::move(film->components.front());
+  film->components = std::move(components);
 }
 
 }  // namespace
 
-std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<StoredPart>& parts) {
+std::vector<Imf::Header> make_headers(const Film& film, const std::vector<StoredPart>& parts) {
   std::vector<Imf::Header> headers;
   headers.reserve(parts.size());
-  for (const StoredPart& part : parts) headers.push_back(make_header(frame, part));
-  headers.front().insert(kAttribute, Imf::StringAttribute(describe(frame).dump()));
+  for (const StoredPart& part : parts) headers.push_back(make_header(film, part));
+  headers.front().insert(kAttribute, Imf::StringAttribute(describe(film).dump()));
   return headers;
 }
 
-FrameHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
+FilmHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
 
-Frame make_frame(const Imf::Header& header, StoredContent content, const std::string* only) {
+Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only) {
   const json description = description_of(header);
-  const FrameHeader known = read_header(header, description);
+  const FilmHeader known = read_header(header, description);
   const json& names = description.at("components");
-  if (!names.is_array() || names.empty() || names.size() > kMostStoredComponents) throw damaged("its planes are wrong");
+  if (!names.is_array() || names.empty() || names.size() > kMaxStoredComponents) throw damaged("its planes are wrong");
   const int components = int(names.size());
   const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
-  const KeptOfComponents kept = is_whole ? known.of_components : KeptOfComponents{};
+  const ComponentContent kept = is_whole ? known.of_components : ComponentContent{};
   const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
-  const bool has_fallback = is_whole && wants(known.settings.passes, GRADUS_PASS_FALLBACK);
+  const bool has_fallback = is_whole && has_bit(known.settings.passes, GRADUS_PASS_FALLBACK);
   const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
   const int held = only ? 1 : components;
-  const uint64_t bytes = frame_bytes_per_pixel(held, gradients, planes, kept) * pixels, available = machine_memory_bytes();
+  const uint64_t bytes = film_bytes_per_pixel(held, gradients, planes, kept) * pixels, available = machine_memory_bytes();
   if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   const Imath::V2i last = header.displayWindow().max;
-  Frame frame(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
-  keep_of_components(kept, &frame);
-  if (only) place_component(place_of(names, *only), names.size(), &frame);
-  name_components(names, &frame);
-  frame.settings = known.settings;
-  frame.frame_number = known.frame_number;
-  frame.scene_key = known.scene_key;
-  frame.counters = counters_from_json(description.at("counters"));
-  frame.samples = known.samples;
-  frame.shared = known.shared;
-  frame.passes = make_pass_planes(passes, pixels);
-  if (has_fallback) frame.fallback.assign(pixels, 0.0f);
+  Film film(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
+  allocate_component_content(kept, &film);
+  if (only) place_component(place_of(names, *only), names.size(), &film);
+  name_components(names, &film);
+  film.settings = known.settings;
+  film.frame_number = known.frame_number;
+  film.scene_key = known.scene_key;
+  film.counters = counters_from_json(description.at("counters"));
+  film.samples = known.samples;
+  film.shared = known.shared;
+  film.passes = make_pass_planes(passes, pixels);
+  if (has_fallback) film.fallback.assign(pixels, 0.0f);
   if (description.contains("replayed_frame")) {
-    const PixelLinks links{std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
-    frame.replayed = {known.replayed_frame, links, known.replayed_key, known.replayed_seed};
+    const PixelCorrespondence correspondence{std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
+    film.replayed = {known.replayed_frame, correspondence, known.replayed_key, known.replayed_seed};
     for (const int own : description.value("own_sources", std::vector<int>())) {
       if (own < 0 || own >= components) throw damaged("its planes are wrong");
-      if (frame.components[size_t(own)].primal[0].empty()) continue;  // not read
-      frame.replayed.of_component.resize(size_t(components));
-      frame.replayed.of_component[size_t(own)] = links;
+      if (film.components[size_t(own)].primal[0].empty()) continue;  // not read
+      film.replayed.of_component.resize(size_t(components));
+      film.replayed.of_component[size_t(own)] = correspondence;
     }
   }
-  check_regions(frame);
-  return frame;
+  check_regions(film);
+  return film;
 }
 
 void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part) {

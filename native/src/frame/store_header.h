@@ -12,12 +12,12 @@
 namespace gradus {
 
 // One for each part; the description is in the first.
-std::vector<Imf::Header> make_headers(const Frame& frame, const std::vector<StoredPart>& parts);
+std::vector<Imf::Header> make_headers(const Film& film, const std::vector<StoredPart>& parts);
 
 // From the first part's. All throw Error with what is wrong: no frame, another version, larger than the memory.
-FrameHeader read_header(const Imf::Header& header);
+FilmHeader read_header(const Imf::Header& header);
 // A frame with zeroed planes. only: the component that has any; nullptr: all have.
-Frame make_frame(const Imf::Header& header, StoredContent content, const std::string* only = nullptr);
+Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only = nullptr);
 // The header of a part as make_headers() makes it.
 void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part);
 

@@ -23,22 +23,22 @@ class PlaneList {
       add(layer + "." + (width == 1 ? "V" : kVectorNames[c]), false, plane->data() + c, width * sizeof(float));
     }
   }
-  void rough(const std::string& layer, std::vector<RoughVertices>* plane) {
+  void non_specular(const std::string& layer, std::vector<NonSpecularVertices>* plane) {
     if (plane->empty()) return;
-    for (int c = 0; c < 3; ++c) add(layer + ".reflectance." + kColorNames[c], false, &(*plane)[0].reflectance[c], sizeof(RoughVertices));
-    for (int c = 0; c < 3; ++c) add(layer + ".normal." + kVectorNames[c], false, &(*plane)[0].normal[c], sizeof(RoughVertices));
-    add(layer + ".inverse_depth.V", false, &(*plane)[0].inverse_depth, sizeof(RoughVertices));
-    add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(RoughVertices));
+    for (int c = 0; c < 3; ++c) add(layer + ".reflectance." + kColorNames[c], false, &(*plane)[0].reflectance[c], sizeof(NonSpecularVertices));
+    for (int c = 0; c < 3; ++c) add(layer + ".normal." + kVectorNames[c], false, &(*plane)[0].normal[c], sizeof(NonSpecularVertices));
+    add(layer + ".inverse_depth.V", false, &(*plane)[0].inverse_depth, sizeof(NonSpecularVertices));
+    add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(NonSpecularVertices));
   }
-  void details(const std::string& layer, std::vector<RoughDetails>* plane) {
+  void details(const std::string& layer, std::vector<NonSpecularDetails>* plane) {
     if (plane->empty()) return;
-    RoughDetails& first = plane->front();
-    for (int c = 0; c < 3; ++c) add(layer + ".uv." + kVectorNames[c], false, &first.uv[c], sizeof(RoughDetails));
-    for (int c = 0; c < 3; ++c) add(layer + ".emission." + kColorNames[c], false, &first.emission[c], sizeof(RoughDetails));
-    add(layer + ".segments.V", false, &first.segments, sizeof(RoughDetails));
-    add(layer + ".object.V", false, &first.object, sizeof(RoughDetails));
-    add(layer + ".face.V", false, &first.face, sizeof(RoughDetails));
-    add(layer + ".sample.V", true, &first.sample, sizeof(RoughDetails));
+    NonSpecularDetails& first = plane->front();
+    for (int c = 0; c < 3; ++c) add(layer + ".uv." + kVectorNames[c], false, &first.uv[c], sizeof(NonSpecularDetails));
+    for (int c = 0; c < 3; ++c) add(layer + ".emission." + kColorNames[c], false, &first.emission[c], sizeof(NonSpecularDetails));
+    add(layer + ".segments.V", false, &first.segments, sizeof(NonSpecularDetails));
+    add(layer + ".object.V", false, &first.object, sizeof(NonSpecularDetails));
+    add(layer + ".face.V", false, &first.face, sizeof(NonSpecularDetails));
+    add(layer + ".sample.V", true, &first.sample, sizeof(NonSpecularDetails));
   }
   void vectors(const std::string& layer, std::vector<Vec4>* plane) {
     if (plane->empty()) return;
@@ -49,10 +49,10 @@ class PlaneList {
     add(layer + ".object.V", false, &(*plane)[0].object, sizeof(ShownPoint));
     add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(ShownPoint));
   }
-  void links(const std::string& layer, PixelLinks* links) {
-    if (!links->pixel.empty()) add(layer + ".V", true, links->pixel.data(), sizeof(int32_t));
-    if (links->off_centre.empty()) return;
-    for (int c = 0; c < 2; ++c) add(layer + ".off_centre." + kVectorNames[c], false, &links->off_centre[0][c], sizeof(Vec2));
+  void correspondence(const std::string& layer, PixelCorrespondence* correspondence) {
+    if (!correspondence->pixel.empty()) add(layer + ".V", true, correspondence->pixel.data(), sizeof(int32_t));
+    if (correspondence->off_centre.empty()) return;
+    for (int c = 0; c < 2; ++c) add(layer + ".off_centre." + kVectorNames[c], false, &correspondence->off_centre[0][c], sizeof(Vec2));
   }
   void counts(const std::string& layer, std::vector<uint32_t>* plane) { add(layer + ".V", true, plane->data(), sizeof(uint32_t)); }
 
@@ -78,39 +78,39 @@ std::string layer_of(const PassPlane& plane) {
   return name;
 }
 
-std::vector<StoredPlane> samples(Frame* frame, size_t component) {
+std::vector<StoredPlane> samples(Film* film, size_t component) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) {
-    list.radiance(layer_of(component, half), frame->channels, &frame->components[component].primal[half]);
+    list.radiance(layer_of(component, half), film->channels, &film->components[component].primal[half]);
   }
-  SampleSources& replayed = frame->replayed;
-  if (replayed.has_own(int(component))) list.links(layer_of(component) + ".source", &replayed.of_component[component]);
+  ReplayMap& replayed = film->replayed;
+  if (replayed.has_component_map(int(component))) list.correspondence(layer_of(component) + ".source", &replayed.of_component[component]);
   return list.take();
 }
 
-std::vector<StoredPlane> counts(Frame* frame) {
+std::vector<StoredPlane> counts(Film* film) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) list.counts(std::string(kHalfNames[half]) + ".count", &frame->count[half]);
-  list.links("source", &frame->replayed.links);
+  for (int half = 0; half < kHalves; ++half) list.counts(std::string(kHalfNames[half]) + ".count", &film->count[half]);
+  list.correspondence("source", &film->replayed.correspondence);
   return list.take();
 }
 
 std::string layer_of(int half, int offset) { return std::string(kHalfNames[half]) + "." + kOffsetNames[offset]; }
 
-std::vector<StoredPlane> gradients(Frame* frame, size_t component) {
+std::vector<StoredPlane> gradients(Film* film, size_t component) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) {
     for (int o = 0; o < kOffsets; ++o) {
-      list.radiance(layer_of(component, half) + "." + kOffsetNames[o], frame->channels, &frame->components[component].gradient[half][o]);
+      list.radiance(layer_of(component, half) + "." + kOffsetNames[o], film->channels, &film->components[component].gradient[half][o]);
     }
   }
   return list.take();
 }
 
-std::vector<StoredPlane> pairs(Frame* frame) {
+std::vector<StoredPlane> pairs(Film* film) {
   PlaneList list;
   for (int half = 0; half < kHalves; ++half) {
-    for (int o = 0; o < kOffsets; ++o) list.vectors(layer_of(half, o) + ".pairs", 1, &frame->pair_count[half][o]);
+    for (int o = 0; o < kOffsets; ++o) list.vectors(layer_of(half, o) + ".pairs", 1, &film->pair_count[half][o]);
   }
   return list.take();
 }
@@ -123,21 +123,21 @@ std::vector<StoredPlane> feature(PassPlane* plane) {
   return list.take();
 }
 
-std::vector<StoredPlane> rough(Frame* frame, size_t component) {
+std::vector<StoredPlane> non_specular(Film* film, size_t component) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) list.rough(layer_of(component, half), &frame->components[component].rough[half]);
+  for (int half = 0; half < kHalves; ++half) list.non_specular(layer_of(component, half), &film->components[component].non_specular[half]);
   return list.take();
 }
 
-std::vector<StoredPlane> details(Frame* frame, size_t component) {
+std::vector<StoredPlane> details(Film* film, size_t component) {
   PlaneList list;
-  list.details(layer_of(component), &frame->components[component].details);
+  list.details(layer_of(component), &film->components[component].details);
   return list.take();
 }
 
-std::vector<StoredPlane> motion(Frame* frame, size_t component) {
+std::vector<StoredPlane> motion(Film* film, size_t component) {
   PlaneList list;
-  ComponentPlanes& planes = frame->components[component];
+  ComponentPlanes& planes = film->components[component];
   const std::string layer = layer_of(component);
   list.vectors(layer + ".motion", &planes.motion);
   list.vectors(layer + ".tracked", 1, &planes.tracked);
@@ -145,33 +145,33 @@ std::vector<StoredPlane> motion(Frame* frame, size_t component) {
   return list.take();
 }
 
-std::vector<StoredPlane> passes(Frame* frame) {
+std::vector<StoredPlane> passes(Film* film) {
   PlaneList list;
-  for (PassPlane& plane : frame->passes) {
+  for (PassPlane& plane : film->passes) {
     if (plane.in_halves) continue;
     list.vectors(layer_of(plane), plane.channels, &plane.values[0]);
     list.vectors(layer_of(plane) + ".weight", 1, &plane.weight);
   }
-  list.vectors("Fallback", 1, &frame->fallback);
+  list.vectors("Fallback", 1, &film->fallback);
   return list.take();
 }
 
 }  // namespace
 
-std::vector<StoredPart> stored_parts(Frame* frame) {
+std::vector<StoredPart> stored_parts(Film* film) {
   std::vector<StoredPart> parts;
-  const size_t components = frame->components.size();
-  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("samples", c), samples(frame, c)});
-  parts.push_back({"counts", counts(frame)});
-  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("gradients", c), gradients(frame, c)});
-  parts.push_back({"pairs", pairs(frame)});
-  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("rough", c), rough(frame, c)});
-  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("details", c), details(frame, c)});
-  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("motion", c), motion(frame, c)});
-  for (PassPlane& plane : frame->passes) {
+  const size_t components = film->components.size();
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("samples", c), samples(film, c)});
+  parts.push_back({"counts", counts(film)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("gradients", c), gradients(film, c)});
+  parts.push_back({"pairs", pairs(film)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("rough", c), non_specular(film, c)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("details", c), details(film, c)});
+  for (size_t c = 0; c < components; ++c) parts.push_back({part_of("motion", c), motion(film, c)});
+  for (PassPlane& plane : film->passes) {
     if (plane.in_halves) parts.push_back({layer_of(plane), feature(&plane)});
   }
-  parts.push_back({"passes", passes(frame)});
+  parts.push_back({"passes", passes(film)});
   std::erase_if(parts, [](const StoredPart& part) { return part.planes.empty(); });
   return parts;
 }

@@ -27,6 +27,6 @@ struct StoredPart {
 };
 
 // Points into the frame, which must not change its planes meanwhile.
-std::vector<StoredPart> stored_parts(Frame* frame);
+std::vector<StoredPart> stored_parts(Film* film);
 
 }  // namespace gradus

@@ -11,13 +11,13 @@ void add(const std::vector<Radiance>& from, std::vector<Radiance>* to) {
 
 }  // namespace
 
-Frame sum_components(const Frame& frame) {
-  Frame sum(frame.full_width, frame.full_height, frame.region, frame.channels, 1, frame.gradients);
-  sum.count = frame.count;
-  sum.pair_count = frame.pair_count;
-  sum.settings = frame.settings;
+Film sum_components(const Film& film) {
+  Film sum(film.full_width, film.full_height, film.region, film.channels, 1, film.gradients);
+  sum.count = film.count;
+  sum.pair_count = film.pair_count;
+  sum.settings = film.settings;
   ComponentPlanes& to = sum.components[0];
-  for (const ComponentPlanes& from : frame.components) {
+  for (const ComponentPlanes& from : film.components) {
     for (size_t half = 0; half < kHalves; ++half) {
       add(from.primal[half], &to.primal[half]);
       for (size_t offset = 0; offset < kOffsets; ++offset) add(from.gradient[half][offset], &to.gradient[half][offset]);

@@ -6,6 +6,6 @@
 namespace gradus {
 
 // Samples and differences of a frame without decomposition: its one component is the sum of all. Without passes.
-Frame sum_components(const Frame& frame);
+Film sum_components(const Film& film);
 
 }  // namespace gradus

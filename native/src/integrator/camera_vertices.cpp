@@ -6,7 +6,7 @@ namespace gradus {
 
 void CameraVertices::begin(const Vec2& filter_offset) {
   filter_offset_ = filter_offset;
-  ++cell_sample_;
+  ++block_sample_;
 }
 
 // Always the same rays together, wherever a tile or a border cuts the cell, so that hits have the same bits.
@@ -23,7 +23,7 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
     packet->vertices[i].ray = PathRay{};
     packet->vertices[i].ray.ray = rays[i];
   }
-  packet->cell_sample = cell_sample_;
+  packet->block_sample = block_sample_;
   packet->y = y;
   packet->met.fill(false);
 }
@@ -34,10 +34,10 @@ bool CameraVertices::passes(const Hit& hit) const {
 }
 
 CameraVertex* CameraVertices::at(int32_t x, int32_t y) {
-  const int32_t column = x - lattice_cell(x) * kLattice;
+  const int32_t column = x - pixel_block_of(x) * kPixelBlockSide;
   const size_t i = static_cast<size_t>(column % kTogether);
   Packet& packet = packets_[static_cast<size_t>(y & (kRows - 1))][static_cast<size_t>(column / kTogether)];
-  if (packet.cell_sample != cell_sample_ || packet.y != y) {
+  if (packet.block_sample != block_sample_ || packet.y != y) {
     trace(x - column % kTogether, y, &packet);
   }
   CameraVertex& v = packet.vertices[i];

@@ -27,7 +27,7 @@ class CameraVertices {
   static constexpr int kTogether = 4;  // rays of a packet
   // Pixels of a row whose rays are traced together.
   struct Packet {
-    uint64_t cell_sample = 0;
+    uint64_t block_sample = 0;
     int32_t y = 0;
     std::array<bool, kTogether> met{};  // the segment is known, not the hit alone
     std::array<CameraVertex, kTogether> vertices;
@@ -36,9 +36,9 @@ class CameraVertices {
   bool passes(const Hit& hit) const;
 
   const PathContext& context_;
-  uint64_t cell_sample_ = 0;
+  uint64_t block_sample_ = 0;
   Vec2 filter_offset_ = Vec2(0.0f);
-  std::array<std::array<Packet, kLattice / kTogether>, kRows> packets_;
+  std::array<std::array<Packet, kPixelBlockSide / kTogether>, kRows> packets_;
 };
 
 }  // namespace gradus

@@ -30,10 +30,10 @@ struct WorkUnit {
   const std::vector<uint32_t>* first_map = nullptr;
   const std::vector<uint8_t>* pixel_map = nullptr;
   const std::vector<uint8_t>* gradient_map = nullptr;
-  const SampleSources* sources = nullptr;
+  const ReplayMap* replay_map = nullptr;
   uint32_t components = kEveryComponent;
   const std::vector<uint32_t>* component_map = nullptr;
-  bool again = false;
+  bool adds_components = false;
 };
 
 class Integrator {
@@ -41,7 +41,7 @@ class Integrator {
   virtual ~Integrator() = default;
   // Samples the unit into the frame: only pixels of the tile are written. `stop` is polled at least once per sample of a pixel; what is
   // half done then is left out as a whole sample. Thread-safe for disjoint tiles.
-  virtual void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const = 0;
+  virtual void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const = 0;
 };
 
 // What an integrator is made for; all lives as long as it.

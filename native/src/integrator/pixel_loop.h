@@ -40,44 +40,44 @@ inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
 }
 
 // Most samples that the unit takes of a pixel of the cell.
-uint32_t most_samples(const WorkUnit& unit, const Frame& frame, const Region& cell);
+uint32_t max_samples(const WorkUnit& unit, const Film& film, const Region& block);
 // Neither lens nor time set the rays of neighbours apart: the pixels of a cell share their jitter.
 inline bool shares_jitter(const Camera& camera, const Snapshot& scene) { return !camera.has_lens() && !scene.features.has_motion; }
 // All pixels of a cell take their own random numbers, or those of the same pixels of another frame: what shares its jitter shares its rays.
-bool shares_rays(const PathContext& context, const WorkUnit& unit, const Frame& frame, const Region& cell);
+bool shares_rays(const PathContext& context, const WorkUnit& unit, const Film& film, const Region& block);
 // Offset of such a cell's pixels from their centres, by the filter.
-Vec2 cell_jitter(const PathContext& context, const WorkUnit& unit, const Region& cell, uint32_t number);
+Vec2 block_jitter(const PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number);
 // That of a pixel by itself: where it replays one whose cell shared its jitter, that of the cell.
-Vec2 own_jitter(const PathContext& context, const WorkUnit& unit, const Frame& frame, const PixelSample& sample);
+Vec2 pixel_jitter(const PathContext& context, const WorkUnit& unit, const Film& film, const PixelSample& sample);
 // All but its place on the film.
-PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, uint32_t number);
+PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Film& film, int32_t x, int32_t y, uint32_t number);
 
 // Calls body(PixelSample) for each sample of the unit, until `stop`: cell by cell, in order of sample numbers, over the cell's pixels. Sums
 // of pixels thus do not depend on tiles, threads, or how samples were split over units.
 template <class Body>
-void for_each_sample(const PathContext& context, const WorkUnit& unit, const Frame& frame, CameraVertices* vertices,
+void for_each_sample(const PathContext& context, const WorkUnit& unit, const Film& film, CameraVertices* vertices,
                      const std::atomic<bool>& stop, Body&& body) {
-  for (const Region& cell : make_cells(unit.tile)) {
-    const bool together = shares_rays(context, unit, frame, cell);
-    const uint32_t most = most_samples(unit, frame, cell), first = unit_first(unit, frame.index(cell.x0, cell.y0));
-    for (uint32_t i = 0; i < most; ++i) {
+  for (const Region& block : make_pixel_blocks(unit.tile)) {
+    const bool together = shares_rays(context, unit, film, block);
+    const uint32_t maximum = max_samples(unit, film, block), first = unit_first(unit, film.index(block.x0, block.y0));
+    for (uint32_t i = 0; i < maximum; ++i) {
       const uint32_t number = first + i;
-      const Vec2 jitter = together ? cell_jitter(context, unit, cell, number) : Vec2(0.0f);
+      const Vec2 jitter = together ? block_jitter(context, unit, block, number) : Vec2(0.0f);
       vertices->begin(jitter);
-      for (int32_t y = cell.y0; y < cell.y1; ++y) {
-        for (int32_t x = cell.x0; x < cell.x1; ++x) {
-          const size_t pixel = frame.index(x, y);
+      for (int32_t y = block.y0; y < block.y1; ++y) {
+        for (int32_t x = block.x0; x < block.x1; ++x) {
+          const size_t pixel = film.index(x, y);
           if (i >= unit_count(unit, pixel) || (unit.pixel_map != nullptr && (*unit.pixel_map)[pixel] == 0)) {
             continue;
           }
           if (stop.load(std::memory_order_relaxed)) {
             return;
           }
-          PixelSample sample = make_pixel_sample(context, unit, frame, x, y, number);
+          PixelSample sample = make_pixel_sample(context, unit, film, x, y, number);
           if (together) {
             sample.first = vertices->at(x, y);
           }
-          sample.film = pixel_centre(x, y) + (together ? jitter : own_jitter(context, unit, frame, sample));
+          sample.film = pixel_centre(x, y) + (together ? jitter : pixel_jitter(context, unit, film, sample));
           body(sample);
         }
       }
@@ -86,6 +86,6 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fra
 }
 
 // The primal sample of a pixel goes through the gate.
-void add_primal(const PathResult& result, const PixelSample& sample, const WorkUnit& unit, Frame* frame, Counters* counters);
+void add_primal(const PathResult& result, const PixelSample& sample, const WorkUnit& unit, Film* film, Counters* counters);
 
 }  // namespace gradus

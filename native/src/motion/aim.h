@@ -26,9 +26,9 @@ class Aim {
 
   // Across the axis, in metres; for the sky in tangents of angles. False: the ray goes away from the target.
   bool miss(const Ray& ray, Vec3* by) const {
-    constexpr float kLeastCosine = 0.05f;
+    constexpr float kMinCosine = 0.05f;
     const float cosine = glm::dot(ray.direction, axis());
-    if (!(cosine > kLeastCosine)) return false;
+    if (!(cosine > kMinCosine)) return false;
     if (target_.in_sky) {
       *by = ray.direction / cosine - axis();
       return true;

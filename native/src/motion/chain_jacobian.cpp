@@ -15,7 +15,7 @@ bool column(const ChainView& view, const Aim& aim, const SpecularChain& centre, 
   for (const int side : {-1, 1}) {
     const SpecularChain* neighbour = view.at(at.x + side * by.x, at.y + side * by.y);
     Vec3 there;
-    if (neighbour == nullptr || neighbour->way != centre.way || !aim.miss(neighbour->ray.ray, &there)) continue;
+    if (neighbour == nullptr || neighbour->signature != centre.signature || !aim.miss(neighbour->ray.ray, &there)) continue;
     difference[count++] = float(side) * (there - here);
   }
   if (count == 0) return false;

@@ -26,7 +26,7 @@ void join(std::vector<Row>* rows, ChainView* view) {
 }  // namespace
 
 std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettings& settings, const ComponentSet& components,
-                                   uint32_t wanted, const CancelTest& is_cancelled, const Change* change) {
+                                   uint32_t wanted, const CancelCheck& is_cancelled, const Change* change) {
   const Region& region = centres.region;
   const auto width = size_t(region.width()), height = size_t(region.height());
   std::vector<int> numbers;
@@ -36,7 +36,7 @@ std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettin
   std::vector<std::vector<Row>> rows(numbers.size(), std::vector<Row>(height));
   const ChainTracer tracer(*centres.snapshot, centres.camera, settings);
   tbb::parallel_for(size_t{0}, height, [&](size_t y) {
-    std::array<SpecularChain, kMostComponents> chains;
+    std::array<SpecularChain, kMaxComponents> chains;
     for (size_t x = 0; x < width && !is_cancelled(); ++x) {
       const Vec2 film = pixel_centre(region.x0 + int32_t(x), region.y0 + int32_t(y));
       const uint32_t found = tracer.find(film, centres.hits[y * width + x], components, wanted, change, &chains);
@@ -68,7 +68,7 @@ ChainView view_surfaces(const CentreView& centres, const GradusSettings& setting
     chain.last = hit;
     chain.length = is_surface ? hit.t : 0.0f;
     chain.shown = chain.ray.ray.origin + chain.length * chain.ray.ray.direction;
-    chain.rests = change != nullptr && !change->of_all() && change->rests(chain.ray.ray, hit, hit.t);
+    chain.is_static = change != nullptr && !change->of_all() && change->is_static(chain.ray.ray, hit, hit.t);
   });
   return view;
 }

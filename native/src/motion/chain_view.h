@@ -28,7 +28,7 @@ struct ChainView {
 // change: see ChainTracer::find().
 std::vector<ChainView> view_chains(
     const CentreView& centres, const GradusSettings& settings, const ComponentSet& components, uint32_t wanted,
-    const CancelTest& is_cancelled = [] { return false; }, const Change* change = nullptr);
+    const CancelCheck& is_cancelled = [] { return false; }, const Change* change = nullptr);
 // The surfaces that the camera sees, whatever they are, and the sky.
 ChainView view_surfaces(const CentreView& centres, const GradusSettings& settings, const Change* change);
 

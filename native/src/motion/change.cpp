@@ -32,7 +32,7 @@ bool same_materials(const Placed& a, const Placed& b) {
   return same;
 }
 
-bool rests(const Placed& a, const Placed& b) {
+bool is_static(const Placed& a, const Placed& b) {
   return a.instance.mesh == b.instance.mesh && a.instance.to_world == b.instance.to_world && !a.instance.moves() && a.kind() == b.kind() &&
          same_materials(a, b);
 }
@@ -49,7 +49,7 @@ void Change::add(const Snapshot& other) {
   for (size_t i = 0; i < instances_.size(); ++i) {
     const InstanceData &a = now_.instances[i], *b = there[i] != kNoInstance ? &other.instances[there[i]] : nullptr;
     if (b != nullptr) is_new[there[i]] = false;
-    if (b != nullptr && gradus::rests({now_, a}, {other, *b})) continue;
+    if (b != nullptr && gradus::is_static({now_, a}, {other, *b})) continue;
     instances_[i] = any_ = true;
     add_box(a);
     if (b != nullptr) add_box(*b);

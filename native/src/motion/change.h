@@ -21,7 +21,7 @@ class Change {
   // Whether something that moves may be on that part of the ray, at any of these moments.
   bool may_meet(const Ray& ray, float distance) const { return any_ && box_.may_meet(ray.origin, ray.direction, 0.0f, distance); }
   // Whether what the ray meets at that distance, and the way there, are what they were; a hit that is not valid: nothing.
-  bool rests(const Ray& ray, const Hit& hit, float distance) const {
+  bool is_static(const Ray& ray, const Hit& hit, float distance) const {
     const bool met = hit.valid();
     return !may_meet(ray, met ? distance : kInfinity) && !(met && of_instance(hit.instance));
   }

@@ -15,7 +15,7 @@ namespace {
 
 // Another moment of the scene.
 struct OtherFrame {
-  OtherFrame(const Snapshot& scene, Moment when, const GradusSettings& settings, const CancelTest& is_cancelled)
+  OtherFrame(const Snapshot& scene, Moment when, const GradusSettings& settings, const CancelCheck& is_cancelled)
       : snapshot(moved_snapshot(scene, when, is_cancelled)),
         camera(Camera(snapshot->camera, settings.width, settings.height).without_lens()),
         tracer(*snapshot, camera, settings) {}
@@ -39,7 +39,7 @@ Region with_neighbours(const Region& band, const GradusSettings& settings) {
 
 // By views. has_surfaces: the last one is view_surfaces(), whose motion is that of all that others show directly.
 std::vector<ChainMotion> track_views(const std::vector<ChainView>& views, bool has_surfaces, const ChainTracer& to, const Region& band,
-                                     const CancelTest& is_cancelled) {
+                                     const CancelCheck& is_cancelled) {
   std::vector<ChainMotion> motion(views.size());
   if (has_surfaces) motion.back() = track_chains(views.back(), to, band, is_cancelled);
   const KnownMotion surfaces{views.back(), motion.back()};
@@ -59,7 +59,7 @@ void join(const Camera& camera, const Region& band, const ChainMotion& previous,
     joined->tracked[pixel] = float(tracking);
     if (tracking != Tracking::Tracked) continue;
     const Vec2 now = pixel_centre(band.x0 + int32_t(i % width), band.y0 + int32_t(i / width));
-    joined->vectors[pixel] = Vec4(camera.way(now, previous.film[i]), camera.way(next.film[i], now));
+    joined->vectors[pixel] = Vec4(camera.film_displacement(now, previous.film[i]), camera.film_displacement(next.film[i], now));
   }
 }
 
@@ -68,12 +68,12 @@ constexpr uint64_t kNumbers = uint64_t{1} << 24;  // that a float tells apart
 // The same in every frame: of the way, and of the object at its end.
 float number_of(const Snapshot& snapshot, const SpecularChain& chain) {
   const uint64_t end = chain.last.valid() ? snapshot.instances[chain.last.instance].id + 1 : 0;
-  const uint64_t hash = mix_bits(mix_bits(chain.way.surfaces + 5 * chain.way.letters + chain.way.length) + 3 * end + uint64_t(chain.end));
+  const uint64_t hash = mix_bits(mix_bits(chain.signature.surfaces + 5 * chain.signature.events + chain.signature.length) + 3 * end + uint64_t(chain.end));
   return float(1 + hash % (kNumbers - 1));
 }
 
 // shown: from the first pixel of the band on.
-void tell_shown(const ChainView& view, const Region& band, ShownPoint* shown) {
+void write_shown_points(const ChainView& view, const Region& band, ShownPoint* shown) {
   for (int32_t y = band.y0; y < band.y1; ++y) {
     for (int32_t x = band.x0; x < band.x1; ++x, ++shown) {
       const SpecularChain* chain = view.at(x, y);
@@ -85,7 +85,7 @@ void tell_shown(const ChainView& view, const Region& band, ShownPoint* shown) {
 }  // namespace
 
 std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const GradusSettings& settings, const ComponentSet& components,
-                                              uint32_t wanted, const Region& region, const CancelTest& is_cancelled) {
+                                              uint32_t wanted, const Region& region, const CancelCheck& is_cancelled) {
   const auto pixels = size_t(region.area()), width = size_t(region.width());
   const uint32_t residual = components.residual();
   wanted &= components.all();
@@ -107,7 +107,7 @@ std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const Gr
     for (size_t k = 0; k < views.size(); ++k) {
       const size_t first = width * size_t(y - region.y0);
       join(centres.camera, band, before[k], after[k], first, &motion[k]);
-      tell_shown(views[k], band, &motion[k].shown[first]);
+      write_shown_points(views[k], band, &motion[k].shown[first]);
     }
     if (is_cancelled()) throw cancelled();
   }

@@ -20,6 +20,6 @@ struct ComponentMotion {
 // OUT_OF_MEMORY.
 std::vector<ComponentMotion> component_motion(
     const Snapshot& snapshot, const GradusSettings& settings, const ComponentSet& components, uint32_t wanted, const Region& region,
-    const CancelTest& is_cancelled = [] { return false; });
+    const CancelCheck& is_cancelled = [] { return false; });
 
 }  // namespace gradus

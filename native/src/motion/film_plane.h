@@ -27,8 +27,8 @@ inline Vec2 clamped_to(const Vec2& p, int width, int height) {
 
 // No longer than the film; 0 where it is not finite.
 inline Vec2 bounded(const Vec2& vector, int width, int height) {
-  const Vec2 most = {float(width), float(height)};
-  return is_finite(vector.x) && is_finite(vector.y) ? glm::clamp(vector, -most, most) : Vec2(0.0f);
+  const Vec2 maximum = {float(width), float(height)};
+  return is_finite(vector.x) && is_finite(vector.y) ? glm::clamp(vector, -maximum, maximum) : Vec2(0.0f);
 }
 
 template <class T>

@@ -10,11 +10,11 @@ namespace gradus {
 
 namespace {
 
-constexpr int kMostSteps = 24;
-constexpr int kMostHalvings = 6;
+constexpr int kMaxSteps = 24;
+constexpr int kMaxHalvings = 6;
 constexpr float kLongestStep = 64.0f;                                    // pixels
 constexpr float kDifference = 0.125f;                                    // pixels: below the width of what a pixel sees, far above rounding
-constexpr float kLeastDeterminant = 1e-4f;                               // of unit columns: below, the picture folds
+constexpr float kMinDeterminant = 1e-4f;                               // of unit columns: below, the picture folds
 constexpr float kFirstAdvance = 0.25f, kSmallestAdvance = 1.0f / 64.0f;  // of a frame
 // Of the Jacobian, relative to itself, over a step in time. As long as it changes by less than 1 no fold lies in between.
 constexpr float kLargestChange = 0.5f;
@@ -29,7 +29,7 @@ constexpr float kSame = 0.01f;
 
 bool newton_step(const glm::mat2& jacobian, const Vec2& miss, Vec2* step) {
   const float lengths = glm::length(jacobian[0]) * glm::length(jacobian[1]);
-  if (!(std::fabs(glm::determinant(jacobian)) > kLeastDeterminant * lengths)) return false;
+  if (!(std::fabs(glm::determinant(jacobian)) > kMinDeterminant * lengths)) return false;
   *step = -glm::inverse(jacobian) * miss;
   return is_finite(step->x) && is_finite(step->y);
 }
@@ -74,11 +74,11 @@ bool FilmSearch::look(float time, const Vec2& film, SpecularChain* chain) {
   const Problem& p = problem_;
   SpecularChain before;
   ++counts_.traced;
-  if (time >= 1.0f) return p.after.follow(film, p.way, chain);
-  if (!p.before.follow(film - time * p.moved, p.way, time > 0.0f ? &before : chain)) return false;
+  if (time >= 1.0f) return p.after.follow(film, p.signature, chain);
+  if (!p.before.follow(film - time * p.moved, p.signature, time > 0.0f ? &before : chain)) return false;
   if (time <= 0.0f) return true;
   ++counts_.traced;
-  if (!p.after.follow(film + (1.0f - time) * p.moved, p.way, chain)) return false;
+  if (!p.after.follow(film + (1.0f - time) * p.moved, p.signature, chain)) return false;
   Ray& ray = chain->ray.ray;
   ray.origin = glm::mix(before.ray.ray.origin, ray.origin, time);
   ray.direction = glm::normalize(glm::mix(before.ray.ray.direction, ray.direction, time));
@@ -116,7 +116,7 @@ SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
   SearchEnd end = SearchEnd::Broken;
   float share = 1.0f;
   // With a Jacobian that is only a guess, halving may be in vain.
-  for (int i = 0; i < (state->fresh ? kMostHalvings : 1); ++i, share *= 0.5f) {
+  for (int i = 0; i < (state->fresh ? kMaxHalvings : 1); ++i, share *= 0.5f) {
     const Vec2 film = state->film + share * step;
     SpecularChain chain;
     Vec2 by, left;
@@ -141,7 +141,7 @@ SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
 
 // The last correction, which tells whether the Jacobian is to be believed: at the edge of a facet a guess of it may be far too large, and
 // make everything seem near. What is there already, as what rests is, stays.
-bool FilmSearch::settle(const Aim& aim, const Vec2& step, State* state) {
+bool FilmSearch::converge(const Aim& aim, const Vec2& step, State* state) {
   const float before = glm::length(state->miss);
   if (before < kRounding * aim.distance()) return true;
   SpecularChain chain;
@@ -168,14 +168,14 @@ SearchEnd FilmSearch::solve(float time, FilmPlace* place) {
   } else if (!refresh()) {
     return SearchEnd::Broken;
   }
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     Vec2 step;
     if (!newton_step(state.jacobian, state.miss, &step)) {
       if (state.fresh || !refresh()) return SearchEnd::Stuck;
       continue;
     }
     if (glm::length(step) < kFilmTolerance) {
-      if (!settle(aim, step, &state)) {
+      if (!converge(aim, step, &state)) {
         if (state.fresh || !refresh()) return SearchEnd::Broken;
         continue;
       }

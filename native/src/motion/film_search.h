@@ -45,7 +45,7 @@ class FilmSearch {
   // What one way shows in two frames, and where.
   struct Problem {
     const ChainTracer &before, &after;
-    const ChainWay& way;
+    const SpecularSignature& signature;
     Target target_before, target_after;
     Vec2 moved;  // of the first smooth vertex on the film
   };
@@ -68,7 +68,7 @@ class FilmSearch {
   bool look(float time, const Vec2& film, SpecularChain* chain);
   bool miss(float time, const Aim& aim, const Vec2& film, SpecularChain* chain, Vec2* by);
   bool differentiate(const Aim& aim, const State& state, glm::mat2* jacobian);
-  bool settle(const Aim& aim, const Vec2& step, State* state);
+  bool converge(const Aim& aim, const Vec2& step, State* state);
   SearchEnd take(const Aim& aim, const Vec2& newton, State* state);
   SearchEnd solve(float time, FilmPlace* place);
   SearchEnd step(float time, const FilmPlace& from, const Vec2& guess, FilmPlace* place);

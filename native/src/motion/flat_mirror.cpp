@@ -4,7 +4,7 @@ namespace gradus {
 
 bool flat_mirror_motion(const ChainTracer& from, const ChainTracer& to, const SnapshotMotion& motion, const SpecularChain& chain,
                         FlatMirror mirror, Vec2* film) {
-  if (chain.way.length != 1 || chain.way.letter(0) != ScatterClass::Reflection) return false;
+  if (chain.signature.length != 1 || chain.signature.event(0) != ScatterClass::Reflection) return false;
   const bool moves = mirror == FlatMirror::MovesAlong;
   Hit there = chain.first;
   if (moves && !motion.hit(chain.first, &there)) return false;

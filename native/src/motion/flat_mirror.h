@@ -8,7 +8,7 @@
 namespace gradus {
 
 // What becomes of the mirror between the frames.
-enum class FlatMirror : uint8_t { Rests, MovesAlong };
+enum class FlatMirror : uint8_t { Static, MovesAlong };
 
 // Where the mirror image of what a chain shows lies in the other frame. motion: to that frame. False: the chain is no single reflection, or
 // nothing of it is there.

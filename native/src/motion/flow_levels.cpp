@@ -10,8 +10,8 @@ namespace {
 
 constexpr float kFloor = 0.01f;           // of the mean, added before the logarithm: below it is black
 constexpr float kOutliers = 0.002f;       // share of pixels beyond each end of the scale
-constexpr float kLeastLogarithms = 0.5f;  // that the scale spans
-constexpr float kLeastShare = 0.25f;      // of the mean that the scale spans in the linear domain
+constexpr float kMinLogarithms = 0.5f;  // that the scale spans
+constexpr float kMinShare = 0.25f;      // of the mean that the scale spans in the linear domain
 constexpr float kBrightest = 1e30f;
 
 using Values = std::vector<float>;
@@ -61,8 +61,8 @@ std::array<GreyImage, 2> flow_levels(int width, int height, std::span<const Rgb>
     each_pixel(width, 2 * height, [&](int, int, size_t p) { values[p] = std::log(std::max(values[p], 0.0f) / mean + kFloor); });
   }
   const auto [low, high] = scale_of(values);
-  const float least = domain == FlowDomain::Logarithmic ? kLeastLogarithms : kLeastShare * mean;
-  const float scale = 255.0f / std::max(high - low, least);
+  const float minimum = domain == FlowDomain::Logarithmic ? kMinLogarithms : kMinShare * mean;
+  const float scale = 255.0f / std::max(high - low, minimum);
   each_pixel(width, height, [&, low = low](int, int, size_t p) {
     for (size_t k = 0; k < 2; ++k) result[k].levels[p] = std::clamp((values[k * count + p] - low) * scale, 0.0f, 255.0f);
   });

@@ -12,7 +12,7 @@ constexpr int kWindow = 3;               // pixels around one, Gaussian of half 
 constexpr float kSmoothness = 5.0f;      // per pixel of difference between neighbours, against squares of data by its noise
 constexpr float kAlike = 0.1f;           // pixels: differences below it count by their squares
 constexpr float kOutlier = 3.0f;         // standard deviations: data beyond it counts by its magnitude
-constexpr float kRestsAlone = 1e-4f;     // weight of no rest, for where nothing else says anything
+constexpr float kPriorWeight = 1e-4f;     // weight of no rest, for where nothing else says anything
 constexpr float kOverRelaxation = 1.7f;  // of Gauss and Seidel's steps
 constexpr float kLongestStep = 1.0f;     // pixels, for which a gradient is good
 
@@ -47,18 +47,18 @@ std::array<float, 2 * kWindow + 1> window_weights() {
 
 class Refinement {
  public:
-  Refinement(const FlowPair& pair, std::vector<Vec2>* rest)
+  Refinement(const FlowPair& pair, std::vector<Vec2>* residual)
       : pair_(pair),
         width_(pair.from.width),
         height_(pair.from.height),
-        rest_(*rest),
-        step_(rest->size()),
-        warped_(rest->size()),
-        pixels_(rest->size()),
-        rows_(rest->size()),
-        data_(rest->size()),
-        right_(rest->size()),
-        below_(rest->size()) {}
+        residual_(*residual),
+        step_(residual->size()),
+        warped_(residual->size()),
+        pixels_(residual->size()),
+        rows_(residual->size()),
+        data_(residual->size()),
+        right_(residual->size()),
+        below_(residual->size()) {}
 
   void run() {
     for (int i = 0; i < kWarps; ++i) {
@@ -74,7 +74,7 @@ class Refinement {
       for (int k = 0; k < 2 * kSweeps; ++k) {
         for_rows(height_, [this, k](int y) { relax(y, k & 1); });
       }
-      each_pixel([this](int, int, size_t p) { rest_[p] += glm::clamp(step_[p], -kLongestStep, kLongestStep); });
+      each_pixel([this](int, int, size_t p) { residual_[p] += glm::clamp(step_[p], -kLongestStep, kLongestStep); });
     }
   }
 
@@ -87,7 +87,7 @@ class Refinement {
 
   // The other image where the vectors lead to. Where it cannot show the same: this one, with which nothing is wrong.
   float warped(int x, int y, size_t p) const {
-    return pair_.seen[p] ? cubic_at(pair_.to, Vec2(float(x), float(y)) + pair_.bootstrap[p] + rest_[p]) : pair_.from.values[p];
+    return pair_.seen[p] ? cubic_at(pair_.to, Vec2(float(x), float(y)) + pair_.bootstrap[p] + residual_[p]) : pair_.from.values[p];
   }
 
   // What one pixel asks of the step: change + gradient · step = 0, the gradient that of the mean of both images.
@@ -111,7 +111,7 @@ class Refinement {
     each_pixel([this](int x, int y, size_t p) {
       Normal sum;
       for (int j = std::max(y - kWindow, 0); j <= std::min(y + kWindow, height_ - 1); ++j) sum.add(weight(j - y), rows_[index(x, j)]);
-      sum.pull(kRestsAlone, -rest_[p]);
+      sum.pull(kPriorWeight, -residual_[p]);
       data_[p] = sum;
     });
   }
@@ -120,7 +120,7 @@ class Refinement {
   // How strongly the rests of two neighbours are held together.
   float likeness(size_t p, size_t q) const {
     if (pair_.object[p] != pair_.object[q]) return 0.0f;
-    const Vec2 difference = rest_[q] - rest_[p];
+    const Vec2 difference = residual_[q] - residual_[p];
     return kSmoothness / std::sqrt(glm::dot(difference, difference) + kAlike * kAlike);
   }
 
@@ -128,10 +128,10 @@ class Refinement {
   Normal solved(int x, int y, size_t p) const {
     Normal normal = data_[p];
     const size_t row = size_t(width_);
-    if (x > 0) normal.pull(right_[p - 1], rest_[p - 1] - rest_[p]);
-    if (x + 1 < width_) normal.pull(right_[p], rest_[p + 1] - rest_[p]);
-    if (y > 0) normal.pull(below_[p - row], rest_[p - row] - rest_[p]);
-    if (y + 1 < height_) normal.pull(below_[p], rest_[p + row] - rest_[p]);
+    if (x > 0) normal.pull(right_[p - 1], residual_[p - 1] - residual_[p]);
+    if (x + 1 < width_) normal.pull(right_[p], residual_[p + 1] - residual_[p]);
+    if (y > 0) normal.pull(below_[p - row], residual_[p - row] - residual_[p]);
+    if (y + 1 < height_) normal.pull(below_[p], residual_[p + row] - residual_[p]);
     return normal.inverse();
   }
 
@@ -153,7 +153,7 @@ class Refinement {
 
   const FlowPair& pair_;
   const int width_, height_;
-  std::vector<Vec2>& rest_;
+  std::vector<Vec2>& residual_;
   std::vector<Vec2> step_;  // from one warp to the next
   std::vector<float> warped_;
   std::vector<Normal> pixels_, rows_, data_;  // of each alone (then solved with its neighbours), summed along rows, over windows
@@ -163,6 +163,6 @@ class Refinement {
 
 }  // namespace
 
-void refine_flow(const FlowPair& pair, std::vector<Vec2>* rest) { Refinement(pair, rest).run(); }
+void refine_flow(const FlowPair& pair, std::vector<Vec2>* residual) { Refinement(pair, residual).run(); }
 
 }  // namespace gradus

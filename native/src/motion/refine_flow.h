@@ -19,6 +19,6 @@ struct FlowPair {
 };
 
 // `rest`: by pixels of `from`, so that bootstrap + rest leads to the same level in `to`. In: where to start. It stays finite.
-void refine_flow(const FlowPair& pair, std::vector<Vec2>* rest);
+void refine_flow(const FlowPair& pair, std::vector<Vec2>* residual);
 
 }  // namespace gradus

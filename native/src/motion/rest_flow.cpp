@@ -8,27 +8,27 @@ namespace gradus {
 namespace {
 
 constexpr float kSurfaceReturn = 0.5f;  // pixels that a surface's way there and back may be off, the way back being the nearest pixel's
-constexpr float kLeastNoise = 0.5f;     // levels: of their rounding
+constexpr float kMinNoiseLevel = 0.5f;     // levels: of their rounding
 constexpr float kDeviation = 1.4826f / 1.41421356f;  // of a level, from the median of the differences of two
 constexpr int kPatch = 7;                            // pixels around one, over which two vectors are compared
-constexpr float kLeastBelieved = 1.0f;               // levels of noise: reconstructions leave blotches, which DIS fits well
+constexpr float kMinNoise = 1.0f;               // levels of noise: reconstructions leave blotches, which DIS fits well
 constexpr float kGain = 1.5f;                        // variances that a vector must explain, as a mean over the patch: less fits by chance
 
-class RestFlow {
+class FlowVectors {
  public:
-  RestFlow(const FlowFrame& from, const FlowFrame& to) : from_(from), to_(to), seen_(from.count()) {
+  FlowVectors(const FlowFrame& from, const FlowFrame& to) : from_(from), to_(to), seen_(from.count()) {
     each_pixel([this](size_t p) { seen_[p] = is_seen(p); });
   }
 
   std::vector<Vec2> vectors(const FlowLibrary& library) const {
     const GreyImage there = compensated();
     const std::vector<Vec2> found = optical_flow(library, from_.image(), there);
-    const std::vector<float> still = squares_off(there, std::vector<Vec2>(found.size())), moved = squares_off(there, found);
+    const std::vector<float> still = squared_mismatch(there, std::vector<Vec2>(found.size())), moved = squared_mismatch(there, found);
     const std::vector<float> noise = deviations(moved);
-    std::vector<Vec2> rest = believed(found, still, moved, noise);
-    refine_flow({from_.levels(), to_.levels(), noise, from_.surface(), seen_, from_.object()}, &rest);
-    each_pixel([&](size_t p) { rest[p] = bounded(from_.surface()[p] + rest[p], from_.width(), from_.height()); });
-    return rest;
+    std::vector<Vec2> residual = believed(found, still, moved, noise);
+    refine_flow({from_.levels(), to_.levels(), noise, from_.surface(), seen_, from_.object()}, &residual);
+    each_pixel([&](size_t p) { residual[p] = bounded(from_.surface()[p] + residual[p], from_.width(), from_.height()); });
+    return residual;
   }
 
  private:
@@ -55,7 +55,7 @@ class RestFlow {
     return image;
   }
 
-  std::vector<float> squares_off(const GreyImage& there, const std::vector<Vec2>& vectors) const {
+  std::vector<float> squared_mismatch(const GreyImage& there, const std::vector<Vec2>& vectors) const {
     std::vector<float> result(vectors.size());
     each_pixel([&](size_t p) {
       const float off = linear_at(from_.plane(there.levels), from_.place(p) + vectors[p]) - from_.image().levels[p];
@@ -70,17 +70,17 @@ class RestFlow {
     for (size_t p = 0; p < squares.size(); ++p) {
       if (seen_[p]) seen.push_back(squares[p]);
     }
-    if (seen.empty()) return kLeastNoise;
+    if (seen.empty()) return kMinNoiseLevel;
     const auto middle = seen.begin() + ptrdiff_t(seen.size() / 2);
     std::nth_element(seen.begin(), middle, seen.end());
-    return std::max(kLeastNoise, kDeviation * std::sqrt(*middle));
+    return std::max(kMinNoiseLevel, kDeviation * std::sqrt(*middle));
   }
 
   // At each pixel: where the light is noisier than in most of the film, what is still off tells around it.
   std::vector<float> deviations(const std::vector<float>& squares) const {
-    const float of_most = deviation(squares);
+    const float overall = deviation(squares);
     std::vector<float> result = patch_means(squares);
-    each_pixel([&](size_t p) { result[p] = std::max(of_most, std::sqrt(0.5f * result[p])); });
+    each_pixel([&](size_t p) { result[p] = std::max(overall, std::sqrt(0.5f * result[p])); });
     return result;
   }
 
@@ -89,16 +89,16 @@ class RestFlow {
                              const std::vector<float>& noise) const {
     each_pixel([&](size_t p) { still[p] -= moved[p]; });
     const std::vector<float> gain = patch_means(still);
-    std::vector<Vec2> rest(found.size(), Vec2(0.0f));
+    std::vector<Vec2> residual(found.size(), Vec2(0.0f));
     each_pixel([&](size_t p) {
       const Vec2 place = from_.place(p) + found[p];
       const size_t q = from_.nearest(place);
-      const float least = std::max(noise[p], kLeastBelieved);
-      if (gain[p] < kGain * least * least || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) return;
+      const float minimum = std::max(noise[p], kMinNoise);
+      if (gain[p] < kGain * minimum * minimum || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) return;
       // What it shows there has gone on with the surface of that place.
-      rest[p] = found[p] + linear_at(from_.plane(from_.surface()), place) - from_.surface()[p];
+      residual[p] = found[p] + linear_at(from_.plane(from_.surface()), place) - from_.surface()[p];
     });
-    return rest;
+    return residual;
   }
 
   std::vector<float> patch_means(const std::vector<float>& values) const {
@@ -125,7 +125,7 @@ class RestFlow {
 
 std::vector<Vec2> flow_vectors(const FlowLibrary& library, const FlowFrame& from, const FlowFrame& to) {
   const FlushDenormals flush;  // in whatever thread it is, so that its bits are the same
-  return RestFlow(from, to).vectors(library);
+  return FlowVectors(from, to).vectors(library);
 }
 
 }  // namespace gradus

@@ -14,7 +14,7 @@ namespace gradus {
 namespace {
 
 // Surfaces that a search for a chain may look at, where the stronger way leads nowhere.
-constexpr int kMostLooks = 24;
+constexpr int kMaxSurfaces = 24;
 
 // The strongest lobe of a class, taken for perfectly smooth.
 struct SmoothScattering {
@@ -23,8 +23,8 @@ struct SmoothScattering {
   LightPass pass = LightPass::Glossy;
 };
 
-SmoothScattering smooth_scattering(const Closures& closures, ScatterClass letter, const Vec3& wo) {
-  const bool transmitted = letter == ScatterClass::Transmission;
+SmoothScattering smooth_scattering(const Closures& closures, ScatterClass event, const Vec3& wo) {
+  const bool transmitted = event == ScatterClass::Transmission;
   SmoothScattering best;
   for (int i = 0; i < closures.count(); ++i) {
     const Lobe& lobe = closures.lobe(i);
@@ -41,8 +41,8 @@ SmoothScattering smooth_scattering(const Closures& closures, ScatterClass letter
 
 }  // namespace
 
-void ChainWay::add(ScatterClass letter, uint64_t instance_id) {
-  letters = uint16_t(letters | unsigned(letter) << (2 * length));
+void SpecularSignature::add(ScatterClass event, uint64_t instance_id) {
+  events = uint16_t(events | unsigned(event) << (2 * length));
   surfaces = mix_bits(3 * surfaces + instance_id + 1);
   ++length;
 }
@@ -55,7 +55,7 @@ PathRay ChainTracer::camera_ray(const Vec2& film) const { return {camera_.ray({f
 struct ChainTracer::Arrival {
   Hit hit;
   Vertex vertex;              // missing where only transparency was asked for, and there is none
-  bool surely_rough = false;  // and dark: closures are missing
+  bool surely_non_specular = false;  // and dark: closures are missing
 };
 
 // To the next surface that stops the ray. False: it leaves the scene.
@@ -76,9 +76,9 @@ bool ChainTracer::advance(Shades shades, const Hit* known, PathRay* ray, Arrival
     const MaterialData& material = *snapshot_.materials[snapshot_.material_of(hit.instance, hit.triangle)];
     if (shades == Shades::Transparency && !material.may_be_transparent) return true;
     snapshot_.place(hit, &vertex->point);
-    const bool is_rough = material.has_bsdf && !material.emits && material.min_alpha >= settings_.roughness_threshold;
-    arrival->surely_rough = is_rough && !material.may_be_transparent;
-    if (arrival->surely_rough) return true;
+    const bool is_non_specular = material.has_bsdf && !material.emits && material.min_alpha >= settings_.roughness_threshold;
+    arrival->surely_non_specular = is_non_specular && !material.may_be_transparent;
+    if (arrival->surely_non_specular) return true;
     shade_surface(snapshot_, vertex->point, vertex->wo, ray->state, settings_.roughness_threshold, &vertex->shade);
     const bool passes = mean_component(vertex->shade.transparency) > 0.5f;
     if (!passes || ray->state.transparent_depth >= settings_.transparent_max_bounces) return true;
@@ -88,9 +88,9 @@ bool ChainTracer::advance(Shades shades, const Hit* known, PathRay* ray, Arrival
 }
 
 // How much goes that way; 0: nothing, and the ray stays what it was.
-float ChainTracer::scatter(const Vertex& vertex, ScatterClass letter, PathRay* ray) const {
-  const bool transmitted = letter == ScatterClass::Transmission;
-  const SmoothScattering scattering = smooth_scattering(vertex.shade.closures, letter, vertex.wo);
+float ChainTracer::scatter(const Vertex& vertex, ScatterClass event, PathRay* ray) const {
+  const bool transmitted = event == ScatterClass::Transmission;
+  const SmoothScattering scattering = smooth_scattering(vertex.shade.closures, event, vertex.wo);
   const bool crosses = glm::dot(vertex.facing_normal(), scattering.wi) < 0.0f;
   if (!(scattering.strength > 0.0f) || crosses != transmitted) return 0.0f;
   ray->ray = spawn_ray(vertex.point, scattering.wi);
@@ -103,65 +103,65 @@ struct ChainTracer::Search {
   const ComponentSet& components;
   int component;
   const Change* change;
-  int looks = 0;
+  int surfaces = 0;
 
-  bool reaches(PathWord word) const { return (components.ahead(word) >> component & 1) != 0; }
-  bool is_lit(PathWord word) const { return components.component(word) == component; }
-  bool rests(const PathRay& ray, const Hit& hit) const { return change != nullptr && change->rests(ray.ray, hit, ray.state.length); }
+  bool reaches(LpeState lpe_state) const { return (components.ahead(lpe_state) >> component & 1) != 0; }
+  bool is_lit(LpeState lpe_state) const { return components.component(lpe_state) == component; }
+  bool is_static(const PathRay& ray, const Hit& hit) const { return change != nullptr && change->is_static(ray.ray, hit, ray.state.length); }
   // A rough surface or one that shines, where that belongs to the component.
-  bool ends_at(const Arrival& arrival, PathWord word) const {
-    if (arrival.surely_rough) return reaches(components.next(word, ScatterClass::Diffuse));
+  bool ends_at(const Arrival& arrival, LpeState lpe_state) const {
+    if (arrival.surely_non_specular) return reaches(components.next(lpe_state, ScatterClass::Diffuse));
     const Vertex& vertex = arrival.vertex;
-    const bool rough = vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
-    return (rough && reaches(components.next(word, ScatterClass::Diffuse))) || (!is_black(vertex.shade.emission) && is_lit(word));
+    const bool non_specular = vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
+    return (non_specular && reaches(components.next(lpe_state, ScatterClass::Diffuse))) || (!is_black(vertex.shade.emission) && is_lit(lpe_state));
   }
 };
 
 // The stronger one first.
 std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, const Vertex& vertex, const PathRay& ray,
-                                                         PathWord word) const {
+                                                         LpeState lpe_state) const {
   std::array<Branch, 2> found{{{ScatterClass::Reflection, 0.0f, ray}, {ScatterClass::Transmission, 0.0f, ray}}};
   for (Branch& branch : found) {
-    if (search.reaches(search.components.next(word, branch.letter))) branch.strength = scatter(vertex, branch.letter, &branch.ray);
+    if (search.reaches(search.components.next(lpe_state, branch.event))) branch.strength = scatter(vertex, branch.event, &branch.ray);
   }
   if (found[1].strength > found[0].strength) std::swap(found[0], found[1]);
   return found;
 }
 
 // In the sky.
-bool ChainTracer::is_seen(const Search& search, PathWord word, SpecularChain* chain) const {
+bool ChainTracer::is_seen(const Search& search, LpeState lpe_state, SpecularChain* chain) const {
   chain->end = ChainEnd::Sky;
   chain->length = 0.0f;
-  return snapshot_.features.world_shines && search.is_lit(word);
+  return snapshot_.features.world_emits && search.is_lit(lpe_state);
 }
 
-bool ChainTracer::extend(Search* search, PathRay ray, PathWord word, SpecularChain* chain) const {
-  if (++search->looks > kMostLooks) return false;
-  thread_local std::array<Arrival, kLongestChain + 1> arrivals;  // large: one for each depth
-  Arrival& arrival = arrivals[chain->way.length];
+bool ChainTracer::extend(Search* search, PathRay ray, LpeState lpe_state, SpecularChain* chain) const {
+  if (++search->surfaces > kMaxSurfaces) return false;
+  thread_local std::array<Arrival, kMaxChainLength + 1> arrivals;  // large: one for each depth
+  Arrival& arrival = arrivals[chain->signature.length];
   chain->ray = ray;
   const bool is_surface = advance(Shades::All, nullptr, &ray, &arrival);
-  chain->rests = chain->rests && search->rests(ray, arrival.hit);
+  chain->is_static = chain->is_static && search->is_static(ray, arrival.hit);
   if (is_surface) chain->length += ray.state.length;
-  return is_surface ? go_on(search, arrival, ray, word, chain) : is_seen(*search, word, chain);
+  return is_surface ? continue_chain(search, arrival, ray, lpe_state, chain) : is_seen(*search, lpe_state, chain);
 }
 
 // ray: as it arrived.
-bool ChainTracer::go_on(Search* search, const Arrival& arrival, const PathRay& ray, PathWord word, SpecularChain* chain) const {
+bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const PathRay& ray, LpeState lpe_state, SpecularChain* chain) const {
   const Vertex& vertex = arrival.vertex;
-  if (search->ends_at(arrival, word)) {
+  if (search->ends_at(arrival, lpe_state)) {
     chain->end = ChainEnd::Surface;
     chain->last = arrival.hit;
     chain->shown = vertex.point.position;
     return true;
   }
-  if (arrival.surely_rough || chain->way.length == kLongestChain) return false;
-  for (const Branch& branch : branches(*search, vertex, ray, word)) {
+  if (arrival.surely_non_specular || chain->signature.length == kMaxChainLength) return false;
+  for (const Branch& branch : branches(*search, vertex, ray, lpe_state)) {
     if (!(branch.strength > 0.0f)) continue;
     SpecularChain longer = *chain;
-    if (longer.way.length == 0) longer.first = vertex.point.hit;
-    longer.way.add(branch.letter, snapshot_.instances[vertex.point.hit.instance].id);
-    if (!extend(search, branch.ray, search->components.next(word, branch.letter), &longer)) continue;
+    if (longer.signature.length == 0) longer.first = vertex.point.hit;
+    longer.signature.add(branch.event, snapshot_.instances[vertex.point.hit.instance].id);
+    if (!extend(search, branch.ray, search->components.next(lpe_state, branch.event), &longer)) continue;
     *chain = longer;
     return true;
   }
@@ -169,7 +169,7 @@ bool ChainTracer::go_on(Search* search, const Arrival& arrival, const PathRay& r
 }
 
 uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted, const Change* change,
-                           std::array<SpecularChain, kMostComponents>* chains) const {
+                           std::array<SpecularChain, kMaxComponents>* chains) const {
   const PathRay start = camera_ray(film);
   if (is_none(start.ray)) return 0;
   PathRay ray = start;
@@ -182,28 +182,28 @@ uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSe
     SpecularChain& chain = (*chains)[size_t(c)];
     chain = {};
     chain.ray = start;
-    chain.rests = change != nullptr && !change->of_all() && search.rests(ray, arrival.hit);
+    chain.is_static = change != nullptr && !change->of_all() && search.is_static(ray, arrival.hit);
     if (is_surface) chain.length = ray.state.length;
-    const bool is_found = is_surface ? go_on(&search, arrival, ray, PathWord{0}, &chain) : is_seen(search, PathWord{0}, &chain);
+    const bool is_found = is_surface ? continue_chain(&search, arrival, ray, LpeState{0}, &chain) : is_seen(search, LpeState{0}, &chain);
     found |= is_found ? 1u << c : 0u;
   }
   return found;
 }
 
-bool ChainTracer::follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const {
+bool ChainTracer::follow(const Vec2& film, const SpecularSignature& signature, SpecularChain* chain) const {
   PathRay ray = camera_ray(film);
   if (is_none(ray.ray)) return false;
   *chain = SpecularChain{};
   thread_local Arrival arrival;
   const Vertex& vertex = arrival.vertex;
-  for (int i = 0; i < way.length; ++i) {
-    if (!advance(Shades::All, nullptr, &ray, &arrival) || arrival.surely_rough || !(scatter(vertex, way.letter(i), &ray) > 0.0f))
+  for (int i = 0; i < signature.length; ++i) {
+    if (!advance(Shades::All, nullptr, &ray, &arrival) || arrival.surely_non_specular || !(scatter(vertex, signature.event(i), &ray) > 0.0f))
       return false;
     if (i == 0) chain->first = vertex.point.hit;
-    chain->way.add(way.letter(i), snapshot_.instances[vertex.point.hit.instance].id);
+    chain->signature.add(signature.event(i), snapshot_.instances[vertex.point.hit.instance].id);
   }
   chain->ray = ray;
-  return chain->way == way;
+  return chain->signature == signature;
 }
 
 bool ChainTracer::meets(const SpecularChain& chain, float distance) const {

@@ -12,24 +12,24 @@
 namespace gradus {
 
 // Smooth vertices of a chain.
-inline constexpr int kLongestChain = 8;
+inline constexpr int kMaxChainLength = 8;
 
 enum class ChainEnd : uint8_t { None, Surface, Sky };
 
 // The way through the smooth surfaces: how it scatters, and on which objects.
-struct ChainWay {
+struct SpecularSignature {
   uint8_t length = 0;
-  uint16_t letters = 0;   // ScatterClass of each vertex, two bits each
+  uint16_t events = 0;   // ScatterClass of each vertex, two bits each
   uint64_t surfaces = 0;  // hash of the instances' ids: the same in every frame
 
-  ScatterClass letter(int vertex) const { return ScatterClass(letters >> (2 * vertex) & 3); }
-  void add(ScatterClass letter, uint64_t instance_id);
-  bool operator==(const ChainWay&) const = default;
+  ScatterClass event(int vertex) const { return ScatterClass(events >> (2 * vertex) & 3); }
+  void add(ScatterClass event, uint64_t instance_id);
+  bool operator==(const SpecularSignature&) const = default;
 };
 
 struct SpecularChain {
-  ChainWay way;
-  bool rests = false;  // nothing of it changes, and nothing that moves may come between
+  SpecularSignature signature;
+  bool is_static = false;  // nothing of it changes, and nothing that moves may come between
   ChainEnd end = ChainEnd::None;
   Hit first;                // its first smooth vertex; not valid where there is none
   Hit last;                 // what it shows, if that is a surface
@@ -47,9 +47,9 @@ class ChainTracer {
   // surfaces both reflect and transmit, the stronger way that leads to the component; it ends on the first surface that is rough or shines
   // as the component asks, or in the sky. known: what the camera ray meets. change: nullptr where it is not known; then no chain rests.
   uint32_t find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted, const Change* change,
-                std::array<SpecularChain, kMostComponents>* chains) const;
+                std::array<SpecularChain, kMaxComponents>* chains) const;
   // Goes a way from another place of the film, up to its last ray, which is not traced. False: the way breaks.
-  bool follow(const Vec2& film, const ChainWay& way, SpecularChain* chain) const;
+  bool follow(const Vec2& film, const SpecularSignature& signature, SpecularChain* chain) const;
   // Whether its last ray may meet something within about that distance, transparent or not: cheaper than to ask what.
   bool meets(const SpecularChain& chain, float distance) const;
   // What its last ray meets; t: from where that ray begins. False: it ends in the sky.
@@ -63,18 +63,18 @@ class ChainTracer {
   struct Search;
   struct Arrival;
   struct Branch {
-    ScatterClass letter;
+    ScatterClass event;
     float strength;
     PathRay ray;
   };
   enum class Shades : uint8_t { All, Transparency };
   PathRay camera_ray(const Vec2& film) const;
   bool advance(Shades shades, const Hit* known, PathRay* ray, Arrival* arrival) const;
-  float scatter(const Vertex& vertex, ScatterClass letter, PathRay* ray) const;
-  std::array<Branch, 2> branches(const Search& search, const Vertex& vertex, const PathRay& ray, PathWord word) const;
-  bool extend(Search* search, PathRay ray, PathWord word, SpecularChain* chain) const;
-  bool go_on(Search* search, const Arrival& arrival, const PathRay& ray, PathWord word, SpecularChain* chain) const;
-  bool is_seen(const Search& search, PathWord word, SpecularChain* chain) const;
+  float scatter(const Vertex& vertex, ScatterClass event, PathRay* ray) const;
+  std::array<Branch, 2> branches(const Search& search, const Vertex& vertex, const PathRay& ray, LpeState lpe_state) const;
+  bool extend(Search* search, PathRay ray, LpeState lpe_state, SpecularChain* chain) const;
+  bool continue_chain(Search* search, const Arrival& arrival, const PathRay& ray, LpeState lpe_state, SpecularChain* chain) const;
+  bool is_seen(const Search& search, LpeState lpe_state, SpecularChain* chain) const;
 
   const Snapshot& snapshot_;
   const Camera& camera_;

@@ -45,7 +45,7 @@ class Tracker {
 
   Track track(int32_t x, int32_t y, const SpecularChain& chain, const Neighbours& before, TrackingCounts* counts) const {
     Track result{Tracking::Tracked, pixel_centre(x, y), &chain};
-    if (chain.rests) return result;
+    if (chain.is_static) return result;
     if (is_known(chain, x, y)) {
       const size_t pixel = pixel_of(part_, x, y);
       result.film = known_->motion.film[pixel];
@@ -55,14 +55,14 @@ class Tracker {
     Target target;
     if (!find_target(chain, &target)) {
       result.tracking = Tracking::Gone;
-    } else if (chain.way.length == 0) {
+    } else if (chain.signature.length == 0) {
       straight(target, &result);
     } else {
       search(target, x, y, before, &result, counts);
     }
     result.film = on_film(result.film);
-    const Vec2 way = glm::abs(to_.camera().way(pixel_centre(x, y), result.film));
-    const bool inside = way.x <= float(to_.settings().width) && way.y <= float(to_.settings().height);
+    const Vec2 displacement = glm::abs(to_.camera().film_displacement(pixel_centre(x, y), result.film));
+    const bool inside = displacement.x <= float(to_.settings().width) && displacement.y <= float(to_.settings().height);
     if (result.tracking == Tracking::Tracked && !inside) result.tracking = Tracking::Outside;
     if (result.tracking != Tracking::Tracked) result.film = pixel_centre(x, y);
     return result;
@@ -83,19 +83,19 @@ class Tracker {
 
   // Seen directly, as by the view whose motion is known.
   bool is_known(const SpecularChain& chain, int32_t x, int32_t y) const {
-    if (known_ == nullptr || chain.way.length > 0) return false;
+    if (known_ == nullptr || chain.signature.length > 0) return false;
     const SpecularChain* other = known_->view.at(x, y);
-    return other != nullptr && other->way.length == 0 && other->end == chain.end && other->last == chain.last;
+    return other != nullptr && other->signature.length == 0 && other->end == chain.end && other->last == chain.last;
   }
 
   // What is seen directly.
   void straight(const Target& target, Track* track) const {
     // What is at infinity looks the same all over an orthographic film: it rests.
-    const bool rests = target.in_sky && here_.snapshot().camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
-    const bool seen = rests || (target.in_sky ? to_.camera().project_direction(target.place, Moment::Now, &track->film)
+    const bool is_static = target.in_sky && here_.snapshot().camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
+    const bool seen = is_static || (target.in_sky ? to_.camera().project_direction(target.place, Moment::Now, &track->film)
                                               : to_.camera().project(target.place, Moment::Now, &track->film));
     SpecularChain chain;
-    const bool found = seen && to_.follow(track->film, ChainWay{}, &chain);
+    const bool found = seen && to_.follow(track->film, SpecularSignature{}, &chain);
     track->tracking = !found ? Tracking::Outside : is_occluded(target, chain) ? Tracking::Occluded : Tracking::Tracked;
   }
 
@@ -113,7 +113,7 @@ class Tracker {
     const Target own = own_target(chain);
     Vec2 first = centre;
     const bool is_there = first_vertex(chain, &first);
-    const FilmSearch::Problem problem{here_, to_, chain.way, own, target, to_.camera().way(centre, first)};
+    const FilmSearch::Problem problem{here_, to_, chain.signature, own, target, to_.camera().film_displacement(centre, first)};
     SearchCounts searched;
     FilmSearch newton(problem, &searched);
     FilmPlace start{centre, chain, chain_jacobian(from_, own, x, y)}, found;
@@ -126,7 +126,7 @@ class Tracker {
       if (is_found) track->film = found.film;
       return !is_found && !(is_first && end == SearchEnd::Ended);
     };
-    const std::optional<Vec2> guess = guess_by(before, chain.way);
+    const std::optional<Vec2> guess = guess_by(before, chain.signature);
     // What the neighbours' motion leads to may be another image, whose way ends elsewhere.
     bool is_open = !guess || attempt(newton.leap(start, *guess, &found)) || track->tracking == Tracking::Broken;
     if (is_open && is_there) is_open = attempt(newton.leap(start, first, &found));
@@ -139,12 +139,12 @@ class Tracker {
   }
 
   // Where the motion of the neighbours that go the same way leads a pixel: as it changes along the film, or as that of one of them.
-  std::optional<Vec2> guess_by(const Neighbours& before, const ChainWay& way) const {
+  std::optional<Vec2> guess_by(const Neighbours& before, const SpecularSignature& displacement) const {
     const auto leads = [&](const Track* track) {
-      return track != nullptr && track->tracking == Tracking::Tracked && track->chain->way == way;
+      return track != nullptr && track->tracking == Tracking::Tracked && track->chain->signature == displacement;
     };
     const bool beside = leads(before.left), under = leads(before.below);
-    if (beside && under && leads(before.corner)) return before.left->film + to_.camera().way(before.corner->film, before.below->film);
+    if (beside && under && leads(before.corner)) return before.left->film + to_.camera().film_displacement(before.corner->film, before.below->film);
     if (beside) return before.left->film + Vec2(1, 0);
     if (under) return before.below->film + Vec2(0, 1);
     return std::nullopt;
@@ -155,7 +155,7 @@ class Tracker {
     const auto width = float(to_.settings().width);
     if (film.x >= 0.0f && film.x < width) return film;
     const Vec2 middle(0.5f * width, film.y);
-    return middle + to_.camera().way(middle, film);
+    return middle + to_.camera().film_displacement(middle, film);
   }
 
   // Where the point of the first smooth surface is in the other frame; to the bit where it was, if it rests.
@@ -229,16 +229,16 @@ class Tile {
 
 }  // namespace
 
-ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled,
+ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part, const CancelCheck& is_cancelled,
                          const KnownMotion* known) {
   const auto pixels = size_t(part.area());
   ChainMotion motion{{}, std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
   motion.film.reserve(pixels);
   for (int32_t y = part.y0; y < part.y1; ++y)
     for (int32_t x = part.x0; x < part.x1; ++x) motion.film.push_back(pixel_centre(x, y));
-  if (to.snapshot().is_other_shot || is_cut(from.centres->snapshot->camera, to.snapshot().camera)) {
-    std::fill(motion.tracking.begin(), motion.tracking.end(), Tracking::Cut);
-    motion.counts.pixels[size_t(-int(Tracking::Cut))] = pixels;
+  if (to.snapshot().is_other_shot || is_shot_change(from.centres->snapshot->camera, to.snapshot().camera)) {
+    std::fill(motion.tracking.begin(), motion.tracking.end(), Tracking::ShotChange);
+    motion.counts.pixels[size_t(-int(Tracking::ShotChange))] = pixels;
     return motion;
   }
   const Tracker tracker(from, to, part, known);

@@ -33,7 +33,7 @@ struct KnownMotion {
 // Of a part of the view `from` in the frame that `to` sees, which may be at another time or by another camera. Cancelled: pixels are
 // NotConverged. known: nullptr: none.
 ChainMotion track_chains(
-    const ChainView& from, const ChainTracer& to, const Region& part, const CancelTest& is_cancelled = [] { return false; },
+    const ChainView& from, const ChainTracer& to, const Region& part, const CancelCheck& is_cancelled = [] { return false; },
     const KnownMotion* known = nullptr);
 
 }  // namespace gradus

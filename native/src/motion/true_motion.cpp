@@ -14,27 +14,27 @@ constexpr double kRadians = 1e-4;  // what is seen is met so well
 
 }  // namespace
 
-double angle_to(const ChainTracer& tracer, const ChainWay& way, const Target& target, const glm::dvec2& film) {
+double angle_to(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& film) {
   SpecularChain chain;
-  if (!tracer.follow(Vec2(film), way, &chain)) return kBreaks;
+  if (!tracer.follow(Vec2(film), signature, &chain)) return kBreaks;
   const glm::dvec3 line(target.in_sky ? target.place : target.place - chain.ray.ray.origin);
   const glm::dvec3 direction(chain.ray.ray.direction);
   return std::atan2(glm::length(glm::cross(line, direction)), glm::dot(line, direction));
 }
 
-glm::dvec2 brute_force(const ChainTracer& tracer, const ChainWay& way, const Target& target, const glm::dvec2& around, double reach,
+glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& around, double reach,
                        double finest) {
   glm::dvec2 best(around);
-  double least = kBreaks;
+  double minimum = kBreaks;
   // True: a better one was found.
   const auto look = [&](const glm::dvec2 centre, double half, double step) {
-    const double before = least;
+    const double before = minimum;
     for (double y = -half; y <= half + 1e-9; y += step)
       for (double x = -half; x <= half + 1e-9; x += step) {
-        const double angle = angle_to(tracer, way, target, centre + glm::dvec2(x, y));
-        if (angle < least) least = angle, best = centre + glm::dvec2(x, y);
+        const double angle = angle_to(tracer, signature, target, centre + glm::dvec2(x, y));
+        if (angle < minimum) minimum = angle, best = centre + glm::dvec2(x, y);
       }
-    return least < before;
+    return minimum < before;
   };
   look(best, reach, 0.25 * reach);
   for (double step = 0.125 * reach; step > finest; step *= 0.5)
@@ -42,10 +42,10 @@ glm::dvec2 brute_force(const ChainTracer& tracer, const ChainWay& way, const Tar
   return best;
 }
 
-bool shows(const ChainTracer& tracer, const ChainWay& way, const Target& target, const glm::dvec2& film, double radians) {
+bool shows(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& film, double radians) {
   SpecularChain chain;
   Hit hit;
-  if (angle_to(tracer, way, target, film) > radians || !tracer.follow(Vec2(film), way, &chain)) return false;
+  if (angle_to(tracer, signature, target, film) > radians || !tracer.follow(Vec2(film), signature, &chain)) return false;
   const bool met = tracer.finish(chain, &hit);
   return target.in_sky ? !met : met && hit.t > 0.999f * glm::length(target.place - chain.ray.ray.origin);
 }
@@ -61,23 +61,23 @@ bool true_place(const std::vector<const ChainTracer*>& frames, const SpecularCha
   for (size_t k = 1; k < frames.size(); ++k) {
     Target target;
     if (!true_target(*frames[0], *frames[k], chain, &target)) return false;
-    *place = brute_force(*frames[k], chain.way, target, *place, kFarthest, kFinest);
-    if (!shows(*frames[k], chain.way, target, *place, kRadians)) return false;
+    *place = brute_force(*frames[k], chain.signature, target, *place, kFarthest, kFinest);
+    if (!shows(*frames[k], chain.signature, target, *place, kRadians)) return false;
   }
   return true;
 }
 
-bool seen_near(const ChainTracer& tracer, const ChainWay& way, const Target& target, const Vec2& around, double reach) {
+bool seen_near(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const Vec2& around, double reach) {
   constexpr double kStep = 0.5;
   glm::dvec2 best(around);
-  double least = kBreaks;
+  double minimum = kBreaks;
   for (double y = -reach; y <= reach; y += kStep)
     for (double x = -reach; x <= reach; x += kStep) {
       const glm::dvec2 film = glm::dvec2(around) + glm::dvec2(x, y);
-      const double angle = angle_to(tracer, way, target, film);
-      if (angle < least) least = angle, best = film;
+      const double angle = angle_to(tracer, signature, target, film);
+      if (angle < minimum) minimum = angle, best = film;
     }
-  return least < kBreaks && shows(tracer, way, target, brute_force(tracer, way, target, best, kStep, kFinest), kRadians);
+  return minimum < kBreaks && shows(tracer, signature, target, brute_force(tracer, signature, target, best, kStep, kFinest), kRadians);
 }
 
 }  // namespace gradus

@@ -12,11 +12,11 @@ namespace gradus {
 namespace {
 
 constexpr size_t kLongestName = 24;
-constexpr size_t kMostStates = 4096;
-constexpr char kLetterNames[] = {'D', 'R', 'T'};
+constexpr size_t kMaxStates = 4096;
+constexpr char kEventNames[] = {'D', 'R', 'T'};
 
 // What the expressions have come to by one word.
-using Sets = std::vector<PathExpression::States>;
+using Sets = std::vector<LightPathExpression::States>;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -67,19 +67,19 @@ std::vector<Component> read_list(std::string_view text) {
     components.push_back({std::string(name), std::string(expression)});
   }
   if (components.empty()) throw invalid_argument("the set of components is empty: expected Name=EXPRESSION;Name=EXPRESSION");
-  if (int(components.size()) >= kMostComponents) throw invalid_argument("more than " + std::to_string(kMostComponents - 1) + " components");
+  if (int(components.size()) >= kMaxComponents) throw invalid_argument("more than " + std::to_string(kMaxComponents - 1) + " components");
   return components;
 }
 
-Sets step(const std::vector<PathExpression>& expressions, const Sets& from, PathLetter letter) {
+Sets step(const std::vector<LightPathExpression>& expressions, const Sets& from, LpeEvent event) {
   Sets to;
-  for (size_t i = 0; i < expressions.size(); ++i) to.push_back(expressions[i].step(from[i], letter));
+  for (size_t i = 0; i < expressions.size(); ++i) to.push_back(expressions[i].step(from[i], event));
   return to;
 }
 
 // Bits of the expressions that a word matches where it ends at light.
-uint32_t matches(const std::vector<PathExpression>& expressions, const Sets& sets) {
-  const Sets lit = step(expressions, sets, PathLetter::L);
+uint32_t matches(const std::vector<LightPathExpression>& expressions, const Sets& sets) {
+  const Sets lit = step(expressions, sets, LpeEvent::L);
   uint32_t bits = 0;
   for (size_t i = 0; i < expressions.size(); ++i) bits |= expressions[i].accepts(lit[i]) ? 1u << i : 0u;
   return bits;
@@ -100,15 +100,15 @@ ComponentSet::ComponentSet() : components_{{"Combined", ""}}, states_(1) {}
 ComponentSet ComponentSet::parse(std::string_view text) {
   ComponentSet set;
   set.components_ = read_list(text.empty() ? kDefaultComponents : text);
-  std::vector<PathExpression> expressions;
+  std::vector<LightPathExpression> expressions;
   for (const Component& c : set.components_) expressions.emplace_back(c.expression);
   const size_t residual = expressions.size();
   set.components_.push_back({std::string(kResidual), ""});
 
   // Breadth first, so that the word kept for a state is a shortest one.
   Sets start;
-  for (const PathExpression& e : expressions) start.push_back(e.step(e.start(), PathLetter::E));
-  std::map<Sets, PathWord> known{{start, 0}};
+  for (const LightPathExpression& e : expressions) start.push_back(e.step(e.start(), LpeEvent::E));
+  std::map<Sets, LpeState> known{{start, 0}};
   std::vector<Sets> sets{start};
   std::vector<std::string> words{"E"};
   uint32_t matched = 0;
@@ -123,13 +123,13 @@ ComponentSet ComponentSet::parse(std::string_view text) {
     State state;
     state.component = uint8_t(bits != 0 ? size_t(__builtin_ctz(bits)) : residual);
     for (int k = 0; k < kScatterClasses; ++k) {
-      Sets next = step(expressions, sets[s], static_cast<PathLetter>(k));
-      const auto [found, is_new] = known.emplace(next, PathWord(sets.size()));
+      Sets next = step(expressions, sets[s], static_cast<LpeEvent>(k));
+      const auto [found, is_new] = known.emplace(next, LpeState(sets.size()));
       state.next[size_t(k)] = found->second;
       if (!is_new) continue;
-      if (sets.size() >= kMostStates) throw invalid_argument("the path expressions are too complex: an automaton of more than 4096 states");
+      if (sets.size() >= kMaxStates) throw invalid_argument("the path expressions are too complex: an automaton of more than 4096 states");
       sets.push_back(std::move(next));
-      words.push_back(words[s] + kLetterNames[k]);
+      words.push_back(words[s] + kEventNames[k]);
     }
     set.states_.push_back(state);
   }
@@ -146,17 +146,17 @@ void ComponentSet::look_ahead() {
     changes = false;
     for (State& s : states_) {
       uint32_t ahead = s.ahead;
-      for (const PathWord next : s.next) ahead |= states_[next].ahead;
+      for (const LpeState next : s.next) ahead |= states_[next].ahead;
       changes |= ahead != s.ahead;
       s.ahead = ahead;
     }
   }
 }
 
-ComponentSet ComponentSet::with(uint32_t kept, uint8_t rest) const {
+ComponentSet ComponentSet::with(uint32_t kept, uint8_t remainder) const {
   ComponentSet set = *this;
   set.components_.clear();
-  std::vector<uint8_t> place(components_.size(), rest);
+  std::vector<uint8_t> place(components_.size(), remainder);
   for (int i = 0; i < count(); ++i) {
     if ((kept >> i & 1) == 0) continue;
     place[size_t(i)] = uint8_t(set.components_.size());
@@ -177,15 +177,15 @@ ComponentSet ComponentSet::merged(uint32_t small) const {
 
 ComponentSet ComponentSet::without_empty(uint32_t kept) const { return with(kept != 0 ? kept : 1u << (count() - 1), 0); }
 
-uint32_t ComponentSet::reached(uint32_t letters) const {
-  std::vector<PathWord> words{0};
+uint32_t ComponentSet::reached(uint32_t events) const {
+  std::vector<LpeState> words{0};
   std::vector<bool> known(states_.size());
   known[0] = true;
   uint32_t bits = 0;
   for (size_t i = 0; i < words.size(); ++i) {
     for (int k = 0; k < kScatterClasses; ++k) {
-      if ((letters >> k & 1) == 0) continue;
-      const PathWord to = next(words[i], static_cast<ScatterClass>(k));
+      if ((events >> k & 1) == 0) continue;
+      const LpeState to = next(words[i], static_cast<ScatterClass>(k));
       bits |= 1u << component(to);
       if (!known[to]) words.push_back(to);
       known[to] = true;
@@ -199,32 +199,32 @@ int ComponentSet::find(std::string_view name) const {
   return found != components_.end() ? int(found - components_.begin()) : -1;
 }
 
-int ComponentSet::classify(std::string_view word) const {
-  const std::string_view letters = trimmed(word);
-  if (letters.size() < 2 || letters.front() != 'E' || letters.back() != 'L') {
-    throw invalid_argument("\"" + std::string(letters) + "\" is no path: E, then D, R or T for each scattering, then L");
+int ComponentSet::classify(std::string_view path) const {
+  const std::string_view events = trimmed(path);
+  if (events.size() < 2 || events.front() != 'E' || events.back() != 'L') {
+    throw invalid_argument("\"" + std::string(events) + "\" is no path: E, then D, R or T for each scattering, then L");
   }
-  PathWord at = 0;
-  for (const char c : letters.substr(1, letters.size() - 2)) {
-    const auto* const letter = std::find(std::begin(kLetterNames), std::end(kLetterNames), c);
-    if (letter == std::end(kLetterNames)) throw invalid_argument("\"" + std::string(letters) + "\": '" + c + "' is none of D R T");
-    at = next(at, static_cast<ScatterClass>(letter - std::begin(kLetterNames)));
+  LpeState at = 0;
+  for (const char c : events.substr(1, events.size() - 2)) {
+    const auto* const event = std::find(std::begin(kEventNames), std::end(kEventNames), c);
+    if (event == std::end(kEventNames)) throw invalid_argument("\"" + std::string(events) + "\": '" + c + "' is none of D R T");
+    at = next(at, static_cast<ScatterClass>(event - std::begin(kEventNames)));
   }
   return component(at);
 }
 
-std::vector<std::string> ComponentSet::examples(int component, size_t most) const {
+std::vector<std::string> ComponentSet::examples(int component, size_t maximum) const {
   std::vector<std::string> found;
-  std::vector<std::pair<PathWord, std::string>> words{{PathWord{0}, "E"}};
+  std::vector<std::pair<LpeState, std::string>> words{{LpeState{0}, "E"}};
   // As long as new states come, words lead to new components; a few letters more for words of the same kind.
   const size_t longest = states_.size() + 3;
-  for (size_t length = 0; length <= longest && found.size() < most && !words.empty(); ++length) {
-    std::vector<std::pair<PathWord, std::string>> longer;
-    for (const auto& [at, word] : words) {
-      if (this->component(at) == component && found.size() < most) found.push_back(word + "L");
+  for (size_t length = 0; length <= longest && found.size() < maximum && !words.empty(); ++length) {
+    std::vector<std::pair<LpeState, std::string>> longer;
+    for (const auto& [at, path] : words) {
+      if (this->component(at) == component && found.size() < maximum) found.push_back(path + "L");
       for (int k = 0; k < kScatterClasses; ++k) {
-        const PathWord to = next(at, static_cast<ScatterClass>(k));
-        if ((ahead(to) >> component & 1) != 0 && longer.size() < 4096) longer.emplace_back(to, word + kLetterNames[k]);
+        const LpeState to = next(at, static_cast<ScatterClass>(k));
+        if ((ahead(to) >> component & 1) != 0 && longer.size() < 4096) longer.emplace_back(to, path + kEventNames[k]);
       }
     }
     words = std::move(longer);

@@ -17,7 +17,7 @@
 namespace gradus {
 
 // Residual included.
-inline constexpr int kMostComponents = 16;
+inline constexpr int kMaxComponents = 16;
 inline constexpr std::string_view kDefaultComponents = "Emission=EL;Diffuse=ED.*L;Reflection=ER(D.*)?L;Transmission=ETT(D.*)?L";
 inline constexpr std::string_view kResidual = "Residual";
 
@@ -25,7 +25,7 @@ inline constexpr std::string_view kResidual = "Residual";
 inline constexpr uint32_t kEveryComponent = ~uint32_t{0};
 
 // Where a path's word has come to. 0 after E.
-using PathWord = uint16_t;
+using LpeState = uint16_t;
 
 struct Component {
   std::string name;
@@ -53,28 +53,28 @@ class ComponentSet {
   uint32_t all() const { return (uint32_t{1} << count()) - 1; }
   uint32_t residual() const { return components_.back().name == kResidual ? uint32_t{1} << (count() - 1) : 0; }
 
-  PathWord next(PathWord word, ScatterClass letter) const { return states_[word].next[size_t(letter)]; }
+  LpeState next(LpeState word, ScatterClass event) const { return states_[word].next[size_t(event)]; }
   // Of a path that finds light here.
-  int component(PathWord word) const { return states_[word].component; }
+  int component(LpeState word) const { return states_[word].component; }
   // Bits of the components to which a path may still come from here, by this word or a longer one.
-  uint32_t ahead(PathWord word) const { return states_[word].ahead; }
+  uint32_t ahead(LpeState word) const { return states_[word].ahead; }
   // Bits of the components of paths that scatter once or more, by these letters alone (a bit each).
-  uint32_t reached(uint32_t letters) const;
+  uint32_t reached(uint32_t events) const;
 
   // Of a whole word as a user writes it ("ETTDL"). Throws invalid_argument where it is none.
   int classify(std::string_view word) const;
-  // Shortest words of a component, at most `most`; none where no path is left for Residual.
-  std::vector<std::string> examples(int component, size_t most) const;
+  // Shortest words of a component, at most `maximum`; none where no path is left for Residual.
+  std::vector<std::string> examples(int component, size_t maximum) const;
 
  private:
   struct State {
-    std::array<PathWord, kScatterClasses> next{};
+    std::array<LpeState, kScatterClasses> next{};
     uint8_t component = 0;
     uint32_t ahead = 1;
   };
   void look_ahead();
   // Paths of others belong to the one at `rest`.
-  ComponentSet with(uint32_t kept, uint8_t rest) const;
+  ComponentSet with(uint32_t kept, uint8_t remainder) const;
 
   std::vector<Component> components_;
   std::vector<State> states_;

@@ -14,14 +14,14 @@ namespace {
 float sum_limit(float clamp) { return clamp > 0.0f ? 3.0f * clamp : kInfinity; }
 
 // Hidden from some kinds of bounces and not from others.
-bool tells_kinds_apart(uint32_t visibility) { return (visibility & kAllBounces) != 0 && (visibility & kAllBounces) != kAllBounces; }
+bool distinguishes_kinds(uint32_t visibility) { return (visibility & kAllBounces) != 0 && (visibility & kAllBounces) != kAllBounces; }
 
 bool kinds_matter_in(const Snapshot& scene) {
   const auto any = [](const auto& list, auto&& test) { return std::any_of(list.begin(), list.end(), test); };
-  return tells_kinds_apart(scene.world.visibility) || any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
-         any(scene.instances, [](const InstanceData& i) { return tells_kinds_apart(i.visibility); }) ||
-         (scene.emitters &&
-          any(scene.emitters->lamps, [](const Lamp& lamp) { return lamp.found_by_rays() && tells_kinds_apart(lamp.visibility); }));
+  return distinguishes_kinds(scene.world.visibility) || any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
+         any(scene.instances, [](const InstanceData& i) { return distinguishes_kinds(i.visibility); }) ||
+         (scene.light_table &&
+          any(scene.light_table->analytic_lights, [](const AnalyticLight& light) { return light.found_by_rays() && distinguishes_kinds(light.visibility); }));
 }
 
 bool is_uniform(const Snapshot& scene) {

@@ -11,7 +11,7 @@ Contribution found(const PathContext& context, const RaySource& source, const Pa
   c.pdf_light = pdf_light;
   c.pdf_bsdf = source.sampled_light() ? source.event->pdf : 0.0f;
   c.indirect = state.depth > 1;
-  c.component = context.components.component(state.word);
+  c.component = context.components.component(state.lpe_state);
   c.light = radiance;
   c.tail = radiance * bsdf_weight(c.pdf_light, c.pdf_bsdf);
   c.clamped = clamp_contribution(context, throughput * c.tail, c.indirect);
@@ -22,15 +22,15 @@ Contribution found(const PathContext& context, const RaySource& source, const Pa
 
 void apply_segment(const Segment& segment, PathState* state) { state->throughput *= segment.weight; }
 
-Contribution lamp_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LampSighting& lamp) {
+Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LightCrossing& light_crossing) {
   const Receiver eye{state.ray.ray.origin, Vec3(0.0f), true};
   const Receiver receiver = source.vertex != nullptr ? receiver_of(*source.vertex) : eye;
-  const EmitterView view = view_emitter(context.scene, lamp.point, receiver);
-  const Rgb radiance = lamp_radiance(context, view, state.ray, state.depth);
+  const LightEvaluation view = evaluate_light(context.scene, light_crossing.point, receiver);
+  const Rgb radiance = light_hit_radiance(context, view, state.ray, state.depth);
   if (is_black(radiance)) {
     return {};
   }
-  return found(context, source, state, state.throughput * lamp.weight, radiance, source.sampled_light() ? view.pdf : 0.0f);
+  return found(context, source, state, state.throughput * light_crossing.weight, radiance, source.sampled_light() ? view.pdf : 0.0f);
 }
 
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state) {
@@ -38,7 +38,7 @@ Contribution world_contribution(const PathContext& context, const RaySource& sou
   if (is_black(radiance)) {
     return {};
   }
-  const EmitterPoint point = source.sampled_light() ? emitter_of_world(context.scene, state.ray.ray.direction) : EmitterPoint{};
+  const LightPoint point = source.sampled_light() ? light_point_of_world(context.scene, state.ray.ray.direction) : LightPoint{};
   return found(context, source, state, state.throughput, radiance, light_pdf(context, source, point));
 }
 
@@ -46,7 +46,7 @@ Contribution emission_contribution(const PathContext& context, const RaySource& 
   if (is_black(vertex.shade.emission)) {
     return {};
   }
-  const EmitterPoint point = source.sampled_light() ? emitter_of_surface(context.scene, vertex.point) : EmitterPoint{};
+  const LightPoint point = source.sampled_light() ? light_point_of_surface(context.scene, vertex.point) : LightPoint{};
   return found(context, source, state, state.throughput, vertex.shade.emission, light_pdf(context, source, point));
 }
 
@@ -69,17 +69,17 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
   c.pdf_light = light.view.pdf;
   c.pdf_bsdf = lit.pdf_bsdf;
   c.indirect = state.depth > 0;
-  c.component = context.components.component(context.components.next(state.word, scatter_class));
+  c.component = context.components.component(context.components.next(state.lpe_state, scatter_class));
   c.light = transmittance;
   c.tail = lit.value * c.light / (c.pdf_light + c.pdf_bsdf);
   c.clamped = clamp_contribution(context, state.throughput * c.tail, c.indirect);
   return c;
 }
 
-bool is_hole(const PathContext& context, const Vertex& vertex) {
+bool is_holdout(const PathContext& context, const Vertex& vertex) {
   return (context.scene.instances[vertex.point.hit.instance].visibility & GRADUS_HOLDOUT) != 0;
 }
 
-float held_out(const Rgb& throughput, const Rgb& holdout) { return is_black(holdout) ? 0.0f : mean_component(throughput * holdout); }
+float holdout_alpha(const Rgb& throughput, const Rgb& holdout) { return is_black(holdout) ? 0.0f : mean_component(throughput * holdout); }
 
 }  // namespace gradus

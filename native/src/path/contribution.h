@@ -20,8 +20,8 @@ struct Contribution {
 // The path passes a segment.
 void apply_segment(const Segment& segment, PathState* state);
 
-// Emitters that the path's ray found: state before apply_segment() for lamps, after it for the others.
-Contribution lamp_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LampSighting& lamp);
+// Emitters that the path's ray found: state before apply_segment() for lights, after it for the others.
+Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LightCrossing& light_crossing);
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state);
 Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state, const Vertex& vertex);
 
@@ -32,8 +32,8 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
                                 const LitClass& lit, const Rgb& transmittance);
 
 // The surface is cut out of the film.
-bool is_hole(const PathContext& context, const Vertex& vertex);
+bool is_holdout(const PathContext& context, const Vertex& vertex);
 // Part of the film that a surface with holdout leaves transparent.
-float held_out(const Rgb& throughput, const Rgb& holdout);
+float holdout_alpha(const Rgb& throughput, const Rgb& holdout);
 
 }  // namespace gradus

@@ -12,12 +12,12 @@ bool sees(uint32_t visibility, LightPass pass, bool transmitted) { return (visib
 }  // namespace
 
 bool sample_light(const PathContext& context, const VertexSample& u, const Vertex& vertex, int depth, LightSample* light) {
-  if (!context.scene.features.has_emitters || !vertex.shade.closures.has_smooth()) {
+  if (!context.scene.features.has_lights || !vertex.shade.closures.has_smooth()) {
     return false;
   }
   const Receiver receiver = receiver_of(vertex);
-  sample_emitter(context.scene, receiver, u.light_choice.x, u.light, &light->point, &light->view);
-  if (light->point.kind == EmitterKind::None) {
+  sample_light_point(context.scene, receiver, u.light_choice.x, u.light, &light->point, &light->view);
+  if (light->point.kind == LightKind::None) {
     return false;
   }
   return light->view.pdf > 0.0f && !is_black(light->view.radiance) && static_cast<uint32_t>(depth) <= light->view.max_bounces;
@@ -25,7 +25,7 @@ bool sample_light(const PathContext& context, const VertexSample& u, const Verte
 
 std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light,
                                  const RayState& ray) {
-  const EmitterView& view = light.view;
+  const LightEvaluation& view = light.view;
   const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
   std::array<Rgb, 3> parts = vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction, transmitted);
   for (int i = 0; i < 3; ++i) {
@@ -38,7 +38,7 @@ std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& verte
     } else {
       RayState next = next_ray_state(ray, pass == LightPass::Diffuse, transmitted, false);
       next.length = view.distance;
-      parts[i] *= emitter_radiance(context.scene, light.point, view, next);
+      parts[i] *= evaluated_radiance(context.scene, light.point, view, next);
     }
   }
   return parts;
@@ -51,7 +51,7 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterCl
   if (!(probability > 0.0f) || !closures.has_smooth(c)) {
     return lit;
   }
-  const EmitterView& view = light.view;
+  const LightEvaluation& view = light.view;
   const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
   const BsdfEval eval = closures.evaluate_side(c, vertex.wo, view.direction, transmitted);
   const bool found_by_rays = light.point.found_by_rays && transmitted == (glm::dot(vertex.facing_normal(), view.direction) < 0.0f);
@@ -64,12 +64,12 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterCl
   return lit;
 }
 
-Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterPoint& point, const EmitterView& view,
+Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const LightPoint& point, const LightEvaluation& view,
                         uint32_t crossed) {
   if (!view.casts_shadow) {
     return Rgb(1.0f);
   }
-  const Ray ray = ray_to_emitter(shadow_origin(context.scene, from, view.direction), from, point, view);
+  const Ray ray = ray_to_light(shadow_origin(context.scene, from, view.direction), from, point, view);
   if (!context.scene.features.has_transparent_shadows) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
@@ -77,14 +77,14 @@ Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, co
   return context.scene.transmittance(ray, crossed < allowed ? allowed - crossed : 0);
 }
 
-float light_pdf(const PathContext& context, const RaySource& source, const EmitterPoint& point) {
-  if (!source.sampled_light() || point.kind == EmitterKind::None) {
+float light_pdf(const PathContext& context, const RaySource& source, const LightPoint& point) {
+  if (!source.sampled_light() || point.kind == LightKind::None) {
     return 0.0f;
   }
-  return emitter_pdf(context.scene, point, receiver_of(*source.vertex));
+  return light_point_pdf(context.scene, point, receiver_of(*source.vertex));
 }
 
-Rgb lamp_radiance(const PathContext&, const EmitterView& view, const PathRay& ray, int depth) {
+Rgb light_hit_radiance(const PathContext&, const LightEvaluation& view, const PathRay& ray, int depth) {
   const bool visible = (view.visibility & ray.visibility) != 0;
   const bool within = depth == 0 || static_cast<uint32_t>(depth - 1) <= view.max_bounces;
   return visible && within ? view.radiance : Rgb(0.0f);

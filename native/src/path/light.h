@@ -11,8 +11,8 @@ namespace gradus {
 
 // What next-event estimation at a vertex has chosen.
 struct LightSample {
-  EmitterPoint point;
-  EmitterView view;
+  LightPoint point;
+  LightEvaluation view;
 };
 
 // Light scattered within one class.
@@ -30,7 +30,7 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterCl
 std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light,
                                  const RayState& ray);
 // Transmittance for shadow rays.
-Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const EmitterPoint& point, const EmitterView& view,
+Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const LightPoint& point, const LightEvaluation& view,
                         uint32_t crossed);
 // The event from which a ray came; nullptr for the camera.
 struct RaySource {
@@ -41,12 +41,12 @@ struct RaySource {
 };
 
 // Density of light sampling for what a ray found; 0 where it cannot.
-float light_pdf(const PathContext& context, const RaySource& source, const EmitterPoint& point);
+float light_pdf(const PathContext& context, const RaySource& source, const LightPoint& point);
 // p_bsdf / (p_light + p_bsdf).
 inline float bsdf_weight(float pdf_light, float pdf_bsdf) { return pdf_light > 0.0f ? pdf_bsdf / (pdf_light + pdf_bsdf) : 1.0f; }
 
-// Radiance of a lamp that a ray crosses, and of the world behind everything, towards a ray of this kind; 0 where hidden from it.
-Rgb lamp_radiance(const PathContext& context, const EmitterView& view, const PathRay& ray, int depth);
+// Radiance of a light that a ray crosses, and of the world behind everything, towards a ray of this kind; 0 where hidden from it.
+Rgb light_hit_radiance(const PathContext& context, const LightEvaluation& view, const PathRay& ray, int depth);
 Rgb world_radiance(const PathContext& context, const PathRay& ray, int depth);
 
 }  // namespace gradus

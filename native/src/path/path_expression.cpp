@@ -11,23 +11,23 @@ namespace {
 
 constexpr size_t kDeepest = 64;  // parentheses in parentheses
 
-constexpr uint8_t bit(PathLetter letter) { return uint8_t(1u << unsigned(letter)); }
+constexpr uint8_t bit(LpeEvent event) { return uint8_t(1u << unsigned(event)); }
 
 // 0: no letter.
-uint8_t letters_of(char c) {
+uint8_t events_of(char c) {
   switch (c) {
     case 'D':
-      return bit(PathLetter::D);
+      return bit(LpeEvent::D);
     case 'R':
-      return bit(PathLetter::R);
+      return bit(LpeEvent::R);
     case 'T':
-      return bit(PathLetter::T);
+      return bit(LpeEvent::T);
     case 'E':
-      return bit(PathLetter::E);
+      return bit(LpeEvent::E);
     case 'L':
-      return bit(PathLetter::L);
+      return bit(LpeEvent::L);
     case '.':
-      return bit(PathLetter::D) | bit(PathLetter::R) | bit(PathLetter::T);
+      return bit(LpeEvent::D) | bit(LpeEvent::R) | bit(LpeEvent::T);
     default:
       return 0;
   }
@@ -38,18 +38,18 @@ uint8_t letters_of(char c) {
 // expression = sequence { "|" sequence };  sequence = { factor };  factor = ( letter | "." | "(" expression ")" ) { "*" | "+" | "?" }
 class ExpressionParser {
  public:
-  ExpressionParser(std::string_view text, PathExpression* to) : text_(text), to_(*to) {}
+  ExpressionParser(std::string_view text, LightPathExpression* to) : text_(text), to_(*to) {}
 
   void parse() {
     const uint32_t first = state();  // number 0 is where it starts
-    const Part all = expression();
+    const Fragment all = expression();
     if (at_ < text_.size()) fail("there is no '(' for this ')'");
     to_.states_[first].next[0] = all.begin;
     to_.end_ = all.end;
   }
 
  private:
-  struct Part {
+  struct Fragment {
     uint32_t begin, end;
   };
 
@@ -59,7 +59,7 @@ class ExpressionParser {
   }
   void link(uint32_t from, uint32_t to) {
     uint32_t* next = to_.states_[from].next;
-    next[next[0] == PathExpression::kNone ? 0 : 1] = to;
+    next[next[0] == LightPathExpression::kNone ? 0 : 1] = to;
   }
   char peek() {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
@@ -69,12 +69,12 @@ class ExpressionParser {
     throw invalid_argument("path expression \"" + std::string(text_) + "\", character " + std::to_string(at_ + 1) + ": " + what);
   }
 
-  Part expression() {
-    Part all = sequence();
+  Fragment expression() {
+    Fragment all = sequence();
     while (peek() == '|') {
       ++at_;
-      const Part other = sequence();
-      const Part either{state(), state()};
+      const Fragment other = sequence();
+      const Fragment either{state(), state()};
       link(either.begin, all.begin);
       link(either.begin, other.begin);
       link(all.end, either.end);
@@ -84,63 +84,63 @@ class ExpressionParser {
     return all;
   }
 
-  Part sequence() {
+  Fragment sequence() {
     const uint32_t begin = state();
-    Part all{begin, begin};
+    Fragment all{begin, begin};
     for (char c = peek(); c != '\0' && c != '|' && c != ')'; c = peek()) {
-      const Part next = factor();
+      const Fragment next = factor();
       link(all.end, next.begin);
       all.end = next.end;
     }
     return all;
   }
 
-  Part factor() {
-    Part part = atom();
+  Fragment factor() {
+    Fragment fragment = atom();
     for (char c = peek(); c == '*' || c == '+' || c == '?'; c = peek()) {
       ++at_;
-      const Part repeated{state(), state()};
-      link(repeated.begin, part.begin);
+      const Fragment repeated{state(), state()};
+      link(repeated.begin, fragment.begin);
       if (c != '+') link(repeated.begin, repeated.end);
-      if (c != '?') link(part.end, part.begin);
-      link(part.end, repeated.end);
-      part = repeated;
+      if (c != '?') link(fragment.end, fragment.begin);
+      link(fragment.end, repeated.end);
+      fragment = repeated;
     }
-    return part;
+    return fragment;
   }
 
-  Part atom() {
+  Fragment atom() {
     const char c = peek();
     if (c == '(') return group();
-    const uint8_t letters = letters_of(c);
-    if (letters == 0)
+    const uint8_t events = events_of(c);
+    if (events == 0)
       fail(std::string("'") + c + "' is none of E D R T L . * + ? | ( )" +
            (c == '*' || c == '+' || c == '?' ? " that can stand here" : ""));
     ++at_;
-    const Part part{state(), state()};
-    to_.states_[part.begin].letters = letters;
-    link(part.begin, part.end);
-    return part;
+    const Fragment fragment{state(), state()};
+    to_.states_[fragment.begin].events = events;
+    link(fragment.begin, fragment.end);
+    return fragment;
   }
 
-  Part group() {
+  Fragment group() {
     if (++depth_ > kDeepest) fail("parentheses are too deep");
     ++at_;
-    const Part part = expression();
+    const Fragment fragment = expression();
     if (peek() != ')') fail("a ')' is missing");
     ++at_;
     --depth_;
-    return part;
+    return fragment;
   }
 
   const std::string_view text_;
-  PathExpression& to_;
+  LightPathExpression& to_;
   size_t at_ = 0, depth_ = 0;
 };
 
-PathExpression::PathExpression(std::string_view text) { ExpressionParser(text, this).parse(); }
+LightPathExpression::LightPathExpression(std::string_view text) { ExpressionParser(text, this).parse(); }
 
-PathExpression::States PathExpression::closure(States states) const {
+LightPathExpression::States LightPathExpression::closure(States states) const {
   std::vector<bool> is_in(states_.size(), false);
   States todo = std::move(states), all;
   while (!todo.empty()) {
@@ -149,7 +149,7 @@ PathExpression::States PathExpression::closure(States states) const {
     if (is_in[s]) continue;
     is_in[s] = true;
     all.push_back(s);
-    if (states_[s].letters != 0) continue;
+    if (states_[s].events != 0) continue;
     for (const uint32_t next : states_[s].next) {
       if (next != kNone) todo.push_back(next);
     }
@@ -158,14 +158,14 @@ PathExpression::States PathExpression::closure(States states) const {
   return all;
 }
 
-PathExpression::States PathExpression::step(const States& from, PathLetter letter) const {
+LightPathExpression::States LightPathExpression::step(const States& from, LpeEvent event) const {
   States to;
   for (const uint32_t s : from) {
-    if ((states_[s].letters & bit(letter)) != 0) to.push_back(states_[s].next[0]);
+    if ((states_[s].events & bit(event)) != 0) to.push_back(states_[s].next[0]);
   }
   return closure(std::move(to));
 }
 
-bool PathExpression::accepts(const States& states) const { return std::binary_search(states.begin(), states.end(), end_); }
+bool LightPathExpression::accepts(const States& states) const { return std::binary_search(states.begin(), states.end(), end_); }
 
 }  // namespace gradus

@@ -8,17 +8,17 @@
 namespace gradus {
 
 // Letters of path words.
-enum class PathLetter : uint8_t { D, R, T, E, L };
+enum class LpeEvent : uint8_t { D, R, T, E, L };
 
-class PathExpression {
+class LightPathExpression {
  public:
   using States = std::vector<uint32_t>;  // in ascending order
 
   // Throws invalid_argument with the place of what is no expression. Blanks are passed over.
-  explicit PathExpression(std::string_view text);
+  explicit LightPathExpression(std::string_view text);
 
   States start() const { return closure({0}); }
-  States step(const States& from, PathLetter letter) const;
+  States step(const States& from, LpeEvent event) const;
   bool accepts(const States& states) const;
 
  private:
@@ -26,7 +26,7 @@ class PathExpression {
   static constexpr uint32_t kNone = UINT32_MAX;
   // Goes on to both `next` by no letter, or to the first by one of `letters`.
   struct State {
-    uint8_t letters = 0;  // bits of PathLetter
+    uint8_t events = 0;  // bits of LpeEvent
     uint32_t next[2] = {kNone, kNone};
   };
   States closure(States states) const;

@@ -55,8 +55,8 @@ Vec3 shown_normal(const Vertex& vertex) {
 
 }  // namespace
 
-PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* counters) : context_(context), counters_(counters) {
-  for (PassPlane& plane : frame->passes) {
+PassRecorder::PassRecorder(const PathContext& context, Film* film, Counters* counters) : context_(context), counters_(counters) {
+  for (PassPlane& plane : film->passes) {
     planes_[plane.pass] = &plane;
     active_ = true;
     lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
@@ -64,23 +64,23 @@ PassRecorder::PassRecorder(const PathContext& context, Frame* frame, Counters* c
     features_ |= is_feature;
     others_ |= !is_feature;
   }
-  keeps_rough_ = !frame->components[0].rough[0].empty();
-  keeps_details_ = !frame->components[0].details.empty();
-  if (keeps_rough_ || keeps_details_) {
-    components_ = &frame->components;
+  records_non_specular_ = !film->components[0].non_specular[0].empty();
+  records_details_ = !film->components[0].details.empty();
+  if (records_non_specular_ || records_details_) {
+    components_ = &film->components;
     active_ = true;
   }
 }
 
-void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool again) {
+void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool adds_components) {
   pixel_ = pixel;
   half_ = half;
   number_ = number;
   first_sample_ = number == context_.settings.first_sample;
-  again_ = again;
-  features_done_ = !features_ || again;
-  looks_for_rough_ = components_ != nullptr && !again;
-  told_ = told_rough_ = 0;
+  adds_components_ = adds_components;
+  features_done_ = !features_ || adds_components;
+  seeks_non_specular_ = components_ != nullptr && !adds_components;
+  detail_components_ = vertex_components_ = 0;
   path_length_ = 0.0f;
   albedo_ = Rgb(0.0f);
 }
@@ -115,8 +115,8 @@ void PassRecorder::light(const PathState& state, const Vertex& vertex, ScatterCl
 }
 
 void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
-  looks_for_rough_ = looks_for_rough_ && event.scatter_class != ScatterClass::Diffuse;
-  told_ = told_rough_ = 0;
+  seeks_non_specular_ = seeks_non_specular_ && event.scatter_class != ScatterClass::Diffuse;
+  detail_components_ = vertex_components_ = 0;
   if (depth > 0 || !lights_) {
     return;
   }
@@ -134,20 +134,20 @@ void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent
 
 void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
   path_length_ += segment.length;
-  if (state.depth == 0 && others_ && !again_) {
+  if (state.depth == 0 && others_ && !adds_components_) {
     camera_surface(sampler, state.throughput, vertex);
   }
   if (!features_done_) {
     features(state, vertex);
   }
-  if (looks_for_rough_) {
-    if (keeps_rough_) rough_vertex(state, vertex);
-    if (keeps_details_) details(state, vertex);
+  if (seeks_non_specular_) {
+    if (records_non_specular_) non_specular_vertex(state, vertex);
+    if (records_details_) details(state, vertex);
   }
 }
 
 void PassRecorder::escaped(const PathState& state) {
-  if (state.depth > 0 || again_) {
+  if (state.depth > 0 || adds_components_) {
     return;
   }
   add(GRADUS_PASS_MIST, 1.0f);
@@ -226,7 +226,7 @@ template <class Project>
 void PassRecorder::add_motion(const Project& project) {
   Vec2 now, previous, next;
   if (project(Moment::Now, &now) && project(Moment::Previous, &previous) && project(Moment::Next, &next)) {
-    add(GRADUS_PASS_VECTOR, Vec4(context_.camera.way(now, previous), context_.camera.way(next, now)));
+    add(GRADUS_PASS_VECTOR, Vec4(context_.camera.film_displacement(now, previous), context_.camera.film_displacement(next, now)));
   }
 }
 
@@ -241,7 +241,7 @@ void PassRecorder::background_motion(const Vec3& direction) {
 }
 
 // Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles, where what shines counts as an
-// albedo, too: lamps and the sky, which have no closures, would else look like black.
+// albedo, too: lights and the sky, which have no closures, would else look like black.
 void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   const Closures& closures = vertex.shade.closures;
   add_albedo(state.throughput * vertex.shade.emission);
@@ -258,65 +258,65 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
 }
 
 // The first rough vertex of all paths that scatter here in class D; some of them may have been seen in a mirror on the way.
-uint32_t PassRecorder::components_of_rough(const PathState& state, const Vertex& vertex) const {
+uint32_t PassRecorder::components_of_non_specular(const PathState& state, const Vertex& vertex) const {
   if (!(vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f)) {
     return 0;
   }
-  return context_.components.ahead(context_.components.next(state.word, ScatterClass::Diffuse));
+  return context_.components.ahead(context_.components.next(state.lpe_state, ScatterClass::Diffuse));
 }
 
-void PassRecorder::rough_vertex(const PathState& state, const Vertex& vertex) {
-  const uint32_t ahead = components_of_rough(state, vertex);
+void PassRecorder::non_specular_vertex(const PathState& state, const Vertex& vertex) {
+  const uint32_t ahead = components_of_non_specular(state, vertex);
   if (ahead == 0) {
     return;
   }
-  tell(ahead, RoughVertices{vertex.shade.closures.albedo(vertex.wo), shown_normal(vertex), inverse_of(path_length_), 1.0f});
+  record(ahead, NonSpecularVertices{vertex.shade.closures.albedo(vertex.wo), shown_normal(vertex), inverse_of(path_length_), 1.0f});
 }
 
 // Of a surface that is rough, or that shines.
 void PassRecorder::details(const PathState& state, const Vertex& vertex) {
-  uint32_t components = components_of_rough(state, vertex);
-  if (!is_black(vertex.shade.emission)) components |= uint32_t{1} << context_.components.component(state.word);
+  uint32_t components = components_of_non_specular(state, vertex);
+  if (!is_black(vertex.shade.emission)) components |= uint32_t{1} << context_.components.component(state.lpe_state);
   if (components == 0) {
     return;
   }
   const Hit& hit = vertex.point.hit;
   const InstanceData& instance = context_.scene.instances[hit.instance];
   const auto object = static_cast<float>(instance.pass_index), face = static_cast<float>(instance.mesh->face(hit.triangle));
-  tell(components, {uv_of(*instance.mesh, hit), vertex.shade.emission, 0.0f, object, face, number_});
+  record(components, {uv_of(*instance.mesh, hit), vertex.shade.emission, 0.0f, object, face, number_});
 }
 
-// What a segment shows counts once, be it several lamps and the surface behind them.
-void PassRecorder::tell(uint32_t components, const RoughDetails& here) {
+// What a segment shows counts once, be it several lights and the surface behind them.
+void PassRecorder::record(uint32_t components, const NonSpecularDetails& here) {
   for (size_t c = 0; c < components_->size(); ++c) {
     if ((components >> c & 1) == 0) continue;
-    RoughDetails once = here;
-    once.segments = (told_ >> c & 1) == 0 ? 1.0f : 0.0f;
+    NonSpecularDetails once = here;
+    once.segments = (detail_components_ >> c & 1) == 0 ? 1.0f : 0.0f;
     add_details(once, &(*components_)[c].details[pixel_], counters_);
   }
-  told_ |= components;
+  detail_components_ |= components;
 }
 
 // Likewise: it is as far as the first of these, and reflects no more than all light.
-void PassRecorder::tell(uint32_t components, const RoughVertices& here) {
+void PassRecorder::record(uint32_t components, const NonSpecularVertices& here) {
   for (size_t c = 0; c < components_->size(); ++c) {
     if ((components >> c & 1) == 0) continue;
-    const bool is_first = (told_rough_ >> c & 1) == 0;
-    const Rgb before = is_first ? Rgb(0.0f) : told_reflectance_[c];
-    told_reflectance_[c] = glm::clamp(before + here.reflectance, Rgb(0.0f), Rgb(1.0f));
-    RoughVertices once = here;
-    once.reflectance = told_reflectance_[c] - before;
+    const bool is_first = (vertex_components_ >> c & 1) == 0;
+    const Rgb before = is_first ? Rgb(0.0f) : recorded_reflectance_[c];
+    recorded_reflectance_[c] = glm::clamp(before + here.reflectance, Rgb(0.0f), Rgb(1.0f));
+    NonSpecularVertices once = here;
+    once.reflectance = recorded_reflectance_[c] - before;
     if (!is_first) once.inverse_depth = once.samples = 0.0f;
-    add_rough(once, &(*components_)[c].rough[half_][pixel_], counters_);
+    add_non_specular(once, &(*components_)[c].non_specular[half_][pixel_], counters_);
   }
-  told_rough_ |= components;
+  vertex_components_ |= components;
 }
 
-void PassRecorder::shines(int component, const Rgb& light, float further) {
-  if (!looks_for_rough_ || !keeps_rough_ || is_black(light)) {
+void PassRecorder::record_emission(int component, const Rgb& light, float further) {
+  if (!seeks_non_specular_ || !records_non_specular_ || is_black(light)) {
     return;
   }
-  tell(uint32_t{1} << component, RoughVertices{light, Vec3(0.0f), inverse_of(path_length_ + further), 1.0f});
+  record(uint32_t{1} << component, NonSpecularVertices{light, Vec3(0.0f), inverse_of(path_length_ + further), 1.0f});
 }
 
 // A sample's albedo stays in [0, 1], as denoisers expect it.

@@ -13,31 +13,31 @@ using PassShare = std::array<Rgb, 3>;
 class PassRecorder {
  public:
   // Finds the planes of the frame. The frame must outlive the recorder.
-  PassRecorder(const PathContext& context, Frame* frame, Counters* counters);
+  PassRecorder(const PathContext& context, Film* film, Counters* counters);
   bool active() const { return active_; }
 
   // again: all but the light was recorded before.
-  void begin_sample(size_t pixel, int half, uint32_t number, bool again = false);
+  void begin_sample(size_t pixel, int half, uint32_t number, bool adds_components = false);
   // surface() will look at the closures of the vertex with `depth` scatterings before it.
-  bool needs_closures(int depth) const { return (depth == 0 && !again_) || !features_done_ || looks_for_rough_; }
+  bool needs_closures(int depth) const { return (depth == 0 && !adds_components_) || !features_done_ || seeks_non_specular_; }
   // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // The ray left the scene.
   void escaped(const PathState& state);
   // The film sees nothing there: all is mist, as in Cycles.
   void no_ray() {
-    if (!again_) add(GRADUS_PASS_MIST, 1.0f);
+    if (!adds_components_) add(GRADUS_PASS_MIST, 1.0f);
   }
-  // A lamp or the world on the path's last segment, at a distance from where that begins, with the whole of the light that comes from
+  // A light or the world on the path's last segment, at a distance from where that begins, with the whole of the light that comes from
   // there.
-  void sighting(const Rgb& throughput, int component, const Rgb& light, float distance) {
+  void record_light(const Rgb& throughput, int component, const Rgb& light, float distance) {
     if (!features_done_) add_albedo(throughput * light);
-    shines(component, light, distance);
-    if (looks_for_rough_ && keeps_details_ && !is_black(light)) tell(uint32_t{1} << component, {.emission = light});
+    record_emission(component, light, distance);
+    if (seeks_non_specular_ && records_details_ && !is_black(light)) record(uint32_t{1} << component, {.emission = light});
   }
   // Light that a ray found, before any weight. Seen in a mirror or behind glass it is a feature of its component, as the albedo is.
   // further: than the path is long.
-  void shines(int component, const Rgb& light, float further = 0.0f);
+  void record_emission(int component, const Rgb& light, float further = 0.0f);
   // Light that was scattered `scatterings` times; 0: seen by the camera.
   void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
   void environment(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT); }
@@ -63,11 +63,11 @@ class PassRecorder {
   void background_motion(const Vec3& direction);
   void features(const PathState& state, const Vertex& vertex);
   void add_albedo(const Rgb& value);
-  uint32_t components_of_rough(const PathState& state, const Vertex& vertex) const;
-  void rough_vertex(const PathState& state, const Vertex& vertex);
+  uint32_t components_of_non_specular(const PathState& state, const Vertex& vertex) const;
+  void non_specular_vertex(const PathState& state, const Vertex& vertex);
   void details(const PathState& state, const Vertex& vertex);
-  void tell(uint32_t components, const RoughDetails& here);
-  void tell(uint32_t components, const RoughVertices& here);
+  void record(uint32_t components, const NonSpecularDetails& here);
+  void record(uint32_t components, const NonSpecularVertices& here);
 
   const PathContext& context_;
   Counters* counters_;
@@ -77,15 +77,15 @@ class PassRecorder {
   bool features_ = false;
   bool others_ = false;                                 // planes that are no features
   std::vector<ComponentPlanes>* components_ = nullptr;  // that keep rough vertices, or details of them
-  bool keeps_rough_ = false;
-  bool keeps_details_ = false;
-  bool looks_for_rough_ = false;  // the path has met none so far
-  uint32_t told_ = 0;             // bits of components that know details of this segment
-  uint32_t told_rough_ = 0;       // … its vertex, and of what reflectance
-  std::array<Rgb, kMostComponents> told_reflectance_{};
+  bool records_non_specular_ = false;
+  bool records_details_ = false;
+  bool seeks_non_specular_ = false;  // the path has met none so far
+  uint32_t detail_components_ = 0;             // bits of components that know details of this segment
+  uint32_t vertex_components_ = 0;       // … its vertex, and of what reflectance
+  std::array<Rgb, kMaxComponents> recorded_reflectance_{};
   uint32_t number_ = 0;  // of the sample
   bool first_sample_ = false;
-  bool again_ = false;
+  bool adds_components_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;
   Rgb albedo_ = Rgb(0.0f);  // feature of this sample, so far

@@ -98,7 +98,7 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
   event->factor = value / (event->by_kind ? event->pdf * event->kind_share() : event->pdf);
   state->throughput *= event->factor;
   ++state->depth;
-  state->word = context.components.next(state->word, event->scatter_class);
+  state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);
   follow(context, vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac, &state->ray);
   state->emission_only = reaches_limit(context.settings, *state);
   return true;

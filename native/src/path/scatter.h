@@ -11,12 +11,12 @@ struct PathState {
   Rgb throughput = Rgb(1.0f);
   int depth = 0;               // scatterings so far
   bool emission_only = false;  // the bounce limits are reached: the next vertex shows its emission and no more
-  PathWord word = 0;           // of the scatterings so far
+  LpeState lpe_state = 0;           // of the scatterings so far
 };
 
-// All that the path's last ray may have to show are lamps and the world.
-inline bool shows_lights_alone(const PathContext& context, const PathState& state) {
-  return state.emission_only && context.scene.features.only_lights_shine;
+// All that the path's last ray may have to show are lights and the world.
+inline bool shows_only_lights(const PathContext& context, const PathState& state) {
+  return state.emission_only && context.scene.features.only_lights_emit;
 }
 
 // A sampled scattering event, as a shift must know it.

@@ -21,8 +21,8 @@ float pass_probability(const ShadeResult& shade) {
   if (!shows) {
     return 1.0f;
   }
-  const float least = is_black(shade.emission) ? 0.05f : 0.5f;
-  return through / (through + std::max(1.0f - through, least));
+  const float minimum = is_black(shade.emission) ? 0.05f : 0.5f;
+  return through / (through + std::max(1.0f - through, minimum));
 }
 
 void clear(Segment* segment) {
@@ -31,19 +31,19 @@ void clear(Segment* segment) {
   segment->probability = 1.0f;
   segment->crossed = 0;
   segment->length = 0.0f;
-  segment->lamps.clear();
+  segment->light_crossings.clear();
 }
 
-// Lamps on a part of the segment. The ray is that of the whole segment: a lamp that faces its receiver faces the segment's start, not the
+// Lights on a part of the segment. The ray is that of the whole segment: a light that faces its receiver faces the segment's start, not the
 // surface that the ray has just passed, as light sampling has it.
-void see_lamps(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
-  if (!context.scene.features.has_lamps_with_extent) {
+void see_lights(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
+  if (!context.scene.features.has_lights_with_extent) {
     return;
   }
   const Ray part{whole.origin, std::max(whole.t_min, begin), whole.direction, end};
-  intersect_lamps(context.scene, part, &segment->met);
-  for (const LampHit& hit : segment->met) {
-    segment->lamps.push_back({hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
+  intersect_lights(context.scene, part, &segment->met);
+  for (const LightHit& hit : segment->met) {
+    segment->light_crossings.push_back({hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
   }
 }
 
@@ -51,11 +51,11 @@ void see_lamps(const PathContext& context, const Ray& whole, float begin, float 
 bool stops(const Sampler& sampler, int number, const Vertex& vertex, Segment* segment) {
   const float pass = pass_probability(vertex.shade);
   const uint32_t block = kDecisions + static_cast<uint32_t>(number) * kDecisionsPerSegment + static_cast<uint32_t>(segment->crossed);
-  const bool goes_on = pass >= 1.0f || (pass > 0.0f && sampler.get1(block) < pass);
-  const float probability = goes_on ? pass : 1.0f - pass;
-  segment->weight = goes_on ? segment->weight * vertex.shade.transparency / probability : segment->weight / probability;
+  const bool continues = pass >= 1.0f || (pass > 0.0f && sampler.get1(block) < pass);
+  const float probability = continues ? pass : 1.0f - pass;
+  segment->weight = continues ? segment->weight * vertex.shade.transparency / probability : segment->weight / probability;
   segment->probability *= probability;
-  return !goes_on;
+  return !continues;
 }
 
 }  // namespace
@@ -72,14 +72,14 @@ bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* se
   if (is_none(ray.ray)) {
     return false;
   }
-  see_lamps(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
-  if (!segment->lamps.empty()) {
+  see_lights(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
+  if (!segment->light_crossings.empty()) {
     Hit hit;
     segment->end = context.scene.intersect(ray.ray, ray.visibility, &hit) ? SegmentEnd::Exhausted : SegmentEnd::Escaped;
-    std::erase_if(segment->lamps, [&](const LampSighting& lamp) { return hit.valid() && !(lamp.distance < hit.t); });
+    std::erase_if(segment->light_crossings, [&](const LightCrossing& light_crossing) { return hit.valid() && !(light_crossing.distance < hit.t); });
     return true;
   }
-  if (!context.scene.features.world_shines) {
+  if (!context.scene.features.world_emits) {
     return false;
   }
   if (!context.scene.meets(ray.ray, ray.visibility)) {
@@ -106,13 +106,13 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     } else {
       context.scene.intersect(part, ray->visibility, &hit);
     }
-    see_lamps(context, ray->ray, passed, hit.valid() ? passed + hit.t : ray->ray.t_max, segment);
+    see_lights(context, ray->ray, passed, hit.valid() ? passed + hit.t : ray->ray.t_max, segment);
     if (!hit.valid()) {
       return;
     }
     ray->state.length = segment->length = passed + hit.t;
     context.scene.place(hit, &vertex->point);
-    const auto shade = shading == Shading::Now ? shade_surface : shade_seen;
+    const auto shade = shading == Shading::Now ? shade_surface : shade_without_closures;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
     if (stops(sampler, number, *vertex, segment)) {
       segment->end = SegmentEnd::Surface;

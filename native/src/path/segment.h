@@ -10,9 +10,9 @@
 
 namespace gradus {
 
-// A lamp that a ray crosses: lamps do not stop rays.
-struct LampSighting {
-  EmitterPoint point;
+// A light that a ray crosses: lights do not stop rays.
+struct LightCrossing {
+  LightPoint point;
   float distance = 0.0f;
   Rgb weight = Rgb(1.0f);    // of the segment up to there, see Segment
   float probability = 1.0f;  // likewise
@@ -31,8 +31,8 @@ struct Segment {
   float probability = 1.0f;  // of these decisions
   int crossed = 0;           // surfaces that were passed
   float length = 0.0f;
-  std::vector<LampSighting> lamps;  // segments are reused: allocates for the most that any had
-  std::vector<LampHit> met;         // scratch: lamps on a part of the segment
+  std::vector<LightCrossing> light_crossings;  // segments are reused: allocates for the most that any had
+  std::vector<LightHit> met;         // scratch: lights on a part of the segment
 };
 
 // A ray and what it looks like to the scene.
@@ -49,7 +49,7 @@ enum class Shading : uint8_t { Now, Later };
 // surface, and counts transparent surfaces in ray->state.
 void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
                    Segment* segment, Shading shading = Shading::Now);
-// The last ray of a path where SceneFeatures::only_lights_shine: the same sightings and the same world as trace_segment() finds, mostly
+// The last ray of a path where SceneFeatures::only_lights_emit: the same sightings and the same world as trace_segment() finds, mostly
 // without asking for surfaces. Ends Escaped or Exhausted. True: a ray was traced.
 bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* segment);
 // Closures, where they are still missing. ray: that arrived.

@@ -22,7 +22,7 @@ struct PathScratch {
 };
 
 struct PathResult {
-  std::array<Radiance, kMostComponents> radiance;  // of each component of the context's set; w: alpha, if the film is transparent
+  std::array<Radiance, kMaxComponents> radiance;  // of each component of the context's set; w: alpha, if the film is transparent
   bool fallback = false;
 };
 
@@ -30,7 +30,7 @@ struct PathResult {
 struct NoObserver {
   void begin(const Sampler&, const CameraSample&) {}
   void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
-  void lamp(const RaySource&, const Contribution&, const LampSighting&) {}
+  void light_crossing(const RaySource&, const Contribution&, const LightCrossing&) {}
   void passed(const Segment&) {}
   void world(const RaySource&, const Contribution&) {}
   void emission(const RaySource&, const Contribution&, const Vertex&) {}
@@ -40,7 +40,7 @@ struct NoObserver {
   void light(const Vertex&, const LightSample&, ScatterClass, const Contribution&) {}
   void scatter(const Vertex&, const VertexSample&, const ScatterEvent&) {}
   void absorbed(const Vertex&, const VertexSample&) {}
-  const Vertex* kept() const { return nullptr; }  // that must not be overwritten yet
+  const Vertex* retained() const { return nullptr; }  // that must not be overwritten yet
 };
 
 template <class Observer>
@@ -86,7 +86,7 @@ class PathTracer {
 
   // What a path adds that stands at a vertex whose emission was seen. state: its segment's weight included. leaves: the vertex was lit,
   // too.
-  const PathResult& go_on(const Sampler& sampler, const PathState& state, Vertex* vertex, bool leaves) {
+  const PathResult& continue_path(const Sampler& sampler, const PathState& state, Vertex* vertex, bool leaves) {
     start_result();
     state_ = state;
     if (leaves ? leave(sampler.vertex(state_.depth), *vertex) : light_and_leave(sampler, vertex)) {
@@ -99,38 +99,38 @@ class PathTracer {
   // From a vertex that the path has left to the path's end.
   void follow_rays(const Sampler& sampler, const Vertex* from) {
     segment_ = &s_.segment;
-    for (bool goes_on = true; goes_on;) {
-      if (sees_lights_alone()) {
+    for (bool continues = true; continues;) {
+      if (sees_only_lights()) {
         counters_.rays_bounce += trace_to_lights(context_, state_.ray, &s_.segment) ? 1 : 0;
-        see_end(sampler, RaySource{from, &s_.event});
+        show_end(sampler, RaySource{from, &s_.event});
         return;
       }
       Vertex* vertex = unused(from);
       ++counters_.rays_bounce;
       extend(sampler, &next_hit_, vertex);
-      goes_on = step(sampler, RaySource{from, &s_.event}, vertex);
+      continues = step(sampler, RaySource{from, &s_.event}, vertex);
       from = vertex;
     }
   }
 
   Vertex* unused(const Vertex* from) const {
     Vertex* v = s_.vertices;
-    while (v == from || v == observer_.kept()) ++v;
+    while (v == from || v == observer_.retained()) ++v;
     return v;
   }
 
   // The path's last ray, of which nobody wants to know more than the light that it finds.
-  bool sees_lights_alone() const { return !records() && shows_lights_alone(context_, state_); }
+  bool sees_only_lights() const { return !records() && shows_only_lights(context_, state_); }
 
   // The path may still find something that counts.
-  bool is_wanted() const { return (context_.components.ahead(state_.word) & wanted_) != 0; }
+  bool is_wanted() const { return (context_.components.ahead(state_.lpe_state) & wanted_) != 0; }
 
   // Of light that is found from here, one scattering further.
   bool is_light_wanted(const PathState& here) const {
     if (wanted_ == kEveryComponent) return true;
     const ComponentSet& set = context_.components;
     for (int k = 0; k < kScatterClasses; ++k) {
-      if ((wanted_ >> set.component(set.next(here.word, static_cast<ScatterClass>(k))) & 1) != 0) return true;
+      if ((wanted_ >> set.component(set.next(here.lpe_state, static_cast<ScatterClass>(k))) & 1) != 0) return true;
     }
     return false;
   }
@@ -146,13 +146,13 @@ class PathTracer {
   // What a segment shows, and scattering at its end. False: the path has ended.
   bool step(const Sampler& sampler, const RaySource& source, Vertex* vertex) {
     observer_.arrive(source, state_, *segment_, *vertex);
-    const bool goes_on = see(sampler, source, *vertex);
+    const bool continues = see(sampler, source, *vertex);
     observer_.seen();
-    return goes_on && !state_.emission_only && is_wanted() && light_and_leave(sampler, vertex);
+    return continues && !state_.emission_only && is_wanted() && light_and_leave(sampler, vertex);
   }
 
   // What a segment shows whose surface nobody asks for.
-  void see_end(const Sampler& sampler, const RaySource& source) {
+  void show_end(const Sampler& sampler, const RaySource& source) {
     observer_.arrive(source, state_, *segment_, s_.vertices[0]);
     see(sampler, source, s_.vertices[0]);
     observer_.seen();
@@ -170,12 +170,12 @@ class PathTracer {
     const PathState here = state_;
     const bool leaves = look_ahead(u, *vertex);
     if (is_light_wanted(here)) add_light(here, u, *vertex);
-    return tell_scattering(leaves, here.depth, u, *vertex);
+    return notify_scattering(leaves, here.depth, u, *vertex);
   }
 
   bool leave(const VertexSample& u, const Vertex& vertex) {
     const int depth = state_.depth;
-    return tell_scattering(look_ahead(u, vertex), depth, u, vertex);
+    return notify_scattering(look_ahead(u, vertex), depth, u, vertex);
   }
 
   // Scatters, and traces the next ray already: while the vertex is lit, what the ray has met is on its way from memory.
@@ -186,14 +186,14 @@ class PathTracer {
     if (!is_wanted() && !records()) {
       return false;
     }
-    if (!sees_lights_alone()) {
+    if (!sees_only_lights()) {
       context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
       context_.scene.prefetch(next_hit_);
     }
     return true;
   }
 
-  bool tell_scattering(bool leaves, int depth, const VertexSample& u, const Vertex& vertex) {
+  bool notify_scattering(bool leaves, int depth, const VertexSample& u, const Vertex& vertex) {
     if (!leaves) {
       observer_.absorbed(vertex, u);
       return false;
@@ -207,7 +207,7 @@ class PathTracer {
 
   // Emitters along the segment and at its end. False: there is no surface to scatter from.
   bool see(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
-    add_lamps(source);
+    add_analytic_lights(source);
     apply_segment(*segment_, &state_);
     observer_.passed(*segment_);
     if (segment_->end == SegmentEnd::Escaped) {
@@ -226,21 +226,21 @@ class PathTracer {
   }
 
   // That of the film: no more than one component has it, so that they add up.
-  float& alpha() { return result_.radiance[size_t(context_.components.component(PathWord{0}))].w; }
+  float& alpha() { return result_.radiance[size_t(context_.components.component(LpeState{0}))].w; }
 
   // Its light goes to passes, too.
   bool records(const Contribution& c) const { return recorder_ != nullptr && (wanted_ >> c.component & 1) != 0; }
 
   void add(const Contribution& c) { result_.radiance[size_t(c.component)] += Radiance(c.clamped, 0.0f); }
 
-  void add_lamps(const RaySource& source) {
-    for (const LampSighting& lamp : segment_->lamps) {
-      const Contribution c = lamp_contribution(context_, source, state_, lamp);
-      if (recorder_ != nullptr) recorder_->sighting(state_.throughput * lamp.weight, c.component, c.light, lamp.distance);
+  void add_analytic_lights(const RaySource& source) {
+    for (const LightCrossing& light_crossing : segment_->light_crossings) {
+      const Contribution c = light_hit_contribution(context_, source, state_, light_crossing);
+      if (recorder_ != nullptr) recorder_->record_light(state_.throughput * light_crossing.weight, c.component, c.light, light_crossing.distance);
       if (!is_black(c.clamped)) {
         add(c);
         if (records(c)) recorder_->emission(state_.depth, c.clamped);
-        observer_.lamp(source, c, lamp);
+        observer_.light_crossing(source, c, light_crossing);
       }
     }
   }
@@ -249,7 +249,7 @@ class PathTracer {
     if (recorder_ != nullptr) recorder_->escaped(state_);
     if (state_.depth == 0 && context_.settings.film_transparent != 0) add_transparent(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
-    if (recorder_ != nullptr) recorder_->sighting(state_.throughput, c.component, c.light, kInfinity);
+    if (recorder_ != nullptr) recorder_->record_light(state_.throughput, c.component, c.light, kInfinity);
     if (!is_black(c.clamped)) {
       add(c);
       if (records(c)) recorder_->environment(state_.depth, c.clamped);
@@ -267,15 +267,15 @@ class PathTracer {
   // False: the surface is a hole in the film.
   bool add_surface(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
     if (state_.depth == 0) {
-      if (is_hole(context_, vertex)) {
+      if (is_holdout(context_, vertex)) {
         add_transparent(mean_component(state_.throughput));
         return false;
       }
-      add_transparent(held_out(state_.throughput, vertex.shade.holdout));
+      add_transparent(holdout_alpha(state_.throughput, vertex.shade.holdout));
     }
     if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, *segment_);
     const Contribution c = emission_contribution(context_, source, state_, vertex);
-    if (recorder_ != nullptr) recorder_->shines(c.component, c.light);
+    if (recorder_ != nullptr) recorder_->record_emission(c.component, c.light);
     if (!is_black(c.clamped)) {
       add(c);
       if (records(c)) recorder_->emission(state_.depth, c.clamped);

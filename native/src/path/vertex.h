@@ -11,7 +11,7 @@ struct Vertex {
   SurfacePoint point;
   ShadeResult shade;
   Vec3 wo = Vec3(0.0f);          // unit, towards the previous vertex
-  mutable EmitterChoice choice;  // a memo: whoever looks for lights from here leaves it to the next
+  mutable LightChoice choice;  // a memo: whoever looks for lights from here leaves it to the next
 
   // Geometric normal on the side of wo.
   Vec3 facing_normal() const { return facing(point.geometric_normal); }

@@ -82,35 +82,35 @@ Benefit estimate_benefit_for_l2(const PilotSums& sums) {
   return benefit;
 }
 
-std::vector<bool> choose_parts(const std::vector<Benefit>& parts, const std::vector<double>& pixels) {
+std::vector<bool> choose_blocks(const std::vector<Benefit>& blocks, const std::vector<double>& pixels) {
   double error = 0.0, cost = 0.0;
   std::vector<double> gain, extra;
-  for (size_t i = 0; i < parts.size(); ++i) {
-    const Benefit& b = parts[i];
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    const Benefit& b = blocks[i];
     error += b.noise * pixels[i];
     cost += b.rays * pixels[i];
     gain.push_back((1.0 - b.error) * b.noise * pixels[i]);
     extra.push_back((b.cost - 1.0) * b.rays * pixels[i]);
   }
-  std::vector<size_t> order(parts.size());
+  std::vector<size_t> order(blocks.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const auto worth = [&](size_t i) { return extra[i] > 0.0 ? gain[i] / extra[i] : gain[i] > 0.0 ? HUGE_VAL : 0.0; };
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return worth(a) > worth(b); });
   const double none = error * cost;
-  double least = none;
+  double minimum = none;
   size_t best = 0;
   for (size_t n = 0; n < order.size(); ++n) {
     error -= gain[order[n]];
     cost += extra[order[n]];
-    if (error * cost < least) {
-      least = error * cost;
+    if (error * cost < minimum) {
+      minimum = error * cost;
       best = n + 1;
     }
   }
   // error and cost are now those of all.
   const double all = error * cost;
-  if (least > kWorthParting * std::min(all, none)) best = all < none ? parts.size() : 0;
-  std::vector<bool> chosen(parts.size(), false);
+  if (minimum > kWorthParting * std::min(all, none)) best = all < none ? blocks.size() : 0;
+  std::vector<bool> chosen(blocks.size(), false);
   for (size_t n = 0; n < best; ++n) chosen[order[n]] = true;
   return chosen;
 }

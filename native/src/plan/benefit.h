@@ -44,7 +44,7 @@ Benefit estimate_benefit_for_l2(const PilotSums& sums);
 // The parts of a picture, of so many pixels each, that are to have differences for error times cost of the picture to be least. (Each part
 // by itself will not do: time spent where there is little noise is time that the noisy parts go without.) Both are sums over parts, so one
 // takes those first that gain most for their cost. All or none, where that is hardly worse.
-std::vector<bool> choose_parts(const std::vector<Benefit>& parts, const std::vector<double>& pixels);
+std::vector<bool> choose_blocks(const std::vector<Benefit>& blocks, const std::vector<double>& pixels);
 
 // Variance of the least-squares reconstruction of a pixel, over the noisy image's, where a pixel's variance is `ratio` times that of a
 // difference: the mean over all frequencies of 1/(1 + ratio·D²), D² = 4 − 2 cos u − 2 cos v. (Thesis eq. 5.19 at the best weight; the mean

@@ -29,7 +29,7 @@ static_assert(kDenoiserPays <= kFirstCheck);  // tiles that stop by their noise 
 std::string too_few_to_denoise() { return "with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples"; }
 
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
-  const bool wants_differences = wants(settings.passes, GRADUS_PASS_GRADIENT_X) || wants(settings.passes, GRADUS_PASS_GRADIENT_Y);
+  const bool wants_differences = has_bit(settings.passes, GRADUS_PASS_GRADIENT_X) || has_bit(settings.passes, GRADUS_PASS_GRADIENT_Y);
   if (!needs_gradients(settings.reconstruction) && !wants_differences) {  // on all of 13 scenes (docs/method.md)
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     const bool none = settings.reconstruction == GRADUS_RECONSTRUCTION_NONE;
@@ -57,23 +57,23 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
 }
 
 void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
-  const uint32_t asked = settings.reconstruction;
-  if (needs_gradients(asked) && !plan->gradients) {
-    throw invalid_argument("reconstruction " + choice_of("reconstruction", asked) + " needs gradients, but the integrator is path: use " +
+  const uint32_t requested = settings.reconstruction;
+  if (needs_gradients(requested) && !plan->gradients) {
+    throw invalid_argument("reconstruction " + choice_of("reconstruction", requested) + " needs gradients, but the integrator is path: use " +
                            "integrator gradient or reconstruction none");
   }
-  plan->reconstruction = asked;
-  if (asked == GRADUS_RECONSTRUCTION_AUTO) {  // whoever asks for plain paths wants to see them
+  plan->reconstruction = requested;
+  if (requested == GRADUS_RECONSTRUCTION_AUTO) {  // whoever asks for plain paths wants to see them
     const bool plain = settings.integrator == GRADUS_INTEGRATOR_PATH;
     plan->reconstruction = plain ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_REGULARIZED;
   }
   plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
-  const char* why = asked != GRADUS_RECONSTRUCTION_AUTO ? "set by the user"
+  const char* why = requested != GRADUS_RECONSTRUCTION_AUTO ? "set by the user"
                                                         : "automatic: features of the surfaces and all samples, by their measured noise";
   if (plan->solves) {
     plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
   } else {
-    plan->skipped.emplace_back("reconstruction", asked == GRADUS_RECONSTRUCTION_AUTO
+    plan->skipped.emplace_back("reconstruction", requested == GRADUS_RECONSTRUCTION_AUTO
                                                      ? "the integrator is path: the noisy image is delivered"
                                                      : "reconstruction is none: the noisy image is delivered");
   }
@@ -107,8 +107,8 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
     plan->sampled.x0 = std::max(full.x0, plan->delivered.x0 - kGuardRing);
     plan->sampled.y0 = std::max(full.y0, plan->delivered.y0 - kGuardRing);
     if (plan->reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {  // its windows and squares begin where those of the full frame do
-      plan->sampled.x0 -= plan->sampled.x0 % kLargestSquare;
-      plan->sampled.y0 -= plan->sampled.y0 % kLargestSquare;
+      plan->sampled.x0 -= plan->sampled.x0 % kMaxRegressionBlock;
+      plan->sampled.y0 -= plan->sampled.y0 % kMaxRegressionBlock;
     }
     plan->sampled.x1 = std::min(full.x1, plan->delivered.x1 + kGuardRing);
     plan->sampled.y1 = std::min(full.y1, plan->delivered.y1 + kGuardRing);
@@ -124,14 +124,14 @@ void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* 
   if (!snapshot.features.has_transparent_shadows) plan->skipped.emplace_back("transparent shadows", "no material is transparent");
   if (snapshot.features.min_alpha >= std::max(settings.roughness_threshold, kSmallestAlpha))
     plan->skipped.emplace_back("half-vector shifts", "no material is sharper than the roughness threshold");
-  if (!snapshot.features.has_emitters) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
-  if (snapshot.features.only_lights_shine)
+  if (!snapshot.features.has_lights) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
+  if (snapshot.features.only_lights_emit)
     plan->skipped.emplace_back("surfaces at the ends of paths", "no material emits light or lets it through");
   if (plan->channels == 3) plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
 }
 
 // Bits of the classes by which some surface may scatter.
-uint32_t letters_of(const GradusSettings& settings, const SceneFeatures& features) {
+uint32_t events_of(const GradusSettings& settings, const SceneFeatures& features) {
   const float sharp = std::max(settings.roughness_threshold, kSmallestAlpha);
   const auto bit = [](ScatterClass c) { return 1u << uint32_t(c); };
   return bit(ScatterClass::Diffuse) | (features.min_alpha < sharp ? bit(ScatterClass::Reflection) : 0) |
@@ -139,21 +139,21 @@ uint32_t letters_of(const GradusSettings& settings, const SceneFeatures& feature
 }
 
 bool shows_light(const SceneFeatures& features) {
-  return features.world_shines || features.has_lamps_with_extent || !features.only_lights_shine;
+  return features.world_emits || features.has_lights_with_extent || !features.only_lights_emit;
 }
 
 void choose_components(const GradusSettings& settings, const SceneFeatures& features, Plan* plan) {
   if (settings.use_decomposition == 0) return;
   const std::string text = get_text(settings, *find_option("components"));
   const ComponentSet all = ComponentSet::parse(text);
-  const uint32_t seen = shows_light(features) ? 1u << all.component(PathWord{0}) : 0;
-  plan->rough_vertices = wants_any(settings.component_passes, is_of_rough_vertices);
-  plan->rough_details = wants_any(settings.component_passes, is_of_rough_details);
-  plan->component_motion = wants_any(settings.component_passes, is_motion);
-  const uint32_t kept = all.reached(letters_of(settings, features)) | seen;
+  const uint32_t seen = shows_light(features) ? 1u << all.component(LpeState{0}) : 0;
+  plan->non_specular_vertices = any_wanted(settings.component_passes, is_of_non_specular_vertices);
+  plan->non_specular_details = any_wanted(settings.component_passes, is_of_non_specular_details);
+  plan->component_motion = any_wanted(settings.component_passes, is_motion);
+  const uint32_t kept = all.reached(events_of(settings, features)) | seen;
   plan->components = all.without_empty(kept);
   // Data of what has no light may be wanted all the same.
-  plan->merges_components = text.empty() && !plan->rough_vertices && !plan->rough_details && !plan->component_motion;
+  plan->merges_components = text.empty() && !plan->non_specular_vertices && !plan->non_specular_details && !plan->component_motion;
   std::string names, absent;
   for (int i = 0; i < all.count(); ++i) add_item(plan->components.find(all[i].name) >= 0 ? &names : &absent, all[i].name);
   plan->chosen.emplace_back("components " + names, text.empty() ? "automatic: the default set" : "set by the user");
@@ -171,7 +171,7 @@ void choose_passes(const GradusSettings& settings, Plan* plan) {
 void list_passes(Plan* plan) {
   std::string names;
   for (uint32_t pass = GRADUS_PASS_NOISY_IMAGE; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (!wants(plan->passes, pass)) add_item(&names, pass_info(pass).name);
+    if (!has_bit(plan->passes, pass)) add_item(&names, pass_info(pass).name);
   }
   if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
 }
@@ -180,8 +180,8 @@ void list_passes(Plan* plan) {
 // coverage, and both halves agree on it two times out of three. n samples leave an error of about 0.2/n of the cell (docs/method.md), so no
 // fewer are believed than leave the threshold.
 uint32_t first_check(const GradusSettings& settings) {
-  const double least = 0.16 / std::max(1e-6, double(settings.noise_threshold));
-  return std::max(kFirstCheck, settings.min_samples > 0 ? settings.min_samples : uint32_t(std::lround(least)));
+  const double minimum = 0.16 / std::max(1e-6, double(settings.noise_threshold));
+  return std::max(kFirstCheck, settings.min_samples > 0 ? settings.min_samples : uint32_t(std::lround(minimum)));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ struct Plan {
   ComponentSet components;         // that are sampled
   bool merges_components = false;  // those that a pilot finds small everywhere belong to Residual
   bool component_motion = false;   // of which passes tell where they were, and go
-  bool rough_vertices = false;     // of which passes look at where paths become rough
-  bool rough_details = false;      // and more closely
+  bool non_specular_vertices = false;     // of which passes look at where paths become rough
+  bool non_specular_details = false;      // and more closely
   uint64_t passes = 0;             // that the frame keeps: those asked for, and what the reconstruction reads
   uint32_t first_check = 0;        // samples before a tile may stop
   Region delivered;
@@ -53,7 +53,7 @@ inline constexpr int kGuardRing = 35;
 Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser = {"", "denoiser is none"});
 
 // Of REGULARIZED, in pixels: all others are parts of it (reconstruct/feature_regression.cpp).
-constexpr int kLargestSquare = 16;
+constexpr int kMaxRegressionBlock = 16;
 
 // The reconstruction where no gradients are sampled, because the integrator has none or the pilot found that they pay nowhere.
 uint32_t without_gradients(const Plan& plan);

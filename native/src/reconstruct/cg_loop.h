@@ -27,14 +27,14 @@ struct CgProducts {
 //   int width()                       of an image.
 // divergence: errors fall, but not from step to step. Beyond this factor single precision has been lost, and what follows is worse.
 template <class Steps>
-CgReport run_conjugate_gradient(Steps steps, const CgGoal& goal, float divergence, int most_steps, const CancelTest& cancel) {
+CgReport run_conjugate_gradient(Steps steps, const CgGoal& goal, float divergence, int max_steps, const CancelCheck& cancel) {
   const auto [bb, rr] = steps.start();
   CgReport report;
   report.residual = worst(rr, bb);
   report.reached = report.residual <= goal.residual;
   Sums rz_before(bb.size(), 0.0);
   float best_error = kInfinity;
-  for (; report.steps < most_steps && !report.reached && !cancel(); ++report.steps) {
+  for (; report.steps < max_steps && !report.reached && !cancel(); ++report.steps) {
     const auto [rz, largest_row] = steps.precondition();
     const Sums pap = steps.direct(quotient(rz, rz_before));
     rz_before = rz;

@@ -105,9 +105,9 @@ struct Steps {
 
 }  // namespace
 
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int most_steps,
-                            const CancelTest& cancel) {
-  return run_conjugate_gradient(Steps{preconditioner, preconditioner->matrix(), b, x, *fields}, goal, kDivergence, most_steps, cancel);
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int max_steps,
+                            const CancelCheck& cancel) {
+  return run_conjugate_gradient(Steps{preconditioner, preconditioner->matrix(), b, x, *fields}, goal, kDivergence, max_steps, cancel);
 }
 
 }  // namespace gradus

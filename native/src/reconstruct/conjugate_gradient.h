@@ -26,8 +26,8 @@ struct CgFields {
   Field r, z, p, next_p;
 };
 
-// Improves x until the goal is reached or `most_steps` are done. Floats with sums in double.
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int most_steps,
-                            const CancelTest& cancel);
+// Improves x until the goal is reached or `max_steps` are done. Floats with sums in double.
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int max_steps,
+                            const CancelCheck& cancel);
 
 }  // namespace gradus

@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-constexpr double kLeastLeft = 0.25;
+constexpr double kMinErrorShare = 0.25;
 // Windows' Gaussian curves, in pixels: those of 0.7 to 6 under which true errors are likeliest over twelve scenes (docs/method.md). Where
 // two estimates are subtracted it takes more pixels to know the difference.
 constexpr double kSigma = 1.5, kSigmaOfDifference = 2.0;
@@ -71,20 +71,20 @@ class Window {
 
 }  // namespace
 
-ErrorTerms error_terms(const Frame& frame, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
-                       const CancelTest& cancel) {
-  GradientImages differences = read_half_differences(frame, component);
+ErrorTerms error_terms(const Film& film, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
+                       const CancelCheck& cancel) {
+  GradientImages differences = read_half_differences(film, component);
   if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return {std::move(differences.primal), {}};
   SolveReport report;
   ErrorTerms terms{reconstruct(differences, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) return terms;
   differences = {};
-  terms.apart = reconstruct(frame, component, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report);
+  terms.apart = reconstruct(film, component, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report);
   for (size_t i = 0; i < terms.apart.size(); ++i) terms.apart[i] = image[i] - terms.apart[i];
   return terms;
 }
 
-double squared_error(double noise, double apart) { return std::max(noise - apart, kLeastLeft * noise); }
+double squared_error(double noise, double apart) { return std::max(noise - apart, kMinErrorShare * noise); }
 
 std::vector<float> error_of_pixels(const ErrorTerms& terms, int width, int height, int channels) {
   const Window window(terms.apart.empty() ? kSigma : kSigmaOfDifference);

@@ -16,8 +16,8 @@ namespace gradus {
 
 // Of GradientImages' layout. image: what `reconstruction` (NONE, L2, L1) makes of the component. Where a half has no samples, the
 // other one's mean stands for the difference: its square is no less than the variance on average.
-ErrorTerms error_terms(const Frame& frame, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
-                       const CancelTest& cancel);
+ErrorTerms error_terms(const Film& film, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
+                       const CancelCheck& cancel);
 
 // From means or sums over the same pixels of squared noise and squared distance. A quarter of L2's at least: a difference of two estimates
 // may be anything, and below this it would be an accident more often than true (docs/method.md).

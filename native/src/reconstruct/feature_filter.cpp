@@ -24,7 +24,7 @@ constexpr float kVariances = 0.5f;
 constexpr float kNegligible = 5e-3f;
 // Every so many values are looked at for that; not a multiple of the channels.
 constexpr size_t kStride = 7;
-constexpr float kLargest = 1e15f, kLargestVariance = 1e30f, kLeast = 1e-30f;
+constexpr float kLargest = 1e15f, kLargestVariance = 1e30f, kMin = 1e-30f;
 
 struct Neighbour {
   int x, y;
@@ -39,7 +39,7 @@ struct Part {
   int height() const { return y1 - y0; }
 };
 
-Field load(const std::vector<float>& values, int image_width, const Part& part, int channels, float least, float most) {
+Field load(const std::vector<float>& values, int image_width, const Part& part, int channels, float minimum, float maximum) {
   Field field(part.width(), part.height(), channels);
   for (int y = 0; y < part.height(); ++y) {
     const float* from = values.data() + (size_t(part.y0 + y) * size_t(image_width) + size_t(part.x0)) * size_t(channels);
@@ -47,7 +47,7 @@ Field load(const std::vector<float>& values, int image_width, const Part& part, 
       float* to = field.row(y, c);
       for (int x = 0; x < part.width(); ++x) {
         const float stored = from[size_t(x) * size_t(channels) + size_t(c)];
-        to[x] = is_finite(stored) ? std::clamp(stored, least, most) : 0.0f;
+        to[x] = is_finite(stored) ? std::clamp(stored, minimum, maximum) : 0.0f;
       }
     }
   }
@@ -135,7 +135,7 @@ void filter_tile(const FeatureImage& image, int width, int height, const Part& t
 }  // namespace
 
 FeatureImage filter_feature(FeatureImage image, int width, int height) {
-  const float unit = kNegligible * typical(image.values), negligible = std::max(kLeast, unit * unit);
+  const float unit = kNegligible * typical(image.values), negligible = std::max(kMin, unit * unit);
   std::vector<float> result(image.values.size());
   for_rows((height + kTileHeight - 1) / kTileHeight,
            [&](int j) {

@@ -26,8 +26,8 @@ constexpr float kOwnShare = 0.3f;
 constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
 // A pixel's own value counts by the noise around it and for this share, since the mean of windows is better than its parts; for less where
 // it stands out, and where noise is above a tenth of the light: there both halves may have met the same firefly, if the pixel is not darker
-// than what is around it. kLeastVariance: of what shows none.
-constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kLeastVariance = 1e-10f;
+// than what is around it. kMinVariance: of what shows none.
+constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kMinVariance = 1e-10f;
 // Noise goes with the root of the light, as of photons, down to this share of the noise around: below it pixels may be dark by chance.
 constexpr float kDarkByChance = 0.5f;
 // Light around a pixel, by which residuals are measured.
@@ -35,7 +35,7 @@ constexpr int kLightRadius = 3;
 // Around a pixel, where small and large windows are compared, by their share of the light close to it.
 constexpr int kShareRadius = 4, kShareLightRadius = 2;
 // Side of squares that share a bound on outliers.
-constexpr int kSquare = 16;
+constexpr int kBlockSide = 16;
 
 // Of all pixels: noise and light, their own and around them.
 struct Surroundings {
@@ -58,7 +58,7 @@ Field weigh_in_windows(const Surroundings& of) {
 }
 
 // What is to be expected of each pixel by its light, and no more than is around it. Noise is averaged over the root of the light, not light
-// and noise by themselves: a lamp, which has light and no noise, says nothing of the wall beside it.
+// and noise by themselves: a light, which has light and no noise, says nothing of the wall beside it.
 Field expected_noise(const Surroundings& of) {
   const auto root = [&](int x, int y) { return std::sqrt(std::max(of.own_light.row(y)[x], kDarkByChance * of.noise.row(y)[x])); };
   const Field relative = box_mean(make_field(of.noise.width(), of.noise.height(),
@@ -72,19 +72,19 @@ Field expected_noise(const Surroundings& of) {
 }
 
 // Of a pixel's own value: 1/variance. firefly: whether both halves may have met one, 1 where that is as likely as not.
-float weigh_own(float expected, float excess, float firefly) {
+float weigh_pixel(float expected, float excess, float firefly) {
   const float doubt = excess * excess * (1.0f + firefly * firefly);
-  return kOwnTrust / (expected * expected * doubt * doubt + kLeastVariance);
+  return kOwnTrust / (expected * expected * doubt * doubt + kMinVariance);
 }
 
 // Changes of light may be 0 between greater ones by chance: those are not called dark.
-Field weigh_own(const Surroundings& of, bool is_light) {
+Field weigh_pixel(const Surroundings& of, bool is_light) {
   const Field expected = is_light ? expected_noise(of) : of.noise;
   return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
-    const float noise = of.noise.row(y)[x], unit = 1.0f / (of.light.row(y)[x] + kLeastVariance);
+    const float noise = of.noise.row(y)[x], unit = 1.0f / (of.light.row(y)[x] + kMinVariance);
     const float excess = noise > 0.0f ? std::max(1.0f, of.own_noise.row(y)[x] / noise) : 1.0f;
     const float brightness = is_light ? std::min(1.0f, of.own_light.row(y)[x] * unit) : 1.0f;
-    return weigh_own(expected.row(y)[x], excess, brightness * noise * unit / kVisible);
+    return weigh_pixel(expected.row(y)[x], excess, brightness * noise * unit / kVisible);
   });
 }
 
@@ -140,10 +140,10 @@ void scale_by(const Field& factors, Field* to) {
 Field limit_outliers(const Field& residual, const Field& weights) {
   const int w = residual.width(), h = residual.height();
   Field share = make_field(w, h, [&](int x, int y) { return weights.row(y)[x] * mean_of_squares(residual, x, y); });
-  for_rows((h + kSquare - 1) / kSquare,
+  for_rows((h + kBlockSide - 1) / kBlockSide,
            [&](int j) {
-             for (int i = 0; i < (w + kSquare - 1) / kSquare; ++i) {
-               limit_square(i * kSquare, std::min(w, (i + 1) * kSquare), j * kSquare, std::min(h, (j + 1) * kSquare), &share);
+             for (int i = 0; i < (w + kBlockSide - 1) / kBlockSide; ++i) {
+               limit_block(i * kBlockSide, std::min(w, (i + 1) * kBlockSide), j * kBlockSide, std::min(h, (j + 1) * kBlockSide), &share);
              }
            },
            1);
@@ -191,12 +191,12 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
 
 }  // namespace
 
-FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel) {
+FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelCheck& cancel) {
   std::shared_ptr<const Predictors> predictors;
   {
     const Surroundings surroundings = look_around(image);
     predictors = std::make_shared<const Predictors>(Predictors{basis_of(features), weigh_in_windows(surroundings)});
-    fine_ = LocalRegression(predictors, weigh_own(surroundings, image.is_light), kFine);
+    fine_ = LocalRegression(predictors, weigh_pixel(surroundings, image.is_light), kFine);
   }
   coarse_ = LocalRegression(predictors, {}, kCoarse);
   RegressionResult first = fine_.estimate(image.mean, image.half_difference, cancel);
@@ -209,21 +209,21 @@ FeatureRegression::FeatureRegression(const Features& features, const HalvedImage
   }
   add_residual(features, image, predictors->weights, &first, cancel);
   if (image.is_light) {
-    own_ = keep_own_light(image.mean, first.mean);
-    blend_own(own_, image.mean, &first.mean);
-    blend_own(own_, image.half_difference, &first.noise);
+    own_ = restore_sampled_light(image.mean, first.mean);
+    blend_sampled(own_, image.mean, &first.mean);
+    blend_sampled(own_, image.half_difference, &first.noise);
   }
   error_ = regression_error({image.mean, image.half_difference, first.mean, first.noise}, first.bias);
   image_ = std::move(first.mean);
 }
 
 void FeatureRegression::add_residual(const Features& features, const HalvedImage& image, const Field& by_noise, RegressionResult* first,
-                                     const CancelTest& cancel) {
+                                     const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
   Field residual = difference(image.mean, first->mean), of_noise = difference(image.half_difference, first->noise);
-  kept_ = limit_outliers(residual, by_light);
-  scale_by(kept_, &residual);
-  scale_by(kept_, &of_noise);
+  residual_share_ = limit_outliers(residual, by_light);
+  scale_by(residual_share_, &residual);
+  scale_by(residual_share_, &of_noise);
   of_residual_ = LocalRegression(std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, by_noise)}),
                                  {}, kOfResidual);
   const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
@@ -231,13 +231,13 @@ void FeatureRegression::add_residual(const Features& features, const HalvedImage
   add(second.noise, &first->noise);
 }
 
-Field FeatureRegression::apply(const Field& values, const CancelTest& cancel) const {
+Field FeatureRegression::apply(const Field& values, const CancelCheck& cancel) const {
   Field result = fine_.apply(values, cancel);
   blend(share_, coarse_.apply(values, cancel), &result);
   Field residual = difference(values, result);
-  scale_by(kept_, &residual);
+  scale_by(residual_share_, &residual);
   add(of_residual_.apply(residual, cancel), &result);
-  if (own_.channels() > 0) blend_own(own_, values, &result);
+  if (own_.channels() > 0) blend_sampled(own_, values, &result);
   return result;
 }
 

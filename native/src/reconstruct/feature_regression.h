@@ -11,22 +11,22 @@ namespace gradus {
 
 class FeatureRegression {
  public:
-  FeatureRegression(const Features& features, const HalvedImage& image, const CancelTest& cancel);
+  FeatureRegression(const Features& features, const HalvedImage& image, const CancelCheck& cancel);
 
   const Field& image() const { return image_; }
   // Estimated squared error of the image, mean over its channels, bias included.
   const Field& error() const { return error_; }
   // One channel, or three, by the frozen weights.
-  Field apply(const Field& values, const CancelTest& cancel) const;
+  Field apply(const Field& values, const CancelCheck& cancel) const;
 
  private:
   // The second step: `first` becomes the mean and the noise of both.
   void add_residual(const Features& features, const HalvedImage& image, const Field& by_noise, RegressionResult* first,
-                    const CancelTest& cancel);
+                    const CancelCheck& cancel);
 
   LocalRegression fine_, coarse_, of_residual_;
   Field share_;  // of each pixel that the fine windows have
-  Field kept_;   // share of each pixel's residual that is given back: outliers are limited
+  Field residual_share_;   // share of each pixel's residual that is given back: outliers are limited
   Field own_;    // share of its own sampled value that a pixel has in the end, against black beside highlights; none for changes
   Field image_, error_;
 };

@@ -11,9 +11,9 @@ namespace {
 constexpr float kSharedError = 8.0f;
 // Of its differences nothing is, within windows.
 constexpr float kSharedDifference = 1.0f;
-constexpr float kLeastError = 1e-12f;
+constexpr float kMinError = 1e-12f;
 // How often dark pixels are held more firmly.
-constexpr int kHolds = 2;
+constexpr int kClampPasses = 2;
 
 struct Step {
   int x, y;
@@ -27,7 +27,7 @@ Field join_weights(const Field& error, Step step, Field* weights) {
   return make_field(error.width(), error.height(), [&](int x, int y) {
     if (!has_next(error, step, x, y)) return 0.0f;
     const float both = error.row(y)[x] + error.row(y + step.y)[x + step.x];
-    const float own = 1.0f / (0.5f * kSharedDifference * both + kLeastError);
+    const float own = 1.0f / (0.5f * kSharedDifference * both + kMinError);
     float& weight = weights->row(y)[x];
     weight += own;
     return own / weight;
@@ -47,10 +47,10 @@ void blend_differences(const Field& image, const Field& share, Step step, float 
 }  // namespace
 
 FusedDifferences::FusedDifferences(const GradientImages& images, float scale, float unknown, const Field& regressed, const Field& error,
-                                   const CancelTest& cancel, SolveReport* report)
+                                   const CancelCheck& cancel, SolveReport* report)
     : scale_(scale), system_(images.width, images.height, images.channels), solution_(regressed) {
   for_values(&system_.data_weights(),
-             [&](float& value, int x, int y, int) { value = 1.0f / (kSharedError * error.row(y)[x] + kLeastError); });
+             [&](float& value, int x, int y, int) { value = 1.0f / (kSharedError * error.row(y)[x] + kMinError); });
   weigh_differences_by_noise(images, scale, unknown, &system_.matrix());
   limit_differences(system_.data_weights(), &system_.matrix());
   share_x_ = join_weights(error, kRightwards, &system_.matrix().right);
@@ -61,12 +61,12 @@ FusedDifferences::FusedDifferences(const GradientImages& images, float scale, fl
     solve_by_noise(planes, cancel, &system_, &solution_, report);
   };
   solve();
-  for (int i = 0; i < kHolds && hold_dark_pixels(planes.primal, solution_, &system_); ++i) solve();
-  doubt_differences(planes.primal, solution_, error, kSharedError, &system_);
+  for (int i = 0; i < kClampPasses && clamp_dark_pixels(planes.primal, solution_, &system_); ++i) solve();
+  downweight_differences(planes.primal, solution_, error, kSharedError, &system_);
   solve();
 }
 
-Field FusedDifferences::apply(const GradientImages& images, const Field& regressed, const CancelTest& cancel, SolveReport* report) {
+Field FusedDifferences::apply(const GradientImages& images, const Field& regressed, const CancelCheck& cancel, SolveReport* report) {
   Field solution = regressed;
   solve_by_noise(blend(images, regressed), cancel, &system_, &solution, report);
   return solution;

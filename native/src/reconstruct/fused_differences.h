@@ -11,11 +11,11 @@ class FusedDifferences {
   // nothing is known. Estimates all weights from `regressed`, whose squared error is `error`, and freezes them. Alpha goes through those of
   // the colours.
   FusedDifferences(const GradientImages& images, float scale, float unknown, const Field& regressed, const Field& error,
-                   const CancelTest& cancel, SolveReport* report);
+                   const CancelCheck& cancel, SolveReport* report);
 
   Field take_solution() { return std::move(solution_); }
   // Of other planes by the same weights.
-  Field apply(const GradientImages& images, const Field& regressed, const CancelTest& cancel, SolveReport* report);
+  Field apply(const GradientImages& images, const Field& regressed, const CancelCheck& cancel, SolveReport* report);
 
  private:
   SolverPlanes blend(const GradientImages& images, const Field& regressed) const;

@@ -9,7 +9,7 @@ namespace gradus {
 namespace {
 
 // Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
-constexpr float kMost = 1e12f;
+constexpr float kMax = 1e12f;
 
 bool is_known(const Field& field) {
   for (int y = 0; y < field.height(); ++y) {
@@ -33,7 +33,7 @@ void guess_noise(HalvedImage* image) {
 
 void normalise(float scale, HalvedImage* image) {
   for (Field* field : {&image->mean, &image->half_difference}) {
-    for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMost, kMost); });
+    for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMax, kMax); });
   }
 }
 

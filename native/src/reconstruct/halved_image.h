@@ -22,14 +22,14 @@ void guess_noise(HalvedImage* image);
 
 // From sums_at(pixel), by the samples that the frame has taken there; a mean that is not finite is 0.
 template <class SumsAt>
-HalvedImage read_halves(const Frame& frame, const SumsAt& sums_at) {
-  const int w = frame.region.width(), h = frame.region.height();
+HalvedImage read_halves(const Film& film, const SumsAt& sums_at) {
+  const int w = film.region.width(), h = film.region.height();
   HalvedImage image{Field(w, h, 3), Field(w, h, 3)};
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) {
       const size_t i = size_t(y) * size_t(w) + size_t(x);
       const HalfSums sums = sums_at(i);
-      const auto a = float(frame.count[0][i]), b = float(frame.count[1][i]);
+      const auto a = float(film.count[0][i]), b = float(film.count[1][i]);
       for (int c = 0; c < 3; ++c) {
         const float mean = (sums[0][c] + sums[1][c]) / (a + b);
         image.mean.row(y, c)[x] = is_finite(mean) ? mean : 0.0f;

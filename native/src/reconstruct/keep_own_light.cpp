@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-constexpr float kLeastShare = 0.25f;
+constexpr float kMinShare = 0.25f;
 
 // Of the 3×3 pixels around, those of the image.
 float median_around(const Field& image, int x, int y, int channel) {
@@ -24,14 +24,14 @@ float median_around(const Field& image, int x, int y, int channel) {
 // Share of the sampled value with which a channel is no less than it may be.
 float share_of_own(const Field& sampled, const Field& regressed, int x, int y, int channel) {
   const float own = sampled.row(y, channel)[x], value = regressed.row(y, channel)[x];
-  if (value >= kLeastShare * own) return 0.0f;
-  const float least = kLeastShare * std::min(own, median_around(sampled, x, y, channel));
-  return least > value ? (least - value) / (own - value) : 0.0f;
+  if (value >= kMinShare * own) return 0.0f;
+  const float minimum = kMinShare * std::min(own, median_around(sampled, x, y, channel));
+  return minimum > value ? (minimum - value) / (own - value) : 0.0f;
 }
 
 }  // namespace
 
-Field keep_own_light(const Field& sampled, const Field& regressed) {
+Field restore_sampled_light(const Field& sampled, const Field& regressed) {
   return make_field(sampled.width(), sampled.height(), [&](int x, int y) {
     float share = 0.0f;
     for (int c = 0; c < sampled.channels(); ++c) share = std::max(share, share_of_own(sampled, regressed, x, y, c));
@@ -39,7 +39,7 @@ Field keep_own_light(const Field& sampled, const Field& regressed) {
   });
 }
 
-void blend_own(const Field& share, const Field& sampled, Field* regressed) {
+void blend_sampled(const Field& share, const Field& sampled, Field* regressed) {
   for_values(regressed, [&](float& value, int x, int y, int c) { value += share.row(y)[x] * (sampled.row(y, c)[x] - value); });
 }
 

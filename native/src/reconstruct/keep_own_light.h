@@ -7,9 +7,9 @@ namespace gradus {
 
 // Share of its own sampled value that each pixel takes, so that in no channel less than a quarter is left of what was sampled there: of the
 // pixel, or of the median of 3×3 where that is less, since the pixel may be a firefly. One channel; 0 for most.
-Field keep_own_light(const Field& sampled, const Field& regressed);
+Field restore_sampled_light(const Field& sampled, const Field& regressed);
 
 // The regressed value moves to the sampled one by that share.
-void blend_own(const Field& share, const Field& sampled, Field* regressed);
+void blend_sampled(const Field& share, const Field& sampled, Field* regressed);
 
 }  // namespace gradus

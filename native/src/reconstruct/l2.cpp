@@ -15,7 +15,7 @@ namespace {
 // A value that is missing counts as none: one non-finite number would spread over the whole image.
 float guarded(float v) { return is_finite(v) ? v : 0.0f; }
 
-constexpr int kMostChannels = 4;
+constexpr int kMaxChannels = 4;
 
 // Room for the sums of the transforms, which are as large as the image is long: a power of two, so that no bit is lost.
 constexpr float kRoom = 0x1p-24f;
@@ -45,7 +45,7 @@ class L2 {
 
  private:
   struct RightSideRow {
-    std::array<double, kMostChannels> sums{};  // of α²I by channel: the gradients' parts cancel over the image
+    std::array<double, kMaxChannels> sums{};  // of α²I by channel: the gradients' parts cancel over the image
     bool complete = true;
   };
 
@@ -130,7 +130,7 @@ L2Rows rows_of(const PoissonPlanes& planes, int width, int channels) {
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha) { return std::make_unique<L2Operator>(width, height, alpha); }
 
 bool solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows, const L2Take& take, float* work) {
-  if (channels < 1 || channels > kMostChannels) throw unsupported("an image has 1 to 4 channels");
+  if (channels < 1 || channels > kMaxChannels) throw unsupported("an image has 1 to 4 channels");
   return L2(width, height, channels, alpha).solve(rows, take, work);
 }
 

@@ -9,7 +9,7 @@ namespace gradus {
 namespace {
 
 constexpr CgGoal kGoal{.residual = 1e-6f};
-constexpr int kMostSteps = 100;
+constexpr int kMaxSteps = 100;
 
 // Weights of rows that are there, all channels alike.
 void weigh(const std::vector<float>& values, int channels, int width, int y, float weight, float* weights) {
@@ -19,7 +19,7 @@ void weigh(const std::vector<float>& values, int channels, int width, int y, flo
 
 }  // namespace
 
-std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report) {
+std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report) {
   const int w = images.width, h = images.height, channels = images.channels;
   WeightedLeastSquares system(w, h, channels);
   for_rows(h, [&](int y) {
@@ -30,7 +30,7 @@ std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha,
   system.update();
   const PoissonPlanes interleaved = planes_of(images, 0);
   Field x = start_from_l2(interleaved, w, h, channels, alpha);
-  const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kGoal, kMostSteps, cancel, &x);
+  const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kGoal, kMaxSteps, cancel, &x);
   add_solve(solve, report);
   return interleave(x);
 }

@@ -6,6 +6,6 @@
 
 namespace gradus {
 
-std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
+std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report);
 
 }  // namespace gradus

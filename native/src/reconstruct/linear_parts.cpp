@@ -21,13 +21,13 @@ double light_of(const Field& field) {
 
 }  // namespace
 
-void subtract(const Field& part, Field* from) {
-  for_values(from, [&](float& value, int x, int y, int c) { value -= part.row(y, c)[x]; });
+void subtract(const Field& term, Field* from) {
+  for_values(from, [&](float& value, int x, int y, int c) { value -= term.row(y, c)[x]; });
 }
 
-size_t brightest(const std::vector<Field>& parts) {
+size_t brightest(const std::vector<Field>& terms) {
   std::vector<double> light;
-  for (const Field& part : parts) light.push_back(light_of(part));
+  for (const Field& term : terms) light.push_back(light_of(term));
   return size_t(std::max_element(light.begin(), light.end()) - light.begin());
 }
 

@@ -23,7 +23,7 @@ constexpr TileSize kOfEstimate{72 - 2 * kReach, 96}, kOfApply{40 - 2 * kReach, 3
 const Field* or_null(const Field& field) { return field.width() > 0 ? &field : nullptr; }
 
 template <int P, int C, bool Coordinates, bool Estimates>
-void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, const CancelTest& cancel) {
+void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, const CancelCheck& cancel) {
   constexpr TileSize kTile = Estimates ? kOfEstimate : kOfApply;
   const int side = octave.octave.side;
   const int w = ceil_divided(task.weights->width() + octave.shift, side), h = ceil_divided(task.weights->height() + octave.shift, side);
@@ -42,7 +42,7 @@ void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, 
 
 // Lattice by lattice, from the coarsest octave to the finest.
 template <int P, int C, bool Coordinates, bool Estimates, class Confidence>
-void run_octaves(const RegressionTask& task, const Confidence& confidence, const CancelTest& cancel) {
+void run_octaves(const RegressionTask& task, const Confidence& confidence, const CancelCheck& cancel) {
   const std::vector<Octave>& octaves = task.settings->octaves;
   for (int shift = 0; shift < task.settings->lattices; ++shift) {
     Field coarse;
@@ -50,7 +50,7 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
       const int side = octaves[k].side;
       const Field above =
           std::exchange(coarse, k > 0 ? Field(ceil_divided(task.weights->width() + shift, side),
-                                              ceil_divided(task.weights->height() + shift, side), Opinions<P, C, Coordinates>::kCount)
+                                              ceil_divided(task.weights->height() + shift, side), WindowEstimates<P, C, Coordinates>::kCount)
                                       : Field());
       run_tiles<P, C, Coordinates, Estimates>(
           task, {octaves[k], shift, confidence(octaves.size() * size_t(shift) + k), or_null(above), k > 0 ? &coarse : nullptr}, cancel);
@@ -59,7 +59,7 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
 }
 
 template <int C, bool Estimates, class Confidence>
-void run_features(const RegressionTask& task, const Confidence& confidence, const CancelTest& cancel) {
+void run_features(const RegressionTask& task, const Confidence& confidence, const CancelCheck& cancel) {
   const int features = task.features->channels();
   const bool coordinates = task.settings->coordinates;
   if (features == 7 && coordinates) return run_octaves<10, C, true, Estimates>(task, confidence, cancel);
@@ -80,7 +80,7 @@ LocalRegression::LocalRegression(std::shared_ptr<const Predictors> predictors, F
   }
 }
 
-RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_difference, const CancelTest& cancel) {
+RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_difference, const CancelCheck& cancel) {
   const int w = mean.width(), h = mean.height();
   RegressionResult result{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
   Field totals(w, h, 1);
@@ -97,7 +97,7 @@ RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_
   return result;
 }
 
-Field LocalRegression::apply(const Field& values, const CancelTest& cancel) const {
+Field LocalRegression::apply(const Field& values, const CancelCheck& cancel) const {
   Field result(values.width(), values.height(), values.channels()), totals(values.width(), values.height(), 1);
   const RegressionTask task{
       &predictors_->features, &predictors_->weights, or_null(own_), {&values}, {&result}, &totals, nullptr, &settings_};

@@ -55,9 +55,9 @@ class LocalRegression {
   LocalRegression(std::shared_ptr<const Predictors> predictors, Field own, RegressionSettings settings);
 
   // Regresses three channels, given half the difference of the halves, and freezes η. Deterministic for any number of threads.
-  RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelTest& cancel);
+  RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelCheck& cancel);
   // One channel, or three, by the frozen operator.
-  Field apply(const Field& values, const CancelTest& cancel) const;
+  Field apply(const Field& values, const CancelCheck& cancel) const;
 
  private:
   std::shared_ptr<const Predictors> predictors_;

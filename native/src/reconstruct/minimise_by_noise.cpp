@@ -10,9 +10,9 @@ namespace gradus {
 namespace {
 
 // No row of the image is off by more than a hundredth of its noise, root mean square: 5 to 12 steps. The residual says nothing: beside a
-// bright lamp it is small at once, and where weights span six decades it is that of the rows with little noise.
+// bright light it is small at once, and where weights span six decades it is that of the rows with little noise.
 constexpr CgGoal kGoal{.row_error = 1e-2f};
-constexpr int kMostSteps = 60;
+constexpr int kMaxSteps = 60;
 
 void weigh_rows(const std::vector<float>& deviations, const std::vector<float>& values, const GradientImages& images, float scale,
                 float unknown, Field* weights) {
@@ -45,13 +45,13 @@ void limit_differences(const Field& data, Stencil* matrix) {
   }
 }
 
-void solve_by_noise(const SolverPlanes& planes, const CancelTest& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report) {
-  const CgReport solve = system->solve(planes, kGoal, kMostSteps, cancel, x);
+void solve_by_noise(const SolverPlanes& planes, const CancelCheck& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report) {
+  const CgReport solve = system->solve(planes, kGoal, kMaxSteps, cancel, x);
   ++report->outer_steps;
   add_solve(solve, report);
 }
 
-Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel, SolveReport* report) {
+Minimum minimise_by_noise(const GradientImages& images, const CancelCheck& cancel, SolveReport* report) {
   const int channels = std::min(images.channels, 3);
   const PoissonPlanes interleaved = planes_of(images, 0);
   const SolverPlanes planes = load_planes(interleaved, images.width, images.height, channels);

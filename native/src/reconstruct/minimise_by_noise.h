@@ -7,7 +7,7 @@
 namespace gradus {
 
 // Estimates the weights from the deviations of `images` (read_deviations()) and freezes them.
-Minimum minimise_by_noise(const GradientImages& images, const CancelTest& cancel, SolveReport* report);
+Minimum minimise_by_noise(const GradientImages& images, const CancelCheck& cancel, SolveReport* report);
 
 // Weights of pixels and of differences by noise (noise_weights.h). A wider window measures better, but leaves outliers in, which the own
 // deviation finds out: of 0.5 to 4 pixels this gives the least error (docs/method.md). A row that is missing has weight 0. unknown:
@@ -19,6 +19,6 @@ void weigh_differences_by_noise(const GradientImages& images, float scale, float
 void limit_differences(const Field& data, Stencil* matrix);
 
 // Solves with such weights, from x on, as exactly as the noise asks for.
-void solve_by_noise(const SolverPlanes& planes, const CancelTest& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report);
+void solve_by_noise(const SolverPlanes& planes, const CancelCheck& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report);
 
 }  // namespace gradus

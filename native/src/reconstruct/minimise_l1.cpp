@@ -13,17 +13,17 @@ namespace {
 constexpr float kFirstFloor = 0.05f;
 constexpr float kLastFloor = 2e-3f;
 constexpr float kFloorFactor = 0.2f;
-constexpr int kMostOuterSteps = 8;
+constexpr int kMaxOuterSteps = 8;
 // Weights need no exact solution: they change with the next step. Two steps for it do as well as four (measured).
 constexpr float kOuterTolerance = 1e-2f;
-constexpr int kMostInnerSteps = 2;
+constexpr int kMaxInnerSteps = 2;
 // A smaller one changes the error against the truth by less than 0.01 % (measured).
 constexpr float kFinalTolerance = 1e-4f;
-constexpr int kMostFinalSteps = 60;
+constexpr int kMaxFinalSteps = 60;
 
 }  // namespace
 
-Minimum minimise_l1(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report) {
+Minimum minimise_l1(const GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report) {
   const int channels = std::min(images.channels, 3);
   const PoissonPlanes interleaved = planes_of(images, 0);
   const SolverPlanes planes = load_planes(interleaved, images.width, images.height, channels);
@@ -34,11 +34,11 @@ Minimum minimise_l1(const GradientImages& images, float alpha, const CancelTest&
   int outer_steps = 0;
   for (bool last = false; !last && !cancel(); floor = std::max(floor * kFloorFactor, kLastFloor)) {
     ++outer_steps;
-    last = floor <= kLastFloor || outer_steps == kMostOuterSteps;
+    last = floor <= kLastFloor || outer_steps == kMaxOuterSteps;
     reweight(planes, result.solution, alpha, scale, floor, &result.system.data_weights(), &result.system.matrix());
     result.system.update();
     const CgReport inner = result.system.solve(planes, {.residual = last ? kFinalTolerance : kOuterTolerance},
-                                               last ? kMostFinalSteps : kMostInnerSteps, cancel, &result.solution);
+                                               last ? kMaxFinalSteps : kMaxInnerSteps, cancel, &result.solution);
     report->inner_steps += inner.steps;
     if (last) report->residual = std::max(report->residual, inner.residual);
   }

@@ -6,6 +6,6 @@
 namespace gradus {
 
 // Estimates the weights from the first three channels of `images`, which share them, and freezes them.
-Minimum minimise_l1(const GradientImages& images, float alpha, const CancelTest& cancel, SolveReport* report);
+Minimum minimise_l1(const GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report);
 
 }  // namespace gradus

@@ -70,7 +70,7 @@ struct Moments {
 
 // What windows say, summed over those that hold a square: coefficients times η, η, bias times η.
 template <int P, int C, bool Coordinates>
-struct Opinions {
+struct WindowEstimates {
   static constexpr int kConfidence = P * C, kBias = P * C + 1, kCount = P * C + 2;
 
   // The adjoint of joining: to[x] += what a[x] says of its lower half, and b[x − shift] of its upper one.

@@ -8,17 +8,17 @@ namespace {
 
 // The estimate needs no more digits than this.
 constexpr CgGoal kGoal{.residual = 1e-2f, .row_error = 0.1f};
-constexpr int kMostSteps = 10;
+constexpr int kMaxSteps = 10;
 
 }  // namespace
 
-NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, float alpha, const CancelTest& cancel) {
+NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, float alpha, const CancelCheck& cancel) {
   alpha = chosen_alpha(GRADUS_RECONSTRUCTION_L1, alpha);
   SolveReport report;
   Minimum minimum = minimise_by_noise(images, cancel, &report);
   const int channels = minimum.solution.channels();
   Field noise(images.width, images.height, channels);
-  minimum.system.solve(load_planes(planes_of(half_differences, 0), images.width, images.height, channels), kGoal, kMostSteps, cancel,
+  minimum.system.solve(load_planes(planes_of(half_differences, 0), images.width, images.height, channels), kGoal, kMaxSteps, cancel,
                        &noise);
   const Twicing twicing(images, minimum.solution, alpha);
   const size_t stride = size_t(images.channels);

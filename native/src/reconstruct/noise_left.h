@@ -16,6 +16,6 @@ struct NoiseLeft {
 
 // images: with deviations; half_differences: of the same frame (read_half_differences()). Channels beyond the third, which have no part in
 // the weights, stay 0.
-NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, float alpha, const CancelTest& cancel);
+NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, float alpha, const CancelCheck& cancel);
 
 }  // namespace gradus

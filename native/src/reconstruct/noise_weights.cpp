@@ -14,7 +14,7 @@ constexpr float kFloor = 1e-2f;
 constexpr float kBeside = 0.36f;
 // Most that a neighbour lends to the mean, times what is usual around it. 3 to 8 give the same error; without, it is a tenth more
 // (docs/method.md).
-constexpr float kMostLent = 4.0f;
+constexpr float kMaxLent = 4.0f;
 
 float beside(const Field& f, int x, int y) {
   const float *below = f.row(y - 1) + x, *here = f.row(y) + x, *above = f.row(y + 1) + x;
@@ -33,7 +33,7 @@ NoiseWeights::NoiseWeights(const std::vector<float>& deviations, int width, int 
     }
   });
   for_rows(height, [&](int y) {
-    for (int x = 0; x < width; ++x) lent_.row(y)[x] = std::min(own_.row(y)[x], kMostLent * level_around(x, y));
+    for (int x = 0; x < width; ++x) lent_.row(y)[x] = std::min(own_.row(y)[x], kMaxLent * typical_level(x, y));
   });
 }
 
@@ -47,7 +47,7 @@ void NoiseWeights::read_row(int y, float scale, float unknown, float* weights) c
 
 // Of the four lines through a row's value, the largest that both neighbours on it have: large within areas and along edges of noise,
 // small around an outlier, even where differences have two of them side by side.
-float NoiseWeights::level_around(int x, int y) const {
+float NoiseWeights::typical_level(int x, int y) const {
   const float *below = own_.row(y - 1) + x, *here = own_.row(y) + x, *above = own_.row(y + 1) + x;
   return std::max(
       {std::min(here[-1], here[1]), std::min(below[0], above[0]), std::min(below[-1], above[1]), std::min(below[1], above[-1])});

@@ -21,7 +21,7 @@ class NoiseWeights {
   void read_row(int y, float scale, float unknown, float* weights) const;
 
  private:
-  float level_around(int x, int y) const;
+  float typical_level(int x, int y) const;
 
   Field own_, lent_, known_;
 };
@@ -29,9 +29,9 @@ class NoiseWeights {
 // Single precision tells a pixel's weight from its differences' down to a ratio of some 1e-6. Where differences were known far better
 // than pixels, as under fireflies, the matrix would be singular and conjugate gradients diverge. So a difference is taken to be uncertain
 // by this share of its pixel's noise, which loses nothing: it takes the mean of a million pixels to bring theirs down to it.
-inline constexpr float kLeastShare = 1e-3f;
+inline constexpr float kMinShare = 1e-3f;
 inline float limited_difference(float weight, float of_pixel) {
-  return of_pixel > 0.0f ? weight / (1.0f + kLeastShare * kLeastShare * weight / of_pixel) : weight;
+  return of_pixel > 0.0f ? weight / (1.0f + kMinShare * kMinShare * weight / of_pixel) : weight;
 }
 
 }  // namespace gradus

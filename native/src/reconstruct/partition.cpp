@@ -27,13 +27,13 @@ void scale_error(float scale, Field* error) {
 
 // A value of one channel and pixel in one part. In double: weights are squares.
 struct Share {
-  double value, weight, least;
+  double value, weight, minimum;
 };
 
 // All of `lack` by weight, what may not go below its least value no further than that. Returns what is left of it.
 double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const Share&)) {
   for (size_t round = 0; round < shares.size() && lack != 0.0; ++round) {
-    const auto is_open = [lack](const Share& share) { return lack > 0.0 || share.value > share.least; };
+    const auto is_open = [lack](const Share& share) { return lack > 0.0 || share.value > share.minimum; };
     double total = 0.0;
     for (const Share& share : shares) total += is_open(share) ? weight_of(share) : 0.0;
     if (!(total > 0.0)) return lack;
@@ -41,7 +41,7 @@ double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const
     for (Share& share : shares) {
       if (!is_open(share)) continue;
       const double wanted = share.value + lack * (weight_of(share) / total);
-      share.value = lack > 0.0 ? wanted : std::max(wanted, share.least);
+      share.value = lack > 0.0 ? wanted : std::max(wanted, share.minimum);
       left += wanted - share.value;
     }
     lack = left;
@@ -49,7 +49,7 @@ double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const
   return lack;
 }
 
-void settle(double whole, std::vector<Share>& shares) {
+void distribute(double whole, std::vector<Share>& shares) {
   double lack = whole;
   for (const Share& share : shares) lack -= share.value;
   lack = spread(lack, shares, [](const Share& share) { return share.weight; });
@@ -59,27 +59,27 @@ void settle(double whole, std::vector<Share>& shares) {
 
 }  // namespace
 
-PartPicture regress_part(const Features& guides, HalvedImage sampled, const CancelTest& cancel) {
-  PartPicture part;
-  part.may_be_negative = any_value(sampled.mean, [](float value) { return value < 0.0f; });
+PictureTerm regress_term(const Features& guides, HalvedImage sampled, const CancelCheck& cancel) {
+  PictureTerm term;
+  term.may_be_negative = any_value(sampled.mean, [](float value) { return value < 0.0f; });
   if (is_black(sampled.half_difference)) {
-    part.error = Field(sampled.mean.width(), sampled.mean.height(), 1);
-    part.image = std::move(sampled.mean);
-    return part;
+    term.error = Field(sampled.mean.width(), sampled.mean.height(), 1);
+    term.image = std::move(sampled.mean);
+    return term;
   }
   const float scale = robust_scale(sampled.mean);
   normalise(scale, &sampled);
   const FeatureRegression regression(guides, sampled, cancel);
-  part.image = regression.image();
-  part.error = regression.error();
-  limit_by_noise(sampled.half_difference, &part.error);
-  scale_light(scale, &part.image);
-  scale_error(scale, &part.error);
-  if (!part.may_be_negative) for_values(&part.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
-  return part;
+  term.image = regression.image();
+  term.error = regression.error();
+  limit_by_noise(sampled.half_difference, &term.error);
+  scale_light(scale, &term.image);
+  scale_error(scale, &term.error);
+  if (!term.may_be_negative) for_values(&term.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
+  return term;
 }
 
-void add_up(const Field& whole, std::vector<PartPicture>* parts) {
+void add_up(const Field& whole, std::vector<PictureTerm>* terms) {
   for_rows(whole.height(), [&](int y) {
     std::vector<Share> shares;
     std::vector<float*> values;
@@ -87,17 +87,17 @@ void add_up(const Field& whole, std::vector<PartPicture>* parts) {
       for (int x = 0; x < whole.width(); ++x) {
         shares.clear();
         values.clear();
-        for (PartPicture& part : *parts) {
-          float* const value = part.image.row(y, c) + x;
-          const double room = part.room.width() > 0 ? part.room.row(y, c)[x] : 1.0;
+        for (PictureTerm& term : *terms) {
+          float* const value = term.image.row(y, c) + x;
+          const double room = term.room.width() > 0 ? term.room.row(y, c)[x] : 1.0;
           if (room == 0.0) {
             *value = 0.0f;
           } else {
-            shares.push_back({*value, room * room * part.error.row(y)[x], part.may_be_negative ? -INFINITY : 0.0});
+            shares.push_back({*value, room * room * term.error.row(y)[x], term.may_be_negative ? -INFINITY : 0.0});
             values.push_back(value);
           }
         }
-        settle(whole.row(y, c)[x], shares);
+        distribute(whole.row(y, c)[x], shares);
         for (size_t i = 0; i < values.size(); ++i) *values[i] = std::clamp(float(shares[i].value), -kMaxFloat, kMaxFloat);
       }
     }

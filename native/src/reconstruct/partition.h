@@ -12,7 +12,7 @@
 namespace gradus {
 
 // A part in three channels, as it is and as sampled: in the picture's units.
-struct PartPicture {
+struct PictureTerm {
   Field image;
   Field error;  // estimated squared error, mean over the channels; one channel
   // Of each channel: how much light there can be of the part, over that in the pixels around. 0: none, whatever is lacking. None: as much.
@@ -21,11 +21,11 @@ struct PartPicture {
 };
 
 // A part without noise stays what it is.
-PartPicture regress_part(const Features& guides, HalvedImage sampled, const CancelTest& cancel);
+PictureTerm regress_term(const Features& guides, HalvedImage sampled, const CancelCheck& cancel);
 
 // The parts, of one size, become such that they add up to `whole`, three channels. What lacks of the sum goes to all that have room, by
 // their errors; where these tell nothing, by their light; where there is none, to the last of them. What was not negative stays so unless
 // the sum cannot be had otherwise.
-void add_up(const Field& whole, std::vector<PartPicture>* parts);
+void add_up(const Field& whole, std::vector<PictureTerm>* terms);
 
 }  // namespace gradus

@@ -15,19 +15,19 @@ namespace {
 
 // Rows of a frame, which its images would take longer to write down than to make. A thread goes from one row to the next, so the row below
 // is often there already.
-class FrameRows {
+class FilmRows {
  public:
-  FrameRows(const Frame& frame, int component) : frame_(frame), component_(component) {}
+  FilmRows(const Film& film, int component) : film_(film), component_(component) {}
 
   void operator()(int y, const L2Use& use) {
     Rows& rows = rows_.local();
-    const size_t size = size_t(frame_.region.width()) * size_t(frame_.channels);
+    const size_t size = size_t(film_.region.width()) * size_t(film_.channels);
     for (auto* row : {&rows.primal, &rows.dx, &rows.dy, &rows.dy_below}) row->resize(size);
     std::swap(rows.dy, rows.dy_below);
-    if (y > 0 && rows.y != y - 1) read_difference_row(frame_, component_, kUp, {}, y - 1, rows.dy_below.data());
-    read_primal_row(frame_, component_, {}, y, rows.primal.data());
-    read_difference_row(frame_, component_, kRight, {}, y, rows.dx.data());
-    read_difference_row(frame_, component_, kUp, {}, y, rows.dy.data());
+    if (y > 0 && rows.y != y - 1) read_difference_row(film_, component_, kUp, {}, y - 1, rows.dy_below.data());
+    read_primal_row(film_, component_, {}, y, rows.primal.data());
+    read_difference_row(film_, component_, kRight, {}, y, rows.dx.data());
+    read_difference_row(film_, component_, kUp, {}, y, rows.dy.data());
     rows.y = y;
     use({rows.primal.data(), rows.dx.data(), rows.dy.data(), rows.dy_below.data()});
   }
@@ -37,12 +37,12 @@ class FrameRows {
     int y = -2;  // of dy
     std::vector<float> primal, dx, dy, dy_below;
   };
-  const Frame& frame_;
+  const Film& film_;
   int component_;
   tbb::enumerable_thread_specific<Rows> rows_;
 };
 
-std::unique_ptr<TwicedSolver> make_solver(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::unique_ptr<TwicedSolver> make_solver(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                           SolveReport* report) {
   switch (reconstruction) {
     case GRADUS_RECONSTRUCTION_L1:
@@ -54,12 +54,12 @@ std::unique_ptr<TwicedSolver> make_solver(const GradientImages& images, uint32_t
 
 }  // namespace
 
-std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                             SolveReport* report) {
   return make_solver(images, reconstruction, chosen_alpha(reconstruction, alpha), cancel, report);
 }
 
-std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                SolveReport* report) {
   alpha = chosen_alpha(reconstruction, alpha);
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
@@ -79,18 +79,18 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
   return result;
 }
 
-std::vector<float> reconstruct(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::vector<float> reconstruct(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                SolveReport* report) {
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
-    const int w = frame.region.width(), h = frame.region.height();
-    FrameRows rows(frame, component);
+    const int w = film.region.width(), h = film.region.height();
+    FilmRows rows(film, component);
     alpha = chosen_alpha(reconstruction, alpha);
-    if (auto image = solve_l2(w, h, frame.channels, alpha, std::ref(rows))) return *std::move(image);
-    return solve_l2_with_gaps(read_images(frame, component), alpha, cancel, report);
+    if (auto image = solve_l2(w, h, film.channels, alpha, std::ref(rows))) return *std::move(image);
+    return solve_l2_with_gaps(read_images(film, component), alpha, cancel, report);
   }
-  GradientImages images = read_images(frame, component);
-  read_deviations(frame, component, &images);
-  return reconstruct_unsettled(images, reconstruction, alpha, cancel, report);
+  GradientImages images = read_images(film, component);
+  read_deviations(film, component, &images);
+  return reconstruct_noisy_region(images, reconstruction, alpha, cancel, report);
 }
 
 }  // namespace gradus

@@ -11,13 +11,13 @@
 namespace gradus {
 namespace {
 
-void check_readable(const Frame& frame, uint32_t reconstruction) {
+void check_readable(const Film& film, uint32_t reconstruction) {
   if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return;
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    if (!has_features(frame)) throw invalid_operation("the frame holds no denoising features to reconstruct with: render it with them");
+    if (!has_features(film)) throw invalid_operation("the frame holds no denoising features to reconstruct with: render it with them");
     return;
   }
-  if (!frame.gradients) throw invalid_operation("the frame holds no gradients to reconstruct from");
+  if (!film.gradients) throw invalid_operation("the frame holds no gradients to reconstruct from");
 }
 
 bool is_zero(const std::vector<Radiance>& plane) {
@@ -61,34 +61,34 @@ void add_image(std::vector<float> term, std::vector<float>* sum) {
   for (size_t i = 0; i < term.size(); ++i) (*sum)[i] += term[i];
 }
 
-std::vector<float> reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::vector<float> reconstruct_component(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                          SolveReport* report) {
-  if (is_black(frame.components[size_t(component)])) return std::vector<float>(size_t(frame.region.area()) * size_t(frame.channels));
-  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return read_images(frame, component).primal;
-  return reconstruct(frame, component, reconstruction, alpha, cancel, report);
+  if (is_black(film.components[size_t(component)])) return std::vector<float>(size_t(film.region.area()) * size_t(film.channels));
+  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return read_images(film, component).primal;
+  return reconstruct(film, component, reconstruction, alpha, cancel, report);
 }
 
-Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, ReconstructionParts wanted,
-                                const CancelTest& cancel, SolveReport* report) {
-  check_readable(frame, reconstruction);
+Reconstructed reconstruct_film(const Film& film, uint32_t reconstruction, float alpha, ReconstructionOutputs wanted,
+                                const CancelCheck& cancel, SolveReport* report) {
+  check_readable(film, reconstruction);
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    Reconstructed result = regularize(frame, wanted.components, cancel, report);
+    Reconstructed result = regularize(film, wanted.components, cancel, report);
     if (!wanted.error) result.error = {};
     return result;
   }
   Reconstructed sum;
   ErrorTerms terms;
-  for (int component = 0; component < int(frame.components.size()); ++component) {
-    std::vector<float> part = reconstruct_component(frame, component, reconstruction, alpha, cancel, report);
+  for (int component = 0; component < int(film.components.size()); ++component) {
+    std::vector<float> part = reconstruct_component(film, component, reconstruction, alpha, cancel, report);
     if (wanted.error) {
-      ErrorTerms of_part = error_terms(frame, component, reconstruction, alpha, part, cancel);
+      ErrorTerms of_part = error_terms(film, component, reconstruction, alpha, part, cancel);
       add_image(std::move(of_part.noise), &terms.noise);
       add_image(std::move(of_part.apart), &terms.apart);
     }
     if (wanted.components) sum.components.push_back(part);
     add_image(std::move(part), &sum.image);
   }
-  if (!terms.noise.empty()) sum.error = error_of_pixels(terms, frame.region.width(), frame.region.height(), frame.channels);
+  if (!terms.noise.empty()) sum.error = error_of_pixels(terms, film.region.width(), film.region.height(), film.channels);
   return sum;
 }
 

@@ -7,20 +7,20 @@
 namespace gradus {
 
 // What is wanted besides the picture.
-struct ReconstructionParts {
+struct ReconstructionOutputs {
   bool error = false, components = false;
 };
 
 // The sum of all components (contract 3.4): each by its own solver, or all by one operator (REGULARIZED). reconstruction: never AUTO.
 // Throws invalid_operation for a frame without what it reads.
-Reconstructed reconstruct_frame(const Frame& frame, uint32_t reconstruction, float alpha, ReconstructionParts wanted,
-                                const CancelTest& cancel, SolveReport* report);
+Reconstructed reconstruct_film(const Film& film, uint32_t reconstruction, float alpha, ReconstructionOutputs wanted,
+                                const CancelCheck& cancel, SolveReport* report);
 
 // One component, by all reconstructions but REGULARIZED; without an error: see error_estimate.h.
-std::vector<float> reconstruct_component(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::vector<float> reconstruct_component(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                          SolveReport* report);
 
-// Of light that lamps below 0 take away (contract 5.5): linear reconstructions keep it, others cut it off.
+// Of light that lights below 0 take away (contract 5.5): linear reconstructions keep it, others cut it off.
 bool keeps_negative(uint32_t reconstruction);
 
 // Where pictures are clamped components become such that none is negative and that they add up to the picture as clamped.

@@ -38,7 +38,7 @@ Field lost_share(const Smoothed& smoothed) {
 
 Field regression_error(const Smoothed& smoothed, const Field& bias) {
   const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
-  // As shares of the light: noise of a lamp is not that of the wall beside it.
+  // As shares of the light: noise of a light is not that of the wall beside it.
   Field error = box_mean(
       make_field(light.width(), light.height(), [&](int x, int y) { return mean_of_squares(smoothed.noise, x, y) / light.row(y)[x]; }),
       kNoiseRadius);

@@ -37,7 +37,7 @@ struct OctaveTask {
   int shift;
   Confidence* confidence;  // a channel for each size of windows, large ones first; row and column of the first square + kReach
   const Field* coarse;     // opinions of the next octave
-  Field* opinions;         // of this; null for the finest, which writes results
+  Field* window_estimates;         // of this; null for the finest, which writes results
 };
 
 inline int ceil_divided(int pixels, int side) { return (pixels + side - 1) / side; }
@@ -62,7 +62,7 @@ class Tile {
         boxes_(M::kCount, width_),
         pairs_{Rows(M::kCount, width_), Rows(M::kCount, width_)},
         quads_{Rows(M::kCount, width_), Rows(M::kCount, width_), Rows(M::kCount, width_)},
-        said_(O::kCount, width_),
+        estimate_(O::kCount, width_),
         small_{Rows(O::kCount, width_), Rows(O::kCount, width_), Rows(O::kCount, width_)},
         large_{Rows(O::kCount, width_), Rows(O::kCount, width_), Rows(O::kCount, width_)},
         columns_{Rows(O::kCount, width_), Rows(O::kCount, width_)} {}
@@ -82,7 +82,7 @@ class Tile {
 
  private:
   using M = Moments<P, C, Coordinates>;
-  using O = Opinions<P, C, Coordinates>;
+  using O = WindowEstimates<P, C, Coordinates>;
   enum Size : int { kLarge, kSmall };                      // of windows
   static constexpr int kSides = P * C, kChannels = C / 2;  // of the image, if the sides are its mean and half the difference
   static constexpr int B = Coordinates ? P - 2 : P;        // but for the coordinates
@@ -109,26 +109,26 @@ class Tile {
 
   // All windows say 0, as surely as any can; the octave above may have more to say.
   void pass_over() {
-    const float most = 1.0f / (float(task_.settings->lattices) * task_.settings->floor);
+    const float maximum = 1.0f / (float(task_.settings->lattices) * task_.settings->floor);
     if constexpr (Estimates) {
-      for (int m = y0_ - kReach; m < y1_; ++m) keep_most(m, most);
+      for (int m = y0_ - kReach; m < y1_; ++m) store_max_confidence(m, maximum);
     }
     for (int m = y0_; m < y1_; ++m) {
-      said_.clear();
-      std::fill_n(said_[O::kConfidence], width_, octave_.octave.small ? 2.0f * most : most);
+      estimate_.clear();
+      std::fill_n(estimate_[O::kConfidence], width_, octave_.octave.small ? 2.0f * maximum : maximum);
       if (octave_.coarse != nullptr) add_coarse(m);
-      octave_.opinions != nullptr ? write_opinions(m) : write_pixels(m);
+      octave_.window_estimates != nullptr ? write_estimates(m) : write_pixels(m);
     }
   }
 
   // Small windows that begin two squares before the image hold none of it.
-  void keep_most(int m, float most) {
+  void store_max_confidence(int m, float maximum) {
     for (int x = 0; x < boxes_.width(); x += kLanes) {
-      keep_confidence(m, kLarge, x, Lanes{} + 0.0625f * most);
+      store_confidence(m, kLarge, x, Lanes{} + 0.0625f * maximum);
       if (!octave_.octave.small || m < -1) continue;
       Lanes small{};
-      for (int l = 0; l < kLanes; ++l) small[l] = first_ + x + l < -1 ? 0.0f : 0.25f * most;
-      keep_confidence(m, kSmall, x, small);
+      for (int l = 0; l < kLanes; ++l) small[l] = first_ + x + l < -1 ? 0.0f : 0.25f * maximum;
+      store_confidence(m, kSmall, x, small);
     }
   }
 
@@ -224,30 +224,30 @@ class Tile {
   }
   void regress_large(int m) {
     M::template join<M::kY>(at(quads_, m), at(quads_, m + 2), 0, 2.0f * unit_, &boxes_);
-    regress(m, kLarge, &said_);
+    regress(m, kLarge, &estimate_);
   }
 
   // What they say, to the squares that they hold.
   void collect(int m) {
     Rows &large = at(large_, m), &small = at(small_, m), &column = at(columns_, m);
     large.clear();
-    O::template split<M::kX>(said_, said_, 2, 2.0f * unit_, &large);
+    O::template split<M::kX>(estimate_, estimate_, 2, 2.0f * unit_, &large);
     if (!octave_.octave.small) small.clear();
     O::template split<M::kY>(large, at(large_, m - 2), 0, 2.0f * unit_, &small);
     column.clear();
     O::template split<M::kX>(small, small, 1, unit_, &column);
     if (m < y0_) return;
-    said_.clear();
-    O::template split<M::kY>(column, at(columns_, m - 1), 0, unit_, &said_);
+    estimate_.clear();
+    O::template split<M::kY>(column, at(columns_, m - 1), 0, unit_, &estimate_);
     if (octave_.coarse != nullptr) add_coarse(m);
-    octave_.opinions != nullptr ? write_opinions(m) : write_pixels(m);
+    octave_.window_estimates != nullptr ? write_estimates(m) : write_pixels(m);
   }
 
   // Eight windows side by side: coefficients, error and, by these, what they have to say.
-  void regress(int m, Size size, Rows* said) {
-    for (int x = 0; x < boxes_.width(); x += kLanes) regress(m, size, x, said);
+  void regress(int m, Size size, Rows* estimate) {
+    for (int x = 0; x < boxes_.width(); x += kLanes) regress(m, size, x, estimate);
   }
-  void regress(int m, Size size, int x, Rows* said) {
+  void regress(int m, Size size, int x, Rows* estimate) {
     Lanes matrix[packed(P, 0)], solution[kSides];
     for (int i = 0; i < packed(P, 0); ++i) matrix[i] = load(boxes_[i] + x);
     for (int i = 0; i < kSides; ++i) solution[i] = load(boxes_[M::kRight + i] + x);
@@ -275,13 +275,13 @@ class Tile {
       bias = unit * residual;
       const Lanes error = (bias > zero ? bias : zero) + (noise > zero ? unit * noise : zero) + task_.settings->floor;
       eta = weight > zero ? (size == kSmall ? 0.25f : 0.0625f) / (float(task_.settings->lattices) * error) : zero;
-      keep_confidence(m, size, x, eta);
+      store_confidence(m, size, x, eta);
     } else {
       eta = load_confidence(m, size, x);
     }
-    for (int i = 0; i < kSides; ++i) store(eta * solution[i], (*said)[i] + x);
-    store(eta, (*said)[O::kConfidence] + x);
-    store(eta * bias, (*said)[O::kBias] + x);
+    for (int i = 0; i < kSides; ++i) store(eta * solution[i], (*estimate)[i] + x);
+    store(eta, (*estimate)[O::kConfidence] + x);
+    store(eta * bias, (*estimate)[O::kBias] + x);
   }
 
   // Of eight windows.
@@ -295,7 +295,7 @@ class Tile {
   }
 
   // Every window is kept by one tile alone.
-  void keep_confidence(int m, Size size, int x, const Lanes& eta) {
+  void store_confidence(int m, Size size, int x, const Lanes& eta) {
     if ((m < y0_ && y0_ > 0) || m >= y1_) return;
     for (int l = 0; l < kLanes; ++l) {
       const int i = first_ + x + l;
@@ -316,13 +316,13 @@ class Tile {
     const float above = m % 2 == 0 ? -unit_ : unit_;
     for (int i = 0; i < O::kCount; ++i) {
       const float* from = octave_.coarse->row(m / 2, i);
-      float* to = said_[i];
+      float* to = estimate_[i];
       for (int x = kReach; x < width_ - kReach; ++x) to[x] += from[(first_ + x) / 2];
     }
     if constexpr (Coordinates) {
       for (int c = 0; c < C; ++c) {
         const float *of_x = octave_.coarse->row(m / 2, C * M::kX + c), *of_y = octave_.coarse->row(m / 2, C * M::kY + c);
-        float* to = said_[c];
+        float* to = estimate_[c];
         for (int x = kReach; x < width_ - kReach; ++x) {
           const int i = first_ + x;
           to[x] += (i % 2 == 0 ? -unit_ : unit_) * of_x[i / 2] + above * of_y[i / 2];
@@ -331,8 +331,8 @@ class Tile {
     }
   }
 
-  void write_opinions(int m) {
-    for (int i = 0; i < O::kCount; ++i) std::copy_n(said_[i] + kReach, x1_ - x0_, octave_.opinions->row(m, i) + x0_);
+  void write_estimates(int m) {
+    for (int i = 0; i < O::kCount; ++i) std::copy_n(estimate_[i] + kReach, x1_ - x0_, octave_.window_estimates->row(m, i) + x0_);
   }
 
   bool first_lattice() const { return octave_.shift == 0; }
@@ -359,16 +359,16 @@ class Tile {
     for (int x = 0; x < width_; x += kLanes) {
       for (int c = 0; c < C; ++c) {
         Lanes sum = load(boxes_[c] + x);
-        for (int i = 0; i < P; ++i) sum += load(said_[C * i + c] + x) * feature(i, g, k, x);
+        for (int i = 0; i < P; ++i) sum += load(estimate_[C * i + c] + x) * feature(i, g, k, x);
         store(sum, boxes_[c] + x);
       }
-      for (int i = 0; i < planes - C; ++i) store(load(boxes_[C + i] + x) + load(said_[O::kConfidence + i] + x), boxes_[C + i] + x);
+      for (int i = 0; i < planes - C; ++i) store(load(boxes_[C + i] + x) + load(estimate_[O::kConfidence + i] + x), boxes_[C + i] + x);
     }
-    if (last_lattice()) add_own(y, k, dx);
+    if (last_lattice()) add_sampled(y, k, dx);
     for (int i = 0; i < planes; ++i) put(boxes_[i], dx, rows[size_t(i)]);
   }
 
-  void add_own(int y, int k, int dx) {
+  void add_sampled(int y, int k, int dx) {
     pick(task_.own != nullptr ? task_.own->row(y) : nullptr, dx, moments_[0]);
     for (int x = 0; x < width_; x += kLanes) {
       const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{}, factor = total > zero ? 1.0f / total : zero;
@@ -391,7 +391,7 @@ class Tile {
   Rows pixels_, moments_, boxes_;
   std::array<Rows, 2> pairs_;
   std::array<Rows, 3> quads_;
-  Rows said_;
+  Rows estimate_;
   std::array<Rows, 3> small_, large_;
   std::array<Rows, 2> columns_;
 };

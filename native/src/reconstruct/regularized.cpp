@@ -32,13 +32,13 @@ float typical_noise(const HalvedImage& image) {
 }
 
 // All channels as they were sampled, in units of the scale; what is not finite is 0.
-Field read_sampled(const Frame& frame, int component, float scale) {
-  const auto channels = size_t(frame.channels);
-  Field sampled(frame.region.width(), frame.region.height(), frame.channels);
+Field read_sampled(const Film& film, int component, float scale) {
+  const auto channels = size_t(film.channels);
+  Field sampled(film.region.width(), film.region.height(), film.channels);
   for_pieces(sampled.height(), [&](int begin, int end) {
     std::vector<float> row(size_t(sampled.width()) * channels);
     for (int y = begin; y < end; ++y) {
-      read_primal_row(frame, component, {}, y, row.data());
+      read_primal_row(film, component, {}, y, row.data());
       for (size_t c = 0; c < channels; ++c) {
         const float unit = c < 3 ? scale : 1.0f;
         float* to = sampled.row(y, int(c));
@@ -56,18 +56,18 @@ Field read_sampled(const Frame& frame, int component, float scale) {
 class Operator {
  public:
   // frame: of one component.
-  Operator(const Frame& frame, const Features& features, const CancelTest& cancel, SolveReport* report) : cancel_(cancel), report_(report) {
-    HalvedImage image = read_halves(frame, [&](size_t i) { return sums_of(frame.components[0], i); });
+  Operator(const Film& film, const Features& features, const CancelCheck& cancel, SolveReport* report) : cancel_(cancel), report_(report) {
+    HalvedImage image = read_halves(film, [&](size_t i) { return sums_of(film.components[0], i); });
     scale_ = robust_scale(image.mean);
     normalise(scale_, &image);
     regression_.emplace(features, image, cancel);
     solution_ = regression_->image();
-    if (frame.channels == 4) {
-      solution_ = join_channels(solution_, regression_->apply(channels_of(read_sampled(frame, 0, scale_), 3, 1), cancel));
+    if (film.channels == 4) {
+      solution_ = join_channels(solution_, regression_->apply(channels_of(read_sampled(film, 0, scale_), 3, 1), cancel));
     }
-    if (!frame.gradients) return;
-    GradientImages images = read_images(frame, 0);
-    read_deviations(frame, 0, &images);
+    if (!film.gradients) return;
+    GradientImages images = read_images(film, 0);
+    read_deviations(film, 0, &images);
     fusion_.emplace(images, scale_, typical_noise(image), solution_, regression_->error(), cancel, report);
     solution_ = fusion_->take_solution();
   }
@@ -77,17 +77,17 @@ class Operator {
   const Field& error() const { return regression_->error(); }
 
   // Of a component, as it was sampled.
-  Field apply(const Frame& frame, int component, const Field& sampled) {
+  Field apply(const Film& film, int component, const Field& sampled) {
     Field regressed = regression_->apply(channels_of(sampled, 0, 3), cancel_);
-    if (frame.channels == 4) {
+    if (film.channels == 4) {
       const Field alpha = channels_of(sampled, 3, 1);
       regressed = join_channels(regressed, is_black(alpha) ? alpha : regression_->apply(alpha, cancel_));
     }
-    return fusion_ ? fusion_->apply(read_images(frame, component), regressed, cancel_, report_) : regressed;
+    return fusion_ ? fusion_->apply(read_images(film, component), regressed, cancel_, report_) : regressed;
   }
 
  private:
-  const CancelTest& cancel_;
+  const CancelCheck& cancel_;
   SolveReport* report_;
   float scale_ = 1.0f;
   std::optional<FeatureRegression> regression_;
@@ -103,15 +103,15 @@ std::vector<float> to_image(Field field, float scale) {
 
 }  // namespace
 
-Reconstructed regularize(const Frame& frame, bool by_components, const CancelTest& cancel, SolveReport* report) {
-  return regularize(frame, filter_features(read_features(frame)), by_components, cancel, report);
+Reconstructed regularize(const Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report) {
+  return regularize(film, filter_features(read_features(film)), by_components, cancel, report);
 }
 
-Reconstructed regularize(const Frame& frame, const Features& features, bool by_components, const CancelTest& cancel, SolveReport* report) {
-  const size_t components = frame.components.size();
-  std::optional<Frame> sum;
-  if (components > 1) sum = sum_components(frame);
-  Operator op(sum ? *sum : frame, features, cancel, report);
+Reconstructed regularize(const Film& film, const Features& features, bool by_components, const CancelCheck& cancel, SolveReport* report) {
+  const size_t components = film.components.size();
+  std::optional<Film> sum;
+  if (components > 1) sum = sum_components(film);
+  Operator op(sum ? *sum : film, features, cancel, report);
   sum.reset();
   const float scale = op.scale();
   Field error = op.error();
@@ -119,9 +119,9 @@ Reconstructed regularize(const Frame& frame, const Features& features, bool by_c
   Reconstructed result{to_image(op.solution(), scale), interleave(error)};
   if (!by_components) return result;
   std::vector<Field> parts;
-  for (size_t k = 0; k < components; ++k) parts.push_back(read_sampled(frame, int(k), scale));
-  apply_to_parts(
-      op.solution(), [&](size_t k, const Field& part) { return op.apply(frame, int(k), part); }, &parts);
+  for (size_t k = 0; k < components; ++k) parts.push_back(read_sampled(film, int(k), scale));
+  apply_to_terms(
+      op.solution(), [&](size_t k, const Field& part) { return op.apply(film, int(k), part); }, &parts);
   for (Field& part : parts) result.components.push_back(to_image(std::move(part), scale));
   return result;
 }

@@ -10,8 +10,8 @@ namespace gradus {
 // With its error, always. Throws invalid_operation for a frame without features.
 // by_components: what becomes of each of them, too. All go through one operator, that of their sum, so that they are what the picture is
 // made of, however it was found (contract 3.4).
-Reconstructed regularize(const Frame& frame, bool by_components, const CancelTest& cancel, SolveReport* report);
+Reconstructed regularize(const Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report);
 // The same by its features, filtered.
-Reconstructed regularize(const Frame& frame, const Features& features, bool by_components, const CancelTest& cancel, SolveReport* report);
+Reconstructed regularize(const Film& film, const Features& features, bool by_components, const CancelCheck& cancel, SolveReport* report);
 
 }  // namespace gradus

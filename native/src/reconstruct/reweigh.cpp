@@ -12,9 +12,9 @@ namespace {
 constexpr int kColors = 3;
 // Of the regression, what a pixel has left at least, and what it is held by otherwise. With half as the least single scenes have up to 13 %
 // more error (docs/method.md).
-constexpr float kLeft = 0.25f, kHeldBy = 0.5f;
+constexpr float kLeft = 0.25f, kClampShare = 0.5f;
 constexpr float kFirmer = 10.0f;
-constexpr float kLeastMove = 1e-20f;
+constexpr float kMinMove = 1e-20f;
 
 bool is_too_dark(const Field& regressed, const Field& solution, int x, int y) {
   for (int c = 0; c < kColors; ++c) {
@@ -41,21 +41,21 @@ float squared_move(const Field& regressed, const Field& solution, int x, int y) 
 
 }  // namespace
 
-bool hold_dark_pixels(const Field& regressed, const Field& solution, WeightedLeastSquares* system) {
+bool clamp_dark_pixels(const Field& regressed, const Field& solution, WeightedLeastSquares* system) {
   std::atomic<bool> any{false};
   for_values(&system->data_weights(), [&](float& weight, int x, int y, int) {
     if (!is_too_dark(regressed, solution, x, y)) return;
-    const float deviation = kHeldBy * light_of(regressed, x, y);
+    const float deviation = kClampShare * light_of(regressed, x, y);
     weight = std::max(kFirmer * weight, 1.0f / (deviation * deviation));
     any.store(true, std::memory_order_relaxed);
   });
   return any;
 }
 
-void doubt_differences(const Field& regressed, const Field& solution, const Field& error, float times, WeightedLeastSquares* system) {
+void downweight_differences(const Field& regressed, const Field& solution, const Field& error, float times, WeightedLeastSquares* system) {
   const int w = error.width(), h = error.height();
   const Field share = make_field(w, h, [&](int x, int y) {
-    return std::min(1.0f, (times * error.row(y)[x] + kLeastMove) / (squared_move(regressed, solution, x, y) + kLeastMove));
+    return std::min(1.0f, (times * error.row(y)[x] + kMinMove) / (squared_move(regressed, solution, x, y) + kMinMove));
   });
   Stencil& matrix = system->matrix();
   for_values(&matrix.right, [&](float& weight, int x, int y, int) {

@@ -9,10 +9,10 @@ namespace gradus {
 
 // Light is not negative, and what is dark is off by a share of itself: where the solution has less than a quarter of the regression in some
 // channel, the pixel is held by half its light, each time ten times as firmly. False: there is no such pixel.
-bool hold_dark_pixels(const Field& regressed, const Field& solution, WeightedLeastSquares* system);
+bool clamp_dark_pixels(const Field& regressed, const Field& solution, WeightedLeastSquares* system);
 
 // Differences of pixels that went further from the regression than its variance says, `times` its squared error, count for the less: by
 // that variance over the square of the way.
-void doubt_differences(const Field& regressed, const Field& solution, const Field& error, float times, WeightedLeastSquares* system);
+void downweight_differences(const Field& regressed, const Field& solution, const Field& error, float times, WeightedLeastSquares* system);
 
 }  // namespace gradus

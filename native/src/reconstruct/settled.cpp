@@ -58,27 +58,27 @@ GradientImages crop(const GradientImages& images, const Region& part) {
 
 }  // namespace
 
-std::vector<uint8_t> find_settled(const GradientImages& images) {
+std::vector<uint8_t> find_noise_free(const GradientImages& images) {
   const int w = images.width, h = images.height;
   const std::vector<uint8_t> quiet = find_quiet(images);
-  std::vector<uint8_t> settled(quiet.size());
+  std::vector<uint8_t> noise_free(quiet.size());
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) {
       bool all = true;
       for (int j = std::max(y - 1, 0); j <= std::min(y + 1, h - 1); ++j) {
         for (int i = std::max(x - 1, 0); i <= std::min(x + 1, w - 1); ++i) all = all && quiet[size_t(j) * w + i];
       }
-      settled[size_t(y) * w + x] = all;
+      noise_free[size_t(y) * w + x] = all;
     }
   });
-  return settled;
+  return noise_free;
 }
 
-Region unsettled_region(const std::vector<uint8_t>& settled, int width, int height) {
+Region noisy_region(const std::vector<uint8_t>& noise_free, int width, int height) {
   Region box{width, height, 0, 0};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      if (settled[size_t(y) * width + x]) continue;
+      if (noise_free[size_t(y) * width + x]) continue;
       box = {std::min(box.x0, x - 1), std::min(box.y0, y - 1), std::max(box.x1, x + 2), std::max(box.y1, y + 2)};
     }
   }
@@ -86,10 +86,10 @@ Region unsettled_region(const std::vector<uint8_t>& settled, int width, int heig
   return {std::max(box.x0, 0), std::max(box.y0, 0), std::min(box.x1, width), std::min(box.y1, height)};
 }
 
-std::vector<float> reconstruct_unsettled(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::vector<float> reconstruct_noisy_region(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                          SolveReport* report) {
-  const std::vector<uint8_t> settled = find_settled(images);
-  const Region part = unsettled_region(settled, images.width, images.height);
+  const std::vector<uint8_t> noise_free = find_noise_free(images);
+  const Region part = noisy_region(noise_free, images.width, images.height);
   const bool whole = part.width() == images.width && part.height() == images.height;
   std::vector<float> result = images.primal;
   if (part.area() == 0) return result;
@@ -100,7 +100,7 @@ std::vector<float> reconstruct_unsettled(const GradientImages& images, uint32_t 
     const float* from = solved.data() + size_t(y - part.y0) * size_t(part.width()) * channels;
     for (int x = part.x0; x < part.x1; ++x, from += channels) {
       const size_t i = size_t(y) * images.width + size_t(x);
-      if (!settled[i]) std::copy_n(from, channels, result.data() + i * channels);
+      if (!noise_free[i]) std::copy_n(from, channels, result.data() + i * channels);
     }
   }
   return result;

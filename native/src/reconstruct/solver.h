@@ -42,7 +42,7 @@ struct SolveReport {
 // L2, exact by DCT: minimises α²‖x−I‖² + ‖Dx−g‖². Unbiased. (Thesis eq. 5.13 with k = 2; Bhat et al. 2008 for the DCT.)
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
 // L1, with weights that are estimated from the images (all channels together) and then frozen. Consistent, not unbiased.
-std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                             SolveReport* report);
 
 // Weight of the primal against the gradients; 0: what measures best. Noisy differences, of paths that met other surfaces than their
@@ -52,11 +52,11 @@ inline float chosen_alpha(uint32_t reconstruction, float alpha) {
 }
 
 // Reconstructs all channels; returns width·height·channels. `reconstruction` is GRADUS_RECONSTRUCTION_L2 or GRADUS_RECONSTRUCTION_L1.
-std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                SolveReport* report);
 
 // The same of the images that read_images() makes of a frame's component.
-std::vector<float> reconstruct(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel,
+std::vector<float> reconstruct(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                                SolveReport* report);
 
 }  // namespace gradus

@@ -22,8 +22,8 @@ struct Stencil {
 
 // 1/d; 0 where d is not positive, as of a pixel that nothing holds. Without a branch, so that loops of it take vectors.
 inline float inverse_or_zero(float d) {
-  constexpr float kLeast = std::numeric_limits<float>::min();
-  return std::clamp(d / kLeast, 0.0f, 1.0f) / std::max(d, kLeast);
+  constexpr float kMin = std::numeric_limits<float>::min();
+  return std::clamp(d / kMin, 0.0f, 1.0f) / std::max(d, kMin);
 }
 
 // Damped Jacobi of row y: damping / diagonal.

@@ -11,11 +11,11 @@ namespace gradus {
 namespace {
 
 // Least side of the squares that share a bound: some times S's reach, which is 1/α = 5 pixels, and enough pixels for ln n = 7 outliers.
-constexpr int kLeastSide = 32;
+constexpr int kMinSide = 32;
 
-int square_count(int length) { return std::max(1, length / kLeastSide); }
+int square_count(int length) { return std::max(1, length / kMinSide); }
 // Where a square begins; the one behind the last begins at `length`.
-int square_begin(int length, int square) { return static_cast<int>(int64_t(length) * square / square_count(length)); }
+int block_begin(int length, int block) { return static_cast<int>(int64_t(length) * block / square_count(length)); }
 
 // ‖I − x₀‖² of a pixel.
 float squared_residual(const GradientImages& images, const Field& estimate, int x, int y) {
@@ -33,12 +33,12 @@ float squared_residual(const GradientImages& images, const Field& estimate, int 
 float outlier_bound_squared(std::vector<float>* squares) {
   const float share = std::log(static_cast<float>(squares->size()));
   if (!(share > 0.0f)) return kInfinity;
-  const auto most = static_cast<size_t>(std::ceil(share));
-  std::partial_sort(squares->begin(), squares->begin() + ptrdiff_t(most), squares->end(), std::greater<>());
+  const auto maximum = static_cast<size_t>(std::ceil(share));
+  std::partial_sort(squares->begin(), squares->begin() + ptrdiff_t(maximum), squares->end(), std::greater<>());
   // With the k largest beyond the bound, its square is the sum of the others over ln n − k. The least such k, summed from the smallest up.
   double rest = 0.0, bound = 0.0;
-  for (size_t i = most; i < squares->size(); ++i) rest += (*squares)[i];
-  for (size_t k = most; k-- > 0;) {
+  for (size_t i = maximum; i < squares->size(); ++i) rest += (*squares)[i];
+  for (size_t k = maximum; k-- > 0;) {
     rest += (*squares)[k];
     const double candidate = rest / (share - static_cast<float>(k));
     if ((*squares)[k] <= candidate) bound = candidate;
@@ -52,22 +52,22 @@ Twicing::Twicing(const GradientImages& images, const Field& estimate, float alph
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) weights_.row(y)[x] = squared_residual(images, estimate, x, y);
   });
-  limit_squares(&weights_);
+  limit_blocks(&weights_);
 }
 
-void limit_squares(Field* field) {
+void limit_blocks(Field* field) {
   const int w = field->width(), h = field->height();
   for_rows(
       square_count(h),
       [&](int row) {
         for (int i = 0; i < square_count(w); ++i) {
-          limit_square(square_begin(w, i), square_begin(w, i + 1), square_begin(h, row), square_begin(h, row + 1), field);
+          limit_block(block_begin(w, i), block_begin(w, i + 1), block_begin(h, row), block_begin(h, row + 1), field);
         }
       },
       1);
 }
 
-void limit_square(int x0, int x1, int y0, int y1, Field* field) {
+void limit_block(int x0, int x1, int y0, int y1, Field* field) {
   std::vector<float> squares;
   for (int y = y0; y < y1; ++y) {
     std::copy_if(field->row(y) + x0, field->row(y) + x1, std::back_inserter(squares), [](float e) { return is_finite(e); });

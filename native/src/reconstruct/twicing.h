@@ -30,8 +30,8 @@ float outlier_bound_squared(std::vector<float>* squares);
 
 // A field's squared residuals in the square [x0, x1) × [y0, y1) become the shares of the residuals that lie within its bound, W above; what
 // is not finite, 0.
-void limit_square(int x0, int x1, int y0, int y1, Field* field);
+void limit_block(int x0, int x1, int y0, int y1, Field* field);
 // The same in every square of about 32×32 pixels.
-void limit_squares(Field* field);
+void limit_blocks(Field* field);
 
 }  // namespace gradus

@@ -11,7 +11,7 @@ namespace {
 
 // The frozen operator is linear as far as it is solved: parts that add up must add up to much better than the noise.
 constexpr CgGoal kOperatorGoal{.residual = 1e-6f};
-constexpr int kMostOperatorSteps = 200;
+constexpr int kMaxOperatorSteps = 200;
 
 // What stands for a value that is missing; its row's weight is 0, so any finite value would do.
 float finite_or_zero(float v) { return is_finite(v) ? v : 0.0f; }
@@ -53,9 +53,9 @@ void WeightedLeastSquares::update() {
   multigrid_.update();
 }
 
-CgReport WeightedLeastSquares::solve(const SolverPlanes& planes, const CgGoal& goal, int most_steps, const CancelTest& cancel, Field* x) {
+CgReport WeightedLeastSquares::solve(const SolverPlanes& planes, const CgGoal& goal, int max_steps, const CancelCheck& cancel, Field* x) {
   right_side(data_weights_, multigrid_.matrix(), planes, &b_);
-  return conjugate_gradient(&multigrid_, b_, x, &fields_, goal, most_steps, cancel);
+  return conjugate_gradient(&multigrid_, b_, x, &fields_, goal, max_steps, cancel);
 }
 
 void WeightedLeastSquares::apply(const PoissonPlanes& planes, const Field& start, float* out) const {
@@ -66,7 +66,7 @@ void WeightedLeastSquares::apply(const PoissonPlanes& planes, const Field& start
   one.multigrid_.update();
   Field x = start;
   one.solve(
-      load_planes(planes, w, h, 1), kOperatorGoal, kMostOperatorSteps, [] { return false; }, &x);
+      load_planes(planes, w, h, 1), kOperatorGoal, kMaxOperatorSteps, [] { return false; }, &x);
   store_channel(x, 0, planes.stride, out);
 }
 

@@ -22,7 +22,7 @@ class WeightedLeastSquares {
   void update();
 
   // Improves x.
-  CgReport solve(const SolverPlanes& planes, const CgGoal& goal, int most_steps, const CancelTest& cancel, Field* x);
+  CgReport solve(const SolverPlanes& planes, const CgGoal& goal, int max_steps, const CancelCheck& cancel, Field* x);
   // One channel by the frozen weights, from `start` on: linear in `planes` as far as it is solved, which is to 1e-6.
   void apply(const PoissonPlanes& planes, const Field& start, float* out) const;
 

@@ -15,12 +15,12 @@ constexpr int packed(int i, int j) { return i * (i + 1) / 2 + j; }
 // counts as infinite, which leaves its coefficient out. Unrolled, it takes two thirds of the time.
 template <int P, int C>
 inline void solve_windows(Lanes* matrix, Lanes* right) {
-  const Lanes zero{}, least = zero + 1e-30f;
+  const Lanes zero{}, minimum = zero + 1e-30f;
   Lanes inverse[P];
 #pragma GCC unroll 16
   for (int j = 0; j < P; ++j) {
     Lanes scaled[P] = {}, pivot = matrix[packed(j, j)];
-    const Lanes negligible = 2e-6f * pivot + least;
+    const Lanes negligible = 2e-6f * pivot + minimum;
     for (int k = 0; k < j; ++k) {
       scaled[k] = matrix[packed(j, k)] * matrix[packed(k, k)];
       pivot -= matrix[packed(j, k)] * scaled[k];

@@ -16,50 +16,50 @@ namespace {
 constexpr double kEpsilon = 1e-3;
 
 // Of all components together.
-struct FrameNoise {
+struct FilmNoise {
   std::vector<float> image;  // what is delivered
   ErrorTerms terms;
-  std::vector<float> by_own_weights;  // noise; empty where these do not follow it
+  std::vector<float> by_its_weights;  // noise; empty where these do not follow it
   std::vector<float> error;           // of a reconstruction that estimates it itself, in place of the terms
 };
 
-void add_terms(const Frame& frame, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
-               const CancelTest& cancel, FrameNoise* sum) {
-  ErrorTerms terms = error_terms(frame, component, reconstruction, alpha, image, cancel);
+void add_terms(const Film& film, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
+               const CancelCheck& cancel, FilmNoise* sum) {
+  ErrorTerms terms = error_terms(film, component, reconstruction, alpha, image, cancel);
   add_image(std::move(terms.noise), &sum->terms.noise);
   add_image(std::move(terms.apart), &sum->terms.apart);
 }
 
 // Estimates the noise of L1 by weights of the measured noise, which are close to L1's weights and need no iteration.
-void add_l1(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
-  GradientImages images = read_images(frame, component);
-  read_deviations(frame, component, &images);
-  NoiseLeft left = noise_left(images, read_half_differences(frame, component), alpha, cancel);
+void add_l1(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel, FilmNoise* sum) {
+  GradientImages images = read_images(film, component);
+  read_deviations(film, component, &images);
+  NoiseLeft left = noise_left(images, read_half_differences(film, component), alpha, cancel);
   images = {};
-  add_terms(frame, component, reconstruction, alpha, left.image, cancel, sum);
+  add_terms(film, component, reconstruction, alpha, left.image, cancel, sum);
   add_image(std::move(left.image), &sum->image);
-  add_image(std::move(left.noise), &sum->by_own_weights);
+  add_image(std::move(left.noise), &sum->by_its_weights);
 }
 
-void add_other(const Frame& frame, int component, uint32_t reconstruction, float alpha, const CancelTest& cancel, FrameNoise* sum) {
+void add_other(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel, FilmNoise* sum) {
   SolveReport report;
-  std::vector<float> image = reconstruct_component(frame, component, reconstruction, alpha, cancel, &report);
-  add_terms(frame, component, reconstruction, alpha, image, cancel, sum);
+  std::vector<float> image = reconstruct_component(film, component, reconstruction, alpha, cancel, &report);
+  add_terms(film, component, reconstruction, alpha, image, cancel, sum);
   add_image(std::move(image), &sum->image);
 }
 
-FrameNoise noise_of(const Frame& frame, uint32_t reconstruction, float alpha, const CancelTest& cancel) {
-  FrameNoise sum;
+FilmNoise noise_of(const Film& film, uint32_t reconstruction, float alpha, const CancelCheck& cancel) {
+  FilmNoise sum;
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     SolveReport report;
-    Reconstructed picture = regularize(frame, false, cancel, &report);
+    Reconstructed picture = regularize(film, false, cancel, &report);
     sum.image = std::move(picture.image);
     sum.error = std::move(picture.error);
     return sum;
   }
   const auto add_component = reconstruction == GRADUS_RECONSTRUCTION_L1 ? add_l1 : add_other;
-  for (int component = 0; component < int(frame.components.size()); ++component) {
-    add_component(frame, component, reconstruction, alpha, cancel, &sum);
+  for (int component = 0; component < int(film.components.size()); ++component) {
+    add_component(film, component, reconstruction, alpha, cancel, &sum);
   }
   return sum;
 }
@@ -73,20 +73,20 @@ struct PixelNoise {
   double own = 0.0;                 // by the own weights
 };
 
-PixelNoise noise_of_pixel(const FrameNoise& images, size_t i, size_t v) {
+PixelNoise noise_of_pixel(const FilmNoise& images, size_t i, size_t v) {
   PixelNoise pixel;
   pixel.noise = images.error.empty() ? mean_square(&images.terms.noise[v]) : double(images.error[i]);
   if (!images.terms.apart.empty()) pixel.apart = mean_square(&images.terms.apart[v]);
-  pixel.own = images.by_own_weights.empty() ? pixel.noise : mean_square(&images.by_own_weights[v]);
+  pixel.own = images.by_its_weights.empty() ? pixel.noise : mean_square(&images.by_its_weights[v]);
   return pixel;
 }
 
-CellNoise noise_of_cell(const Frame& frame, const FrameNoise& images, const Region& cell) {
-  const double exposure = double(frame.settings.film_exposure) * frame.settings.film_exposure;
+BlockNoise noise_of_block(const Film& film, const FilmNoise& images, const Region& block) {
+  const double exposure = double(film.settings.film_exposure) * film.settings.film_exposure;
   double noise = 0.0, apart = 0.0, signal = 0.0, relative = 0.0;
-  for (int32_t y = cell.y0; y < cell.y1; ++y) {
-    for (int32_t x = cell.x0; x < cell.x1; ++x) {
-      const size_t i = frame.index(x, y), v = i * size_t(frame.channels);
+  for (int32_t y = block.y0; y < block.y1; ++y) {
+    for (int32_t x = block.x0; x < block.x1; ++x) {
+      const size_t i = film.index(x, y), v = i * size_t(film.channels);
       const PixelNoise pixel = noise_of_pixel(images, i, v);
       const double g = gray(&images.image[v]), s = exposure * g * g + kEpsilon;
       noise += exposure * pixel.noise;
@@ -95,16 +95,16 @@ CellNoise noise_of_cell(const Frame& frame, const FrameNoise& images, const Regi
       relative += exposure * pixel.own / s;
     }
   }
-  return {std::sqrt(squared_error(noise, apart) / signal), std::sqrt(relative / double(cell.area()))};
+  return {std::sqrt(squared_error(noise, apart) / signal), std::sqrt(relative / double(block.area()))};
 }
 
 }  // namespace
 
-std::vector<CellNoise> estimate_noise(const Frame& frame, const std::vector<Region>& cells, uint32_t reconstruction, float alpha,
-                                      const CancelTest& cancel) {
-  const FrameNoise images = noise_of(frame, reconstruction, alpha, cancel);
-  std::vector<CellNoise> result(cells.size());
-  for_rows(int(cells.size()), [&](int i) { result[size_t(i)] = noise_of_cell(frame, images, cells[size_t(i)]); });
+std::vector<BlockNoise> estimate_noise(const Film& film, const std::vector<Region>& blocks, uint32_t reconstruction, float alpha,
+                                      const CancelCheck& cancel) {
+  const FilmNoise images = noise_of(film, reconstruction, alpha, cancel);
+  std::vector<BlockNoise> result(blocks.size());
+  for_rows(int(blocks.size()), [&](int i) { result[size_t(i)] = noise_of_block(film, images, blocks[size_t(i)]); });
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace gradus {
 
-struct CellNoise {
+struct BlockNoise {
   // Root of mean squared error over mean squared gray, of the reconstruction that will be delivered: what the threshold is set against
   // (contract 5.3).
   double relative_error = 0.0;
@@ -18,7 +18,7 @@ struct CellNoise {
 };
 
 // Cells of the frame's region. reconstruction: of what will be delivered; NONE where the frame has no gradients.
-std::vector<CellNoise> estimate_noise(const Frame& frame, const std::vector<Region>& cells, uint32_t reconstruction, float alpha,
-                                      const CancelTest& cancel);
+std::vector<BlockNoise> estimate_noise(const Film& film, const std::vector<Region>& blocks, uint32_t reconstruction, float alpha,
+                                      const CancelCheck& cancel);
 
 }  // namespace gradus

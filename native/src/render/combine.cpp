@@ -15,10 +15,10 @@ constexpr double kMaxFloat = std::numeric_limits<float>::max();
 constexpr int kPixels = 4096;  // that a task is worth
 
 // value(i, c) of a reconstructed image, as it is delivered.
-auto value_of(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image) {
-  const float exposure = frame.settings.film_exposure, least = keeps_negative(reconstruction) ? -INFINITY : 0.0f;
-  const auto channels = size_t(frame.channels);
-  return [&image, exposure, least, channels](size_t i, size_t c) { return exposure * std::max(image[i * channels + c], least); };
+auto value_of(const Film& film, uint32_t reconstruction, const std::vector<float>& image) {
+  const float exposure = film.settings.film_exposure, minimum = keeps_negative(reconstruction) ? -INFINITY : 0.0f;
+  const auto channels = size_t(film.channels);
+  return [&image, exposure, minimum, channels](size_t i, size_t c) { return exposure * std::max(image[i * channels + c], minimum); };
 }
 
 // A change of the picture over a value of the components, by the light that they have there.
@@ -34,37 +34,37 @@ void spread(float change, size_t value, std::vector<std::vector<float>>* compone
 
 }  // namespace
 
-std::vector<float> crop_error(const Frame& frame, const std::vector<float>& error, const Region& region) {
-  const double scale = double(frame.settings.film_exposure) * frame.settings.film_exposure;
+std::vector<float> crop_error(const Film& film, const std::vector<float>& error, const Region& region) {
+  const double scale = double(film.settings.film_exposure) * film.settings.film_exposure;
   std::vector<float> result(size_t(region.area()));
-  for_pixels(frame, region, [&](size_t i, size_t out) { result[out] = float(std::min(kMaxFloat, scale * error[i])); });
+  for_pixels(film, region, [&](size_t i, size_t out) { result[out] = float(std::min(kMaxFloat, scale * error[i])); });
   return result;
 }
 
-std::vector<float> combine(const Frame& frame, uint32_t reconstruction, float alpha, const Region& region, const CancelTest& cancel,
+std::vector<float> combine(const Film& film, uint32_t reconstruction, float alpha, const Region& region, const CancelCheck& cancel,
                            SolveReport* report, std::vector<float>* error, std::vector<std::vector<float>>* components) {
   const bool solves = reconstruction != GRADUS_RECONSTRUCTION_NONE;
   Reconstructed solved;
   if (solves || error != nullptr || components != nullptr) {
-    solved = reconstruct_frame(frame, reconstruction, alpha, {error != nullptr, components != nullptr}, cancel, report);
+    solved = reconstruct_film(film, reconstruction, alpha, {error != nullptr, components != nullptr}, cancel, report);
   }
-  if (components != nullptr) *components = crop_components(frame, reconstruction, std::move(solved.components), region);
-  if (error != nullptr) *error = crop_error(frame, solved.error, region);
+  if (components != nullptr) *components = crop_components(film, reconstruction, std::move(solved.components), region);
+  if (error != nullptr) *error = crop_error(film, solved.error, region);
   if (!solves) {
     std::vector<float> rgba(size_t(region.area()) * 4);
-    read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, region, rgba.data());
+    read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, region, rgba.data());
     return rgba;
   }
-  return crop_picture(frame, reconstruction, solved.image, region);
+  return crop_picture(film, reconstruction, solved.image, region);
 }
 
-std::vector<std::vector<float>> crop_components(const Frame& frame, uint32_t reconstruction, std::vector<std::vector<float>> images,
+std::vector<std::vector<float>> crop_components(const Film& film, uint32_t reconstruction, std::vector<std::vector<float>> images,
                                                 const Region& region) {
-  clamp_components(reconstruction, frame.channels, &images);
+  clamp_components(reconstruction, film.channels, &images);
   for (std::vector<float>& image : images) {
     std::vector<float> rgb(size_t(region.area()) * 3);
-    const auto of_pixel = value_of(frame, reconstruction, image);
-    for_pixels(frame, region, [&](size_t i, size_t out) {
+    const auto of_pixel = value_of(film, reconstruction, image);
+    for_pixels(film, region, [&](size_t i, size_t out) {
       for (size_t c = 0; c < 3; ++c) rgb[3 * out + c] = of_pixel(i, c);
     });
     image = std::move(rgb);
@@ -84,11 +84,11 @@ void follow_picture(const std::vector<float>& before, const std::vector<float>& 
       kPixels);
 }
 
-std::vector<float> crop_picture(const Frame& frame, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
+std::vector<float> crop_picture(const Film& film, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
-  const auto channels = size_t(frame.channels);
-  const auto of_pixel = value_of(frame, reconstruction, image);
-  for_pixels(frame, region, [&](size_t i, size_t out) {
+  const auto channels = size_t(film.channels);
+  const auto of_pixel = value_of(film, reconstruction, image);
+  for_pixels(film, region, [&](size_t i, size_t out) {
     for (size_t c = 0; c < 3; ++c) rgba[4 * out + c] = of_pixel(i, c);
     rgba[4 * out + 3] = channels == 4 ? std::clamp(image[4 * i + 3], 0.0f, 1.0f) : 1.0f;
   });

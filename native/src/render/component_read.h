@@ -17,7 +17,7 @@ void read_absent_component(uint32_t pass, const Region& region, float* pixels);
 bool is_by_flow(const std::string& component, uint32_t pass);
 // Pixels of `region`. color: the component's picture there, RGB, where the pass is made of it. Throws invalid_operation if the frame was
 // sampled without what the pass is made of.
-void read_component_pass(const Frame& frame, int component, uint32_t pass, const Region& region, const std::vector<float>& color,
+void read_component_pass(const Film& film, int component, uint32_t pass, const Region& region, const std::vector<float>& color,
                          float* pixels);
 
 }  // namespace gradus

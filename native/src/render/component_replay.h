@@ -11,7 +11,7 @@ namespace gradus {
 
 // Along the ways of one component; others that go the same way from a pixel are sampled with it.
 struct ComponentReplay {
-  SampleSources sources;
+  ReplayMap replay_map;
   std::vector<uint8_t> pixels;       // 1: it is sampled there
   std::vector<uint32_t> components;  // bits of those that are, by pixels
 };
@@ -23,8 +23,8 @@ struct ComponentReplays {
 };
 
 // Pixels are sampled no more than once again on average: a component beyond that goes with the surface after all.
-void limit_own_ways(SampleSources* sources);
+void limit_component_replays(ReplayMap* replay_map);
 // By sources.of_component. A component without a way stays with the surface, whose samples are as good as others.
-ComponentReplays replays_of_components(const SampleSources& sources);
+ComponentReplays replays_of_components(const ReplayMap& replay_map);
 
 }  // namespace gradus

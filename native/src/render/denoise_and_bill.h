@@ -10,7 +10,7 @@
 namespace gradus {
 
 // denoise_combined() by the frame's own reconstruction; the stats tell what it took, by whom, or what went wrong. Empty then.
-std::vector<float> denoise_and_bill(const OidnLibrary& library, const Frame& frame, const Region& region, uint32_t threads,
-                                    const CancelTest& cancel, const std::vector<float>& combined, RenderStats* stats);
+std::vector<float> denoise_timed(const OidnLibrary& library, const Film& film, const Region& region, uint32_t threads,
+                                    const CancelCheck& cancel, const std::vector<float>& combined, RenderStats* stats);
 
 }  // namespace gradus

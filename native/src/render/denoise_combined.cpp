@@ -35,8 +35,8 @@ std::vector<float> crop(const std::vector<float>& rgb, const Region& whole, cons
 }
 
 // Without its noise, of the region.
-std::vector<float> read_guide(const Frame& frame, uint32_t pass, const Region& region) {
-  return crop(filter_feature(read_feature(frame, pass), frame.region.width(), frame.region.height()).values, frame.region, region);
+std::vector<float> read_guide(const Film& film, uint32_t pass, const Region& region) {
+  return crop(filter_feature(read_feature(film, pass), film.region.width(), film.region.height()).values, film.region, region);
 }
 
 // `combined`, RGBA, becomes its mean with `image`, RGB.
@@ -47,11 +47,11 @@ void blend(const std::vector<float>& image, std::vector<float>* combined) {
     const float sum = (*combined)[i] + (*combined)[i + 1] + (*combined)[i + 2];
     if (sum > 0.0f && is_finite(sum)) light.push_back(sum / 3.0f);
   }
-  const float dark = kDark * median_or_one(&light), least = 1e-3f * dark;
+  const float dark = kDark * median_or_one(&light), minimum = 1e-3f * dark;
   for (size_t i = 0; i < image.size(); ++i) {
     float& value = (*combined)[i / 3 * 4 + i % 3];
     if (!is_finite(value)) continue;
-    const float regressed = std::max(value + dark, least), denoised = std::max(image[i] + dark, least);
+    const float regressed = std::max(value + dark, minimum), denoised = std::max(image[i] + dark, minimum);
     value = std::max(regressed * std::pow(denoised / regressed, kShareOfNetwork) - dark, 0.0f);
   }
 }
@@ -74,22 +74,22 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
 
 namespace {
 
-std::vector<float> denoise_or_throw(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const CancelTest& cancel, const std::vector<float>& combined) {
+std::vector<float> denoise_or_throw(const OidnLibrary& library, const Film& film, uint32_t reconstruction, const Region& region,
+                                    uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined) {
   // Samples are there around a region, too; a reconstruction is not.
   const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED, sampled = blends || reconstruction == GRADUS_RECONSTRUCTION_NONE;
-  const Region& seen = sampled ? frame.region : region;
+  const Region& seen = sampled ? film.region : region;
   std::vector<float> albedo, normal;
-  if (has_features(frame)) {
+  if (has_features(film)) {
     tbb::task_arena(arena_size(threads)).execute([&] {
-      albedo = read_guide(frame, GRADUS_PASS_DENOISING_ALBEDO, seen);
-      normal = read_guide(frame, GRADUS_PASS_DENOISING_NORMAL, seen);
+      albedo = read_guide(film, GRADUS_PASS_DENOISING_ALBEDO, seen);
+      normal = read_guide(film, GRADUS_PASS_DENOISING_NORMAL, seen);
     });
   }
   std::vector<float> noisy;
   if (sampled) {
     noisy.resize(4 * size_t(seen.area()));
-    read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, seen, noisy.data());
+    read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, seen, noisy.data());
   }
   NoisyPicture picture{seen.width(), seen.height(), sampled ? noisy.data() : combined.data(), 4};
   if (!albedo.empty()) picture.albedo = albedo.data();
@@ -104,11 +104,11 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const Frame& fra
 
 float denoised_error(uint32_t reconstruction) { return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kErrorOfMean : 1.0f; }
 
-std::vector<float> denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const CancelTest& cancel, const std::vector<float>& combined, std::string* failure) {
+std::vector<float> denoise_combined(const OidnLibrary& library, const Film& film, uint32_t reconstruction, const Region& region,
+                                    uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined, std::string* failure) {
   const char* const what = "the picture was not denoised: ";
   try {
-    return denoise_or_throw(library, frame, reconstruction, region, threads, cancel, combined);
+    return denoise_or_throw(library, film, reconstruction, region, threads, cancel, combined);
   } catch (const Error& e) {
     if (e.code() == GRADUS_ERROR_CANCELLED) throw;
     *failure = std::string(what) + e.what();

@@ -20,8 +20,8 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Devi
 // combined: RGBA of `region`, what `reconstruction` has made of the frame; alpha stays. What comes out is that denoised, but the mean of it
 // and of the noisy image denoised where it is REGULARIZED: a network makes nothing more of what is smooth. Empty where something went
 // wrong, memory included, and what. Throws Error CANCELLED. Call it from outside of TBB's arenas.
-std::vector<float> denoise_combined(const OidnLibrary& library, const Frame& frame, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const CancelTest& cancel, const std::vector<float>& combined, std::string* failure);
+std::vector<float> denoise_combined(const OidnLibrary& library, const Film& film, uint32_t reconstruction, const Region& region,
+                                    uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined, std::string* failure);
 
 // Squared error of what comes out, over that of what went in: as measured where it is a mean with REGULARIZED (docs/method.md), and 1, as
 // nobody knows, elsewhere.

@@ -25,7 +25,7 @@ Between between(double position, int32_t begin, int32_t end) {
 
 }  // namespace
 
-Region covering(const Region& region, FrameSize full, FrameSize small) {
+Region covering(const Region& region, ImageSize full, ImageSize small) {
   const auto first = [](int32_t i, uint32_t of, uint32_t to) { return std::max(0, int32_t(std::floor(position(i, of, to)))); };
   const auto end = [](int32_t i, uint32_t of, uint32_t to) {
     return std::min(int32_t(to), int32_t(std::floor(position(i - 1, of, to))) + 2);
@@ -34,7 +34,7 @@ Region covering(const Region& region, FrameSize full, FrameSize small) {
           end(region.y1, full.height, small.height)};
 }
 
-std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, FrameSize full, FrameSize small) {
+std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, ImageSize full, ImageSize small) {
   const Region from = covering(region, full, small);
   std::vector<Between> columns;
   for (int32_t x = region.x0; x < region.x1; ++x) columns.push_back(between(position(x, full.width, small.width), from.x0, from.x1));

@@ -10,14 +10,14 @@
 namespace gradus {
 
 // Some of the frame's passes are parts of its light.
-bool has_light_passes(const Frame& frame);
+bool has_light_passes(const Film& film);
 
 class LightPasses {
  public:
   LightPasses() = default;
   // rgba: what the frame has become in `region`, of which its light passes are parts. What of its light is in none of them is taken for one
   // part more. Throws the Error CANCELLED.
-  LightPasses(const Frame& frame, const Region& region, const std::vector<float>& rgba, const CancelTest& cancel);
+  LightPasses(const Film& film, const Region& region, const std::vector<float>& rgba, const CancelCheck& cancel);
 
   // Three values for each pixel of the region, divided by their colours (contract 6.5). False: it is not one of them.
   bool read(uint32_t pass, float* pixels) const;

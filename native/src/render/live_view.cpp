@@ -6,41 +6,41 @@
 
 namespace gradus {
 
-LiveView::LiveView(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
+Preview::Preview(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
                    ProgressTracker* tracker)
     : input_(input), plan_(plan), stop_(stop), arena_(arena), picture_(picture), tracker_(tracker) {}
 
 // The denoiser's network takes tens of times as long as a regression on the features that are there for it anyway.
-uint32_t LiveView::shown(uint32_t reconstruction) const {
+uint32_t Preview::shown(uint32_t reconstruction) const {
   return reconstruction == GRADUS_RECONSTRUCTION_NONE && plan_.denoises ? uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED} : reconstruction;
 }
 
-bool LiveView::quarter_is_due(uint32_t reconstruction) const {
+bool Preview::quarter_is_due(uint32_t reconstruction) const {
   return is_watched() && !has_quarter_ && shown(reconstruction) != GRADUS_RECONSTRUCTION_NONE;
 }
 
-bool LiveView::refresh_is_due(uint32_t reconstruction, double sampled, double fraction) const {
+bool Preview::refresh_is_due(uint32_t reconstruction, double sampled, double fraction) const {
   return is_watched() && shown(reconstruction) != GRADUS_RECONSTRUCTION_NONE && rule_.is_due(sampled, fraction);
 }
 
-void LiveView::show_quarter() {
+void Preview::show_quarter() {
   has_quarter_ = true;
-  const Bill bill(&seconds_, &cpu_seconds_);
+  const ScopedTimer timer(&seconds_, &cpu_seconds_);
   const auto integrator = input_.make_integrator(quarter_settings(input_.settings), GRADUS_INTEGRATOR_PATH);
-  QuarterPicture quarter;
-  arena_->execute([&] { quarter = render_quarter(*integrator, input_.settings, plan_, stop_); });
+  QuarterPreview quarter;
+  arena_->execute([&] { quarter = render_quarter_preview(*integrator, input_.settings, plan_, stop_); });
   if (is_stopped()) return;
   rule_.expect(quarter.seconds_per_pixel * double(plan_.sampled.area()));
   picture_->show(std::move(quarter.rgba), std::move(quarter.error));
   tracker_->new_image();
 }
 
-void LiveView::refresh(const Frame& frame, double sampled) {
+void Preview::refresh(const Film& film, double sampled) {
   const double before = seconds_;
   {
-    const Bill bill(&seconds_, &cpu_seconds_);
+    const ScopedTimer timer(&seconds_, &cpu_seconds_);
     SolveReport report;
-    if (!show_combined(frame, shown(frame.settings.reconstruction), plan_, stop_, arena_, picture_, &report)) return;
+    if (!show_combined(film, shown(film.settings.reconstruction), plan_, stop_, arena_, picture_, &report)) return;
   }
   tracker_->new_image();
   rule_.done(sampled, seconds_ - before);

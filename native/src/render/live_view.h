@@ -14,10 +14,10 @@
 
 namespace gradus {
 
-class LiveView {
+class Preview {
  public:
   // What it is given lives as long as it.
-  LiveView(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
+  Preview(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
            ProgressTracker* tracker);
 
   // Somebody looks at Combined. From any thread.
@@ -30,7 +30,7 @@ class LiveView {
   // Called while no samples are taken.
   void show_quarter();
   // frame: with samples of both halves in all pixels.
-  void refresh(const Frame& frame, double sampled);
+  void refresh(const Film& film, double sampled);
 
   double seconds() const { return seconds_; }
   double cpu_seconds() const { return cpu_seconds_; }

@@ -28,18 +28,18 @@ namespace {
 constexpr int64_t kImageIntervalMs = 300;
 
 // Of what is delivered after a cancel.
-void read_error_of_noisy(const Frame& frame, const Region& region, float* pixels) {
+void read_error_of_noisy(const Film& film, const Region& region, float* pixels) {
   SolveReport report;
   std::vector<float> error;
   combine(
-      frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, region, [] { return false; }, &report, &error);
+      film, GRADUS_RECONSTRUCTION_NONE, 0.0f, region, [] { return false; }, &report, &error);
   std::copy(error.begin(), error.end(), pixels);
 }
 
-void name_planes(const ComponentSet& set, Frame* frame) {
+void name_planes(const ComponentSet& set, Film* film) {
   for (int c = 0; c < set.count(); ++c) {
-    frame->components[size_t(c)].name = set[c].name;
-    frame->components[size_t(c)].expression = set[c].expression;
+    film->components[size_t(c)].name = set[c].name;
+    film->components[size_t(c)].expression = set[c].expression;
   }
 }
 
@@ -88,26 +88,26 @@ RenderLoop::RenderLoop(LoopInput input)
   if (input_.resumed) resume(input_.resumed);
 }
 
-void RenderLoop::resume(std::shared_ptr<const Frame> frame) {
-  check_resumable(*frame, input_.settings, plan_, input_.snapshot->content_key);
-  input_.resumed = std::move(frame);
+void RenderLoop::resume(std::shared_ptr<const Film> film) {
+  check_resumable(*film, input_.settings, plan_, input_.snapshot->content_key);
+  input_.resumed = std::move(film);
 }
 
 void RenderLoop::render() {
   prepare();
   set_phase(GRADUS_PHASE_SAMPLING);
   sample();
-  stop_if_asked();
+  check_cancelled();
   if (plan_.component_motion && !input_.replay) find_motion();
   if (input_.samples_only) return;
-  const bool denoises = denoises_after(plan_, mean_samples(*frame_), &stats_.chosen, &stats_.skipped);
-  if (!denoises) frame_->settings.denoiser = GRADUS_DENOISER_NONE;
+  const bool denoises = denoises_after(plan_, mean_samples(*film_), &stats_.chosen, &stats_.skipped);
+  if (!denoises) film_->settings.denoiser = GRADUS_DENOISER_NONE;
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
-  reconstruct_frame();
-  if (denoises && !is_stopped()) denoise_frame();
-  stop_if_asked();
-  if (has_light_passes(*frame_) && (denoises || frame_->settings.reconstruction != GRADUS_RECONSTRUCTION_NONE)) split_light();
-  stop_if_asked();
+  reconstruct_film();
+  if (denoises && !is_stopped()) denoise_film();
+  check_cancelled();
+  if (has_light_passes(*film_) && (denoises || film_->settings.reconstruction != GRADUS_RECONSTRUCTION_NONE)) split_light();
+  check_cancelled();
 }
 
 GradientMap RenderLoop::choose_gradients() {
@@ -124,7 +124,7 @@ GradientMap RenderLoop::choose_gradients() {
   arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_, quarter); });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu) - live_view_.cpu_seconds();
   // A pilot that was cut short has found nothing out.
-  stop_if_asked();
+  check_cancelled();
   return map;
 }
 
@@ -137,7 +137,7 @@ ComponentSet RenderLoop::choose_components() {
   SmallComponents small;
   arena_.execute([&] { small = find_small_components(*integrator, settings, plan_.components, plan_.channels, stop_); });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
-  stop_if_asked();
+  check_cancelled();
   explain(small, plan_.components, &stats_.skipped);
   return plan_.components.merged(small.bits);
 }
@@ -148,38 +148,38 @@ void RenderLoop::prepare() {
   components_ = choose_components();
   const uint32_t integrator = gradients_.none() ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
   if (plan_.pilot) explain(gradients_, &stats_.chosen, &stats_.skipped);
-  std::shared_ptr<Frame> frame;
+  std::shared_ptr<Film> film;
   if (input_.resumed) {
     check_gradients(*input_.resumed, !gradients_.none());
-    frame = std::make_shared<Frame>(*input_.resumed);
+    film = std::make_shared<Film>(*input_.resumed);
   } else {
-    frame =
-        std::make_shared<Frame>(settings.width, settings.height, plan_.sampled, plan_.channels, components_.count(), !gradients_.none());
-    name_planes(components_, frame.get());
+    film =
+        std::make_shared<Film>(settings.width, settings.height, plan_.sampled, plan_.channels, components_.count(), !gradients_.none());
+    name_planes(components_, film.get());
     const bool motion = plan_.component_motion && !input_.replay;
-    keep_of_components({plan_.rough_vertices, plan_.rough_details, motion, motion && input_.samples_only}, frame.get());
-    frame->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
-    if (wants(plan_.passes, GRADUS_PASS_FALLBACK)) frame->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
+    allocate_component_content({plan_.non_specular_vertices, plan_.non_specular_details, motion, motion && input_.samples_only}, film.get());
+    film->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
+    if (has_bit(plan_.passes, GRADUS_PASS_FALLBACK)) film->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
-  if (frame->settings.noise_threshold != settings.noise_threshold) frame->shared.stopped.assign(frame->shared.stopped.size(), 0);
-  frame->settings = settings;
-  frame->settings.struct_size = sizeof(GradusSettings);
+  if (film->settings.noise_threshold != settings.noise_threshold) film->shared.stopped.assign(film->shared.stopped.size(), 0);
+  film->settings = settings;
+  film->settings.struct_size = sizeof(GradusSettings);
   // AUTO is resolved here, once: whoever reads the frame later must not decide again.
-  frame->settings.integrator = integrator;
-  frame->settings.reconstruction = gradients_.none() ? without_gradients(plan_) : plan_.reconstruction;
-  frame->settings.denoiser = plan_.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
-  frame->scene_key = input_.snapshot->content_key;
-  frame->frame_number = settings.frame;
-  if (input_.replay) frame->replayed = input_.replay->sources;
+  film->settings.integrator = integrator;
+  film->settings.reconstruction = gradients_.none() ? without_gradients(plan_) : plan_.reconstruction;
+  film->settings.denoiser = plan_.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
+  film->scene_key = input_.snapshot->content_key;
+  film->frame_number = settings.frame;
+  if (input_.replay) film->replayed = input_.replay->replay_map;
   stats_.warnings = input_.snapshot->warnings;
   const std::string warning = memory_warning(estimated_memory(plan_), machine_memory_bytes());
   if (!warning.empty() && !input_.samples_only) stats_.warnings.push_back(warning);  // Sequence warns of its frames
 
-  integrator_ = input_.make_integrator(frame->settings, integrator, components_);
+  integrator_ = input_.make_integrator(film->settings, integrator, components_);
   picture_.expect_tiles();
-  if (input_.resumed) picture_.show_tile(*frame, plan_.delivered);
+  if (input_.resumed) picture_.show_tile(*film, plan_.delivered);
   const std::lock_guard lock(mutex_);
-  frame_ = std::move(frame);
+  film_ = std::move(film);
 }
 
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
@@ -193,20 +193,20 @@ bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
 // of the limit. The first one is always taken.
 uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
   const double limit = input_.settings.time_limit;
-  if (!(limit > 0.0) || input_.replay) return kLongestBatch;
+  if (!(limit > 0.0) || input_.replay) return kMaxBatch;
   const uint32_t taken = begin - first_begin_;
   if (taken == 0) return 1;
   const double elapsed = std::max(sampling_.seconds(), 1e-9);
-  return static_cast<uint32_t>(std::clamp((limit - elapsed) / elapsed * taken + 0.5, 0.0, double(kLongestBatch)));
+  return static_cast<uint32_t>(std::clamp((limit - elapsed) / elapsed * taken + 0.5, 0.0, double(kMaxBatch)));
 }
 
 void RenderLoop::judge() {
   const uint64_t cpu = process_cpu_nanoseconds();
-  const CancelTest cancel = [this] { return is_stopped(); };
-  const uint32_t reconstruction = frame_->settings.reconstruction;
-  std::vector<CellNoise> noise;
+  const CancelCheck cancel = [this] { return is_stopped(); };
+  const uint32_t reconstruction = film_->settings.reconstruction;
+  std::vector<BlockNoise> noise;
   arena_.execute(
-      [&] { noise = estimate_noise(*frame_, adaptive_->cells(), reconstruction, input_.settings.reconstruction_alpha, cancel); });
+      [&] { noise = estimate_noise(*film_, adaptive_->blocks(), reconstruction, input_.settings.reconstruction_alpha, cancel); });
   if (!cancel()) adaptive_->judge(noise);
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
 }
@@ -219,24 +219,24 @@ void RenderLoop::sample() {
   const bool adaptively = input_.settings.noise_threshold > 0.0f && !input_.replay;
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
-  if (adaptively) adaptive_ = std::make_unique<AdaptiveSampling>(*frame_, input_.settings.noise_threshold, plan_.first_check);
+  if (adaptively) adaptive_ = std::make_unique<AdaptiveSampling>(*film_, input_.settings.noise_threshold, plan_.first_check);
   first_begin_ = begin;
-  sampler_ = std::make_unique<TileSampler>(*integrator_, make_cells(plan_.sampled, tile_side(plan_.sampled, input_.threads)), gradients_,
-                                           adaptive_.get(), input_.replay.get(), stop_, frame_.get());
+  sampler_ = std::make_unique<TileSampler>(*integrator_, make_pixel_blocks(plan_.sampled, tile_side(plan_.sampled, input_.threads)), gradients_,
+                                           adaptive_.get(), input_.replay.get(), stop_, film_.get());
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
-    if (adaptive_ && begin >= kLongestBatch && (begin % kLongestBatch == 0 || begin == first_begin_)) judge();
-    if (is_done()) frame_->shared = adaptive_->state(begin);  // what the last batch has come to
+    if (adaptive_ && begin >= kMaxBatch && (begin % kMaxBatch == 0 || begin == first_begin_)) judge();
+    if (is_done()) film_->shared = adaptive_->state(begin);  // what the last batch has come to
     if (cancel() || is_done()) break;
     if (show_is_due(begin)) show(begin);
     if (cancel()) break;
     if (adaptive_) adaptive_->start_batch(end - begin);
-    frame_->samples.add({first + begin, first + (adaptive_ ? adaptive_->most_taken() : end)});
-    frame_->shared = {};
+    film_->samples.add({first + begin, first + (adaptive_ ? adaptive_->max_taken() : end)});
+    film_->shared = {};
     run_batch(begin, end);
     if (cancel()) break;
-    if (adaptive_) frame_->shared = adaptive_->state(end);
+    if (adaptive_) film_->shared = adaptive_->state(end);
     tracker_.set_samples(end);
     if (!picture_.is_reconstructed()) tracker_.new_image();
   }
@@ -263,7 +263,7 @@ void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
 }
 
 bool RenderLoop::show_is_due(uint32_t begin) const {
-  const uint32_t reconstruction = frame_->settings.reconstruction;
+  const uint32_t reconstruction = film_->settings.reconstruction;
   if (begin < kBothHalves) return live_view_.quarter_is_due(reconstruction);
   return live_view_.refresh_is_due(reconstruction, sampling_.seconds(), tracker_.fraction() / ProgressTracker::kSamplingShare);
 }
@@ -273,13 +273,13 @@ void RenderLoop::show(uint32_t begin) {
   if (begin < kBothHalves) {
     live_view_.show_quarter();
   } else {
-    live_view_.refresh(*frame_, sampling_.seconds());
+    live_view_.refresh(*film_, sampling_.seconds());
   }
   sampling_.start();
 }
 
 void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
-  picture_.show_tile(*frame_, tile);
+  picture_.show_tile(*film_, tile);
   const uint64_t done = work_done_ += pixel_samples;
   const double whole = double(plan_.sampled.area()) * input_.settings.samples;
   double fraction = double(done) / whole;
@@ -292,39 +292,39 @@ void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
   if (ms - last >= kImageIntervalMs && last_image_ms_.compare_exchange_strong(last, ms)) tracker_.new_image();
 }
 
-void RenderLoop::reconstruct_frame() {
-  const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
-  show_combined(*frame_, frame_->settings.reconstruction, plan_, stop_, &arena_, &picture_, &stats_.solve);
+void RenderLoop::reconstruct_film() {
+  const ScopedTimer timer(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
+  show_combined(*film_, film_->settings.reconstruction, plan_, stop_, &arena_, &picture_, &stats_.solve);
 }
 
 void RenderLoop::find_motion() {
-  const Bill bill(&stats_.seconds.links, &stats_.cpu_seconds.links);
-  const CancelTest cancel = [this] { return is_stopped(); };
+  const ScopedTimer timer(&stats_.seconds.correspondence, &stats_.cpu_seconds.correspondence);
+  const CancelCheck cancel = [this] { return is_stopped(); };
   std::vector<ComponentMotion> motion;
   arena_.execute(
       [&] { motion = component_motion(*input_.snapshot, input_.settings, components_, kEveryComponent, plan_.sampled, cancel); });
-  stop_if_asked();
+  check_cancelled();
   // progress() adds up the sizes of these vectors meanwhile.
   const std::lock_guard lock(mutex_);
   for (size_t c = 0; c < motion.size(); ++c) {
-    frame_->components[c].motion = std::move(motion[c].vectors);
-    frame_->components[c].tracked = std::move(motion[c].tracked);
-    if (input_.samples_only) frame_->components[c].shown = std::move(motion[c].shown);
+    film_->components[c].motion = std::move(motion[c].vectors);
+    film_->components[c].tracked = std::move(motion[c].tracked);
+    if (input_.samples_only) film_->components[c].shown = std::move(motion[c].shown);
   }
 }
 
-void RenderLoop::denoise_frame() {
-  const CancelTest cancel = [this] { return is_stopped(); };
-  std::vector<float> rgba = denoise_and_bill(*denoiser_, *frame_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
+void RenderLoop::denoise_film() {
+  const CancelCheck cancel = [this] { return is_stopped(); };
+  std::vector<float> rgba = denoise_timed(*denoiser_, *film_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
   if (rgba.empty()) return;
-  arena_.execute([&] { picture_.show_denoised(std::move(rgba), denoised_error(frame_->settings.reconstruction)); });
+  arena_.execute([&] { picture_.show_denoised(std::move(rgba), denoised_error(film_->settings.reconstruction)); });
 }
 
 void RenderLoop::split_light() {
-  const Bill bill(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
-  const CancelTest cancel = [this] { return is_stopped(); };
+  const ScopedTimer timer(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
+  const CancelCheck cancel = [this] { return is_stopped(); };
   std::shared_ptr<const LightPasses> light;
-  arena_.execute([&] { light = std::make_shared<LightPasses>(*frame_, plan_.delivered, picture_.combined(), cancel); });
+  arena_.execute([&] { light = std::make_shared<LightPasses>(*film_, plan_.delivered, picture_.combined(), cancel); });
   const std::lock_guard lock(mutex_);
   light_ = std::move(light);
 }
@@ -343,7 +343,7 @@ void RenderLoop::ending(GradusError) {
 }
 
 uint64_t RenderLoop::memory_bytes() const {
-  return (frame_ ? frame_->memory_bytes() : 0) + picture_.memory_bytes() + (light_ ? light_->memory_bytes() : 0);
+  return (film_ ? film_->memory_bytes() : 0) + picture_.memory_bytes() + (light_ ? light_->memory_bytes() : 0);
 }
 
 void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
@@ -355,18 +355,18 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
     }
   }
   if (picture_.read(pass, pixels)) return;
-  std::shared_ptr<const Frame> frame;
+  std::shared_ptr<const Film> film;
   std::shared_ptr<const LightPasses> light;
   {
     const std::lock_guard lock(mutex_);
     light = light_;
-    if (!is_sampling()) frame = frame_;
+    if (!is_sampling()) film = film_;
   }
   if (light && light->read(pass, pixels)) return;
-  if (frame && pass == GRADUS_PASS_ERROR && wants(plan_.passes, pass)) return read_error_of_noisy(*frame, plan_.delivered, pixels);
-  if (frame) {
+  if (film && pass == GRADUS_PASS_ERROR && has_bit(plan_.passes, pass)) return read_error_of_noisy(*film, plan_.delivered, pixels);
+  if (film) {
     // Not the render's own arena, whose threads may still be reconstructing.
-    tbb::task_arena(arena_size(input_.threads)).execute([&] { read_frame_pass(*frame, pass, plan_.delivered, pixels); });
+    tbb::task_arena(arena_size(input_.threads)).execute([&] { read_film_pass(*film, pass, plan_.delivered, pixels); });
     return;
   }
   std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
@@ -375,36 +375,36 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
 void RenderLoop::read_component(const std::string& name, uint32_t pass, float* pixels) const {
   const GradusSettings& settings = input_.settings;
   check_component(settings, name);
-  std::shared_ptr<const Frame> frame;
+  std::shared_ptr<const Film> film;
   {
     const std::lock_guard lock(mutex_);
     if (is_sampling()) throw invalid_operation("component " + name + " comes when sampling has ended");
-    frame = frame_;
+    film = film_;
   }
   const int component = components_.find(name);
-  if (!frame || component < 0) return read_absent_component(pass, plan_.delivered, pixels);
-  if (!wants(settings.component_passes, pass))
+  if (!film || component < 0) return read_absent_component(pass, plan_.delivered, pixels);
+  if (!has_bit(settings.component_passes, pass))
     throw invalid_operation("pass " + std::string(component_pass_info(pass).name) + " of components was not asked for");
   std::vector<float> color = picture_.component(component);
   if (color.empty() && is_of_picture(pass)) {  // it was cancelled
-    color = crop_components(*frame, GRADUS_RECONSTRUCTION_NONE, {read_images(*frame, component).primal}, plan_.delivered).front();
+    color = crop_components(*film, GRADUS_RECONSTRUCTION_NONE, {read_images(*film, component).primal}, plan_.delivered).front();
   }
-  read_component_pass(*frame, component, pass, plan_.delivered, color, pixels);
+  read_component_pass(*film, component, pass, plan_.delivered, color, pixels);
 }
 
 std::string RenderLoop::stats() const {
   {
     const std::lock_guard lock(mutex_);
-    require_frame(frame_, "its stats come", "the render failed before it began: ");
+    require_film(film_, "its stats come", "the render failed before it began: ");
   }
   // Nothing of it changes after the end, so progress() need not wait for the sums over all pixels.
-  return stats_json(stats_, plan_, *frame_);
+  return stats_json(stats_, plan_, *film_);
 }
 
-std::shared_ptr<const Frame> RenderLoop::frame() const {
+std::shared_ptr<const Film> RenderLoop::film() const {
   const std::lock_guard lock(mutex_);
-  require_frame(frame_, "its frame comes", "the render failed before it began: ");
-  return frame_;
+  require_film(film_, "its frame comes", "the render failed before it began: ");
+  return film_;
 }
 
 }  // namespace gradus

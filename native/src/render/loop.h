@@ -30,7 +30,7 @@ class RenderLoop final : public RenderTask {
 
   const Plan& plan() const { return plan_; }
   // Goes on from the samples of a frame; before run(). Throws invalid_argument if its keys or planes differ.
-  void resume(std::shared_ptr<const Frame> frame);
+  void resume(std::shared_ptr<const Film> film);
   // When it has ended.
   const RenderStats& what_it_took() const { return stats_; }
 
@@ -38,7 +38,7 @@ class RenderLoop final : public RenderTask {
   void read_pass(uint32_t pass, float* pixels) const override;
   void read_component(const std::string& name, uint32_t pass, float* pixels) const override;
   std::string stats() const override;
-  std::shared_ptr<const Frame> frame() const override;
+  std::shared_ptr<const Film> film() const override;
 
  private:
   void render() override;
@@ -50,10 +50,10 @@ class RenderLoop final : public RenderTask {
   // Those of the plan, but for the small ones.
   ComponentSet choose_components();
   void sample();
-  void reconstruct_frame();
+  void reconstruct_film();
   // Of components, from what the scene knows of the frames around.
   void find_motion();
-  void denoise_frame();
+  void denoise_film();
   // Light passes follow what the picture has become.
   void split_light();
   // False: nothing more to do.
@@ -76,10 +76,10 @@ class RenderLoop final : public RenderTask {
   const Plan plan_;
   mutable tbb::task_arena arena_;
   Picture picture_;
-  mutable LiveView live_view_;  // readers are its watchers
+  mutable Preview live_view_;  // readers are its watchers
 
   // Set by prepare(), before the phase becomes SAMPLING; the frame's content is the samplers' alone until that phase ends.
-  std::shared_ptr<Frame> frame_;
+  std::shared_ptr<Film> film_;
   std::unique_ptr<Integrator> integrator_;
   GradientMap gradients_;
   ComponentSet components_;

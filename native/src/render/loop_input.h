@@ -13,7 +13,7 @@ namespace gradus {
 
 // What a frame of a sequence repeats of the frame before (contract 4.2).
 struct Replay {
-  SampleSources sources;
+  ReplayMap replay_map;
   std::vector<uint32_t> counts;  // samples of each pixel; empty: those of the settings
   ComponentReplays components;   // of the sources
 };
@@ -27,7 +27,7 @@ struct LoopInput {
   std::shared_ptr<Device> device;
   std::shared_ptr<const Snapshot> snapshot;
   GradusSettings settings{};
-  std::shared_ptr<const Frame> resumed;
+  std::shared_ptr<const Film> resumed;
   IntegratorFactory factory;
   uint32_t threads = 1;
   // A part of a frame of a sequence: it is sampled everywhere, and reconstructed later, with others.

@@ -17,8 +17,8 @@ constexpr uint64_t kReconstructedComponent = 48;  // pictures of a component, wh
 constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while the window is solved
 
 uint64_t frame_bytes(const Plan& plan) {
-  return frame_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes,
-                               {plan.rough_vertices, plan.rough_details, plan.component_motion, plan.component_motion});
+  return film_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes,
+                               {plan.non_specular_vertices, plan.non_specular_details, plan.component_motion, plan.component_motion});
 }
 
 uint64_t reconstruction_bytes(const Plan& plan) {

@@ -8,13 +8,13 @@
 
 namespace gradus {
 
-using PartPlanes = std::vector<const PassPlane*>;
+using LightPassPlanes = std::vector<const PassPlane*>;
 
 // Of a plane that is kept in halves, three channels. Where a half has no samples, what differs from the pixels around stands for the noise.
-HalvedImage read_part(const Frame& frame, const PassPlane& plane);
+HalvedImage read_light_pass(const Film& film, const PassPlane& plane);
 // What of the light is in none of the planes.
-HalvedImage read_rest(const Frame& frame, const PartPlanes& planes);
+HalvedImage read_remainder(const Film& film, const LightPassPlanes& planes);
 // Means of a colour pass.
-FeatureImage read_color(const Frame& frame, const PassPlane& plane);
+FeatureImage read_color(const Film& film, const PassPlane& plane);
 
 }  // namespace gradus

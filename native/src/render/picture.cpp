@@ -14,11 +14,11 @@ void Picture::expect_tiles() {
   noisy_ = std::move(black);
 }
 
-void Picture::show_tile(const Frame& frame, const Region& tile) {
+void Picture::show_tile(const Film& film, const Region& tile) {
   const Region part = intersection(tile, region_);
   if (part.width() <= 0 || part.height() <= 0) return;
   std::vector<float> rgba(4 * size_t(part.area()));
-  read_frame_pass(frame, GRADUS_PASS_NOISY_IMAGE, part, rgba.data());
+  read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, part, rgba.data());
   const size_t row = 4 * size_t(part.width());
   const std::lock_guard lock(mutex_);
   for (int32_t y = part.y0; y < part.y1; ++y) {

@@ -18,7 +18,7 @@ class Picture {
   // Room for tiles: black, until they come.
   void expect_tiles();
   // What the tile has now becomes what is seen of it in the noisy image.
-  void show_tile(const Frame& frame, const Region& tile);
+  void show_tile(const Film& film, const Region& tile);
   // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
   // components: RGB of each, or none.
   void show(std::vector<float> rgba, std::vector<float> error, std::vector<std::vector<float>> components = {});

@@ -18,7 +18,7 @@ namespace {
 
 // A square of kSquare pixels is judged by some pixels in it and those in the squares around: 1/16 of a sample per pixel. They stand apart,
 // for neighbours see the same.
-constexpr int kSquare = 32;
+constexpr int kBlockSide = 32;
 constexpr int kColumns = 8, kRows = 4;
 constexpr uint32_t kSamples = 2;
 // No user's seed, which are below 2³¹: else the samples of frame 0 would be those that are kept.
@@ -28,20 +28,20 @@ Region grown(const Region& r, int by, const Region& limit) { return intersection
 
 // One pixel somewhere in each stratum of the square, so that no pattern of the picture meets all of them alike. Squares at the border may
 // be narrower than they have strata.
-std::vector<size_t> pixels_of(const Region& square, const Frame& frame, uint32_t seed) {
+std::vector<size_t> pixels_of(const Region& block, const Film& film, uint32_t seed) {
   std::vector<size_t> pixels;
-  const int columns = std::min(kColumns, square.width()), rows = std::min(kRows, square.height());
+  const int columns = std::min(kColumns, block.width()), rows = std::min(kRows, block.height());
   const auto place = [](int32_t begin, int32_t size, int i, int n, uint32_t random) {
     const int32_t first = begin + size * i / n, end = begin + size * (i + 1) / n;
     return first + int32_t(random % uint32_t(end - first));
   };
-  uint32_t h = combine(combine(seed, uint32_t(square.x0)), uint32_t(square.y0));
+  uint32_t h = combine(combine(seed, uint32_t(block.x0)), uint32_t(block.y0));
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       h = combine(h, uint32_t(j * kColumns + i));
-      const int32_t x = place(square.x0, square.width(), i, columns, h & 0xffffu);
-      const int32_t y = place(square.y0, square.height(), j, rows, h >> 16);
-      pixels.push_back(frame.index(x, y));
+      const int32_t x = place(block.x0, block.width(), i, columns, h & 0xffffu);
+      const int32_t y = place(block.y0, block.height(), j, rows, h >> 16);
+      pixels.push_back(film.index(x, y));
     }
   }
   return pixels;
@@ -60,12 +60,12 @@ L2Noises l2_noises(const GradusSettings& settings, uint32_t reconstruction) {
 }
 
 // The pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are alike: √2.
-void add_pixel(const Frame& frame, size_t pixel, const L2Noises& l2, PilotSums* sums) {
-  const ComponentPlanes& planes = frame.components[0];
+void add_pixel(const Film& film, size_t pixel, const L2Noises& l2, PilotSums* sums) {
+  const ComponentPlanes& planes = film.components[0];
   const Radiance spread = planes.primal[0][pixel] - planes.primal[1][pixel];
   std::array<Radiance, kOffsets> spreads;
   for (int k = 0; k < kOffsets; ++k) {
-    const float pair = frame.pair_count[0][k][pixel];
+    const float pair = film.pair_count[0][k][pixel];
     spreads[k] = pair > 0.0f ? (planes.gradient[0][k][pixel] - planes.gradient[1][k][pixel]) / pair : Radiance(0.0f);
     if (!(pair > 0.0f)) continue;
     ++sums->differences;
@@ -79,17 +79,17 @@ void add_pixel(const Frame& frame, size_t pixel, const L2Noises& l2, PilotSums* 
 }
 
 // Whole squares but for the frame's border: all that touch the region.
-Region grown_to_squares(const Region& r, const Region& full) {
-  const auto down = [](int32_t x) { return lattice_cell(x, kSquare) * kSquare; };
-  return intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kSquare, down(r.y1 - 1) + kSquare}, full);
+Region grown_to_blocks(const Region& r, const Region& full) {
+  const auto down = [](int32_t x) { return pixel_block_of(x, kBlockSide) * kBlockSide; };
+  return intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kBlockSide, down(r.y1 - 1) + kBlockSide}, full);
 }
 
 // Every square with those around it, twice: one of 32 samples knows too little of what seldom fails.
-std::vector<PilotSums> spread_out(const CellGrid& squares, std::vector<PilotSums> sums) {
+std::vector<PilotSums> spread_out(const PixelBlockGrid& blocks, std::vector<PilotSums> sums) {
   for (int step = 0; step < 2; ++step) {
     std::vector<PilotSums> next(sums.size());
     for (size_t i = 0; i < sums.size(); ++i) {
-      for_each_around(squares, i, [&](size_t other, double weight) { next[i].add(sums[other], weight); });
+      for_each_around(blocks, i, [&](size_t other, double weight) { next[i].add(sums[other], weight); });
     }
     sums = std::move(next);
   }
@@ -100,14 +100,14 @@ Benefit benefit_of(const PilotSums& sums, bool is_l2) { return is_l2 ? estimate_
 
 // Which squares are to have differences. L2 has one error for the picture, and outliers in one part of it outweigh all else; where rows go
 // by their noise every part is for itself.
-std::vector<bool> choose(const CellGrid& squares, const std::vector<PilotSums>& sums, uint32_t reconstruction) {
+std::vector<bool> choose(const PixelBlockGrid& blocks, const std::vector<PilotSums>& sums, uint32_t reconstruction) {
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   std::vector<Benefit> benefits;
-  for (const PilotSums& around : spread_out(squares, sums)) benefits.push_back(benefit_of(around, is_l2));
+  for (const PilotSums& around : spread_out(blocks, sums)) benefits.push_back(benefit_of(around, is_l2));
   if (is_l2) {
     std::vector<double> pixels;
-    for (const Region& square : squares.cells) pixels.push_back(double(square.area()));
-    return choose_parts(benefits, pixels);
+    for (const Region& block : blocks.blocks) pixels.push_back(double(block.area()));
+    return choose_blocks(benefits, pixels);
   }
   std::vector<bool> chosen;
   chosen.reserve(benefits.size());
@@ -132,25 +132,25 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   const auto is_stopped = [&stop] { return stop.load(std::memory_order_relaxed); };
   // Squares at the region's border are judged by those beyond, too; L2's by all.
-  const CellGrid squares(is_l2 ? full : grown_to_squares(grown(region, 2 * kSquare, full), full), kSquare);
+  const PixelBlockGrid blocks(is_l2 ? full : grown_to_blocks(grown(region, 2 * kBlockSide, full), full), kBlockSide);
   const L2Noises l2 = l2_noises(settings, reconstruction);
-  std::vector<PilotSums> sums(squares.cells.size());
+  std::vector<PilotSums> sums(blocks.blocks.size());
   std::vector<uint8_t> done(sums.size(), 0);
   const auto look_at = [&](size_t i) {
     if (is_stopped()) return true;
     const FlushDenormals flush;
     Counters counters;
-    Frame frame(settings.width, settings.height, grown(squares.cells[i], 1, full), channels, 1, true);
-    const std::vector<size_t> pixels = pixels_of(squares.cells[i], frame, settings.seed);
-    std::vector<uint8_t> map(size_t(frame.region.area()), 0);
+    Film film(settings.width, settings.height, grown(blocks.blocks[i], 1, full), channels, 1, true);
+    const std::vector<size_t> pixels = pixels_of(blocks.blocks[i], film, settings.seed);
+    std::vector<uint8_t> map(size_t(film.region.area()), 0);
     for (const size_t pixel : pixels) map[pixel] = 1;
     WorkUnit unit;
-    unit.tile = squares.cells[i];
+    unit.tile = blocks.blocks[i];
     unit.count = kSamples;
     unit.pixel_map = &map;
-    integrator.sample(unit, &frame, &counters, stop);
+    integrator.sample(unit, &film, &counters, stop);
     if (is_stopped()) return true;
-    for (const size_t pixel : pixels) add_pixel(frame, pixel, l2, &sums[i]);
+    for (const size_t pixel : pixels) add_pixel(film, pixel, l2, &sums[i]);
     sums[i].plain_rays = double(counters.rays_primary + counters.rays_bounce + counters.rays_shadow);
     sums[i].shift_rays = double(counters.rays_shift);
     sums[i].shift_shadow_rays = double(counters.rays_shift_shadow);
@@ -161,14 +161,14 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
     if (is_stopped()) return {};
     interruption.run();
   }
-  const std::vector<bool> chosen = choose(squares, sums, reconstruction);
+  const std::vector<bool> chosen = choose(blocks, sums, reconstruction);
   GradientMap map;
   map.pixels.assign(size_t(region.area()), 0);
   PilotSums total;
   int64_t kept = 0;
   for (size_t i = 0; i < sums.size(); ++i) {
     map.samples += kSamples * uint64_t(sums[i].pixels);
-    const Region part = intersection(squares.cells[i], region);
+    const Region part = intersection(blocks.blocks[i], region);
     if (part.width() <= 0 || part.height() <= 0) continue;
     total.add(sums[i], 1.0);
     if (!chosen[i]) continue;

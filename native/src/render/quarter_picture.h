@@ -13,14 +13,14 @@ namespace gradus {
 // The settings that its integrator is made for, which takes plain paths.
 GradusSettings quarter_settings(GradusSettings settings);
 
-struct QuarterPicture {
+struct QuarterPreview {
   std::vector<float> rgba;         // of the region; empty if it was stopped
   std::vector<float> error;        // where pass Error is asked for: of what this size can show
   double seconds_per_pixel = 0.0;  // of its reconstruction
 };
 
 // Of the region that is delivered. Runs in the caller's arena. settings and plan: the render's.
-QuarterPicture render_quarter(const Integrator& integrator, const GradusSettings& settings, const Plan& plan,
+QuarterPreview render_quarter_preview(const Integrator& integrator, const GradusSettings& settings, const Plan& plan,
                               const std::atomic<bool>& stop);
 
 }  // namespace gradus

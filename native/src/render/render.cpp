@@ -38,7 +38,7 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorContext& context, ui
 namespace {
 
 LoopInput make_input(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-                     std::shared_ptr<const Frame> resumed, const IntegratorFactory& factory) {
+                     std::shared_ptr<const Film> resumed, const IntegratorFactory& factory) {
   LoopInput input;
   input.threads = threads_of(settings, device.get());
   input.device = std::move(device);
@@ -66,7 +66,7 @@ Render::Render(std::unique_ptr<RenderTask> task) : state_(std::make_unique<State
 }
 
 Render::Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-               std::shared_ptr<const Frame> resumed, const IntegratorFactory& factory)
+               std::shared_ptr<const Film> resumed, const IntegratorFactory& factory)
     : Render(std::make_unique<RenderLoop>(make_input(std::move(device), std::move(snapshot), settings, std::move(resumed), factory))) {}
 
 Render::~Render() {
@@ -100,6 +100,6 @@ void Render::read_component(const std::string& name, uint32_t pass, float* pixel
 }
 
 std::string Render::stats_json() const { return state_->task->stats(); }
-std::shared_ptr<const Frame> Render::frame() const { return state_->task->frame(); }
+std::shared_ptr<const Film> Render::film() const { return state_->task->film(); }
 
 }  // namespace gradus

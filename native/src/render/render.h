@@ -25,7 +25,7 @@ class Render {
   // Starts on a thread of its own. Throws invalid_argument for settings that cannot be obeyed (contract 5.1). resumed: go on from its
   // samples; invalid_argument if its keys or planes differ. device: for the number of threads; may be nullptr if settings.threads is set.
   Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-         std::shared_ptr<const Frame> resumed = nullptr, const IntegratorFactory& factory = make_integrator);
+         std::shared_ptr<const Film> resumed = nullptr, const IntegratorFactory& factory = make_integrator);
   // Runs another task.
   explicit Render(std::unique_ptr<RenderTask> task);
   ~Render();  // cancels and waits
@@ -45,7 +45,7 @@ class Render {
   void read_component(const std::string& name, uint32_t pass, float* pixels, size_t count) const;
   // Throw invalid_operation while running.
   std::string stats_json() const;
-  std::shared_ptr<const Frame> frame() const;
+  std::shared_ptr<const Film> film() const;
 
  private:
   struct State;

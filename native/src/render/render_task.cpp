@@ -78,9 +78,9 @@ void RenderTask::require_end(const char* what) const {
   if (!is_ended()) throw invalid_operation(std::string("the render is still running: ") + what + " at the end");
 }
 
-void RenderTask::require_frame(const std::shared_ptr<const Frame>& frame, const char* what, const char* failure) const {
+void RenderTask::require_film(const std::shared_ptr<const Film>& film, const char* what, const char* failure) const {
   require_end(what);
-  if (!frame) throw invalid_operation(failure + text_);
+  if (!film) throw invalid_operation(failure + text_);
 }
 
 }  // namespace gradus

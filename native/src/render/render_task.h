@@ -39,7 +39,7 @@ class RenderTask {
   // Of a component.
   virtual void read_component(const std::string& name, uint32_t pass, float* pixels) const = 0;
   virtual std::string stats() const = 0;
-  virtual std::shared_ptr<const Frame> frame() const = 0;
+  virtual std::shared_ptr<const Film> film() const = 0;
 
  protected:
   virtual void render() = 0;
@@ -50,14 +50,14 @@ class RenderTask {
 
   bool is_stopped() const { return stop_.load(std::memory_order_relaxed); }
   // Throws the Error CANCELLED.
-  void stop_if_asked() const {
+  void check_cancelled() const {
     if (is_stopped()) throw cancelled();
   }
   bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
   // Throws invalid_operation while running. With the lock.
   void require_end(const char* what) const;
   // The same, and where the task has ended without a frame: `failure`, and why. With the lock.
-  void require_frame(const std::shared_ptr<const Frame>& frame, const char* what, const char* failure) const;
+  void require_film(const std::shared_ptr<const Film>& film, const char* what, const char* failure) const;
   double seconds() const { return clock_.seconds(); }
   double process_cpu_seconds() const { return 1e-9 * double(process_cpu_nanoseconds() - process_cpu_start_); }
 

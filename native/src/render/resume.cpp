@@ -32,9 +32,9 @@ void add_planes(PassPlane* to, const PassPlane& from) {
   add(&to->weight, from.weight);
 }
 
-bool same_planes(const Frame& a, const Frame& b) {
-  const KeptOfComponents of_a = kept_of_components(a), of_b = kept_of_components(b);
-  if (of_a.rough != of_b.rough || of_a.details != of_b.details) return false;
+bool same_planes(const Film& a, const Film& b) {
+  const ComponentContent of_a = component_content(a), of_b = component_content(b);
+  if (of_a.non_specular != of_b.non_specular || of_a.details != of_b.details) return false;
   if (a.passes.size() != b.passes.size() || a.fallback.size() != b.fallback.size()) return false;
   for (size_t i = 0; i < a.passes.size(); ++i) {
     if (a.passes[i].pass != b.passes[i].pass) return false;
@@ -43,112 +43,112 @@ bool same_planes(const Frame& a, const Frame& b) {
 }
 
 // A pilot may have found that gradients pay nowhere.
-bool may_hold(const Plan& plan, uint32_t integrator) {
+bool may_contain(const Plan& plan, uint32_t integrator) {
   return integrator == plan.integrator || (plan.pilot && integrator == GRADUS_INTEGRATOR_PATH);
 }
 
 }  // namespace
 
-void check_gradients(const Frame& frame, bool wanted) {
-  if (frame.gradients != wanted) throw invalid_argument(wanted ? "the frame holds no gradients" : "the frame holds gradients");
+void check_gradients(const Film& film, bool wanted) {
+  if (film.gradients != wanted) throw invalid_argument(wanted ? "the frame holds no gradients" : "the frame holds gradients");
 }
 
-uint32_t resumed_samples(const Frame& frame, bool adaptively) {
-  const bool by_cells = adaptively && !frame.shared.rays.empty();
-  for (const Region& part : by_cells ? make_cells(frame.region) : std::vector<Region>{frame.region}) {
-    const uint32_t first = samples_at(frame, frame.index(part.x0, part.y0));
+uint32_t resumed_samples(const Film& film, bool adaptively) {
+  const bool by_blocks = adaptively && !film.shared.rays.empty();
+  for (const Region& part : by_blocks ? make_pixel_blocks(film.region) : std::vector<Region>{film.region}) {
+    const uint32_t first = samples_at(film, film.index(part.x0, part.y0));
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
-        if (samples_at(frame, frame.index(x, y)) == first) continue;
+        if (samples_at(film, film.index(x, y)) == first) continue;
         throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot go on from it");
       }
     }
   }
-  if (by_cells) return frame.shared.mean;
-  return frame.region.area() > 0 ? samples_at(frame, 0) : 0;
+  if (by_blocks) return film.shared.mean;
+  return film.region.area() > 0 ? samples_at(film, 0) : 0;
 }
 
-ComponentSet resumed_components(const Frame& frame, const Plan& plan) {
+ComponentSet resumed_components(const Film& film, const Plan& plan) {
   if (!plan.merges_components) return plan.components;
   uint32_t absent = 0;
-  for (int c = 0; c < plan.components.count(); ++c) absent |= find_component(frame, plan.components[c].name) < 0 ? 1u << c : 0u;
+  for (int c = 0; c < plan.components.count(); ++c) absent |= find_component(film, plan.components[c].name) < 0 ? 1u << c : 0u;
   return plan.components.merged(absent);
 }
 
-void check_resumable(const Frame& frame, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
-  if (frame.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
-  if (key_of(frame.settings, plan.integrator) != key_of(settings, plan.integrator) || !may_hold(plan, frame.settings.integrator)) {
+void check_resumable(const Film& film, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
+  if (film.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
+  if (key_of(film.settings, plan.integrator) != key_of(settings, plan.integrator) || !may_contain(plan, film.settings.integrator)) {
     GradusSettings wanted = settings;
-    wanted.integrator = frame.settings.integrator;
-    const std::string which = sampling_differences(frame.settings, wanted);
+    wanted.integrator = film.settings.integrator;
+    const std::string which = sampling_differences(film.settings, wanted);
     throw invalid_argument("the frame was sampled with other settings: " + (which.empty() ? "another integrator" : which));
   }
-  if (frame.region != plan.sampled || frame.settings.first_sample != settings.first_sample) {
+  if (film.region != plan.sampled || film.settings.first_sample != settings.first_sample) {
     throw invalid_argument("the frame has another region or first sample");
   }
-  const ComponentSet set = resumed_components(frame, plan);
+  const ComponentSet set = resumed_components(film, plan);
   std::string wanted;
   for (int c = 0; c < set.count(); ++c) add_item(&wanted, set[c].name);
-  if (component_names(frame) != wanted)
-    throw invalid_argument("the frame holds the components " + component_names(frame) + ", and the render has " + wanted);
-  const std::string gap = frame.samples.first_gap(settings.first_sample);
+  if (component_names(film) != wanted)
+    throw invalid_argument("the frame holds the components " + component_names(film) + ", and the render has " + wanted);
+  const std::string gap = film.samples.first_gap(settings.first_sample);
   if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
-  if (frame.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
-  const KeptOfComponents held = kept_of_components(frame);
-  if ((plan.rough_vertices && !held.rough) || (plan.rough_details && !held.details))
+  if (film.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
+  const ComponentContent held = component_content(film);
+  if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
     throw invalid_argument("the frame was sampled without the passes of components");
-  const uint64_t kept = kept_passes(frame);
+  const uint64_t kept = film_passes(film);
   for (const PassInfo& info : stored_passes(plan.passes)) {
-    if (!wants(kept, info.pass)) throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
+    if (!has_bit(kept, info.pass)) throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
   }
-  if (resumed_samples(frame, settings.noise_threshold > 0.0f) > settings.samples)
+  if (resumed_samples(film, settings.noise_threshold > 0.0f) > settings.samples)
     throw invalid_argument("the frame has more samples than are asked for");
 }
 
-void add_sums(Frame* frame, const Frame& other) {
-  for (size_t c = 0; c < frame->components.size(); ++c) {
-    std::vector<RoughDetails>& details = frame->components[c].details;
-    for (size_t i = 0; i < details.size(); ++i) add_details(other.components[c].details[i], &details[i], &frame->counters);
+void add_sums(Film* film, const Film& other) {
+  for (size_t c = 0; c < film->components.size(); ++c) {
+    std::vector<NonSpecularDetails>& details = film->components[c].details;
+    for (size_t i = 0; i < details.size(); ++i) add_details(other.components[c].details[i], &details[i], &film->counters);
   }
   for (int half = 0; half < kHalves; ++half) {
-    for (size_t c = 0; c < frame->components.size(); ++c) {
-      add(&frame->components[c].primal[half], other.components[c].primal[half]);
-      for (size_t i = 0; i < frame->components[c].rough[half].size(); ++i) {
-        add_rough(other.components[c].rough[half][i], &frame->components[c].rough[half][i], &frame->counters);
+    for (size_t c = 0; c < film->components.size(); ++c) {
+      add(&film->components[c].primal[half], other.components[c].primal[half]);
+      for (size_t i = 0; i < film->components[c].non_specular[half].size(); ++i) {
+        add_non_specular(other.components[c].non_specular[half][i], &film->components[c].non_specular[half][i], &film->counters);
       }
-      for (int o = 0; o < kOffsets; ++o) add(&frame->components[c].gradient[half][o], other.components[c].gradient[half][o]);
+      for (int o = 0; o < kOffsets; ++o) add(&film->components[c].gradient[half][o], other.components[c].gradient[half][o]);
     }
-    add(&frame->count[half], other.count[half]);
-    for (int o = 0; o < kOffsets; ++o) add(&frame->pair_count[half][o], other.pair_count[half][o]);
+    add(&film->count[half], other.count[half]);
+    for (int o = 0; o < kOffsets; ++o) add(&film->pair_count[half][o], other.pair_count[half][o]);
   }
-  for (size_t i = 0; i < frame->passes.size(); ++i) add_planes(&frame->passes[i], other.passes[i]);
-  add(&frame->fallback, other.fallback);
-  frame->counters.add(other.counters);
+  for (size_t i = 0; i < film->passes.size(); ++i) add_planes(&film->passes[i], other.passes[i]);
+  add(&film->fallback, other.fallback);
+  film->counters.add(other.counters);
 }
 
-void merge_frames(Frame* frame, const Frame& other) {
-  if (frame->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
-  if (sampling_key(frame->settings) != sampling_key(other.settings))
+void merge_films(Film* film, const Film& other) {
+  if (film->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
+  if (sampling_key(film->settings) != sampling_key(other.settings))
     throw invalid_argument("the frames were sampled with different settings");
-  if (frame->region != other.region || frame->channels != other.channels || frame->gradients != other.gradients ||
-      !same_planes(*frame, other)) {
+  if (film->region != other.region || film->channels != other.channels || film->gradients != other.gradients ||
+      !same_planes(*film, other)) {
     throw invalid_argument("the frames differ in size or planes");
   }
-  if (!same_components(*frame, other))
-    throw invalid_argument("the frames hold different components: " + component_names(*frame) + ", and " + component_names(other));
-  if (frame->samples.overlap(other.samples)) {
-    const uint32_t end = std::max(frame->samples.list().back().end, other.samples.list().back().end);
+  if (!same_components(*film, other))
+    throw invalid_argument("the frames hold different components: " + component_names(*film) + ", and " + component_names(other));
+  if (film->samples.overlap(other.samples)) {
+    const uint32_t end = std::max(film->samples.list().back().end, other.samples.list().back().end);
     throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));
   }
-  const bool other_is_first = other.settings.first_sample < frame->settings.first_sample;
-  for (size_t i = 0; i < frame->passes.size(); ++i) {
-    if (frame->passes[i].first_sample_only && other_is_first) frame->passes[i] = other.passes[i];
+  const bool other_is_first = other.settings.first_sample < film->settings.first_sample;
+  for (size_t i = 0; i < film->passes.size(); ++i) {
+    if (film->passes[i].first_sample_only && other_is_first) film->passes[i] = other.passes[i];
   }
-  add_sums(frame, other);
-  frame->shared = {};  // each has taken other samples of a cell
-  for (const SampleRange& range : other.samples.list()) frame->samples.add(range);
-  if (other_is_first) frame->settings.first_sample = other.settings.first_sample;
-  frame->settings.samples = uint32_t(std::min<uint64_t>(frame->samples.total(), UINT32_MAX));
+  add_sums(film, other);
+  film->shared = {};  // each has taken other samples of a cell
+  for (const SampleRange& range : other.samples.list()) film->samples.add(range);
+  if (other_is_first) film->settings.first_sample = other.settings.first_sample;
+  film->settings.samples = uint32_t(std::min<uint64_t>(film->samples.total(), UINT32_MAX));
 }
 
 }  // namespace gradus

@@ -14,7 +14,7 @@ namespace gradus {
 
 // Reconstructs the frame in the arena, with its error where the plan has that pass, and shows it. False: stopped, and nothing is shown, for
 // half of it is none.
-bool show_combined(const Frame& frame, uint32_t reconstruction, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena,
+bool show_combined(const Film& film, uint32_t reconstruction, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena,
                    Picture* picture, SolveReport* report);
 
 }  // namespace gradus

@@ -16,29 +16,29 @@ namespace gradus {
 namespace {
 
 // A pixel is looked at in every cell of so many pixels a side, or in smaller ones of a small film.
-constexpr int32_t kLargestCell = 16;
-constexpr int64_t kLeastPixels = 1024;
+constexpr int32_t kMaxBlockSide = 16;
+constexpr int64_t kMinPixels = 1024;
 constexpr uint32_t kSamples = 4;
 // What a square of so many cells a side shows of a component is compared with the light of a typical square.
-constexpr int32_t kCellsOfSquare = 4;
+constexpr int32_t kBlocksPerGroupSide = 4;
 // A component is small if it has no more of that light in any square, and on average.
-constexpr double kSmallInSquare = 1e-2, kSmallInAll = 1e-3;
+constexpr double kSmallInGroup = 1e-2, kSmallInAll = 1e-3;
 
-using Light = std::array<double, kMostComponents>;
+using Light = std::array<double, kMaxComponents>;
 
-int32_t cell_side(const Region& film) {
-  return std::clamp(int32_t(std::sqrt(double(film.area()) / double(kLeastPixels))), int32_t{1}, kLargestCell);
+int32_t block_side(const Region& film) {
+  return std::clamp(int32_t(std::sqrt(double(film.area()) / double(kMinPixels))), int32_t{1}, kMaxBlockSide);
 }
 
 // Somewhere in the cell, so that no pattern of the picture meets all of them alike.
-Region pixel_of(const Region& cell, uint32_t seed) {
-  const uint32_t h = combine(combine(seed, uint32_t(cell.x0)), uint32_t(cell.y0));
-  const int32_t x = cell.x0 + int32_t((h & 0xffffu) % uint32_t(cell.width())), y = cell.y0 + int32_t((h >> 16) % uint32_t(cell.height()));
+Region pixel_of(const Region& block, uint32_t seed) {
+  const uint32_t h = combine(combine(seed, uint32_t(block.x0)), uint32_t(block.y0));
+  const int32_t x = block.x0 + int32_t((h & 0xffffu) % uint32_t(block.width())), y = block.y0 + int32_t((h >> 16) % uint32_t(block.height()));
   return {x, y, x + 1, y + 1};
 }
 
 // Of one pixel: mean of the channels, summed over samples.
-Light light_of(const Frame& frame) {
+Light light_of(const Film& frame) {
   Light light{};
   for (size_t c = 0; c < frame.components.size(); ++c) {
     const Radiance sum = frame.components[c].primal[0][0] + frame.components[c].primal[1][0];
@@ -58,43 +58,43 @@ double sum_of(const Light& light) {
 }
 
 // A firefly does not change it.
-double typical(const std::vector<Light>& squares) {
+double typical(const std::vector<Light>& groups) {
   std::vector<double> sums;
-  for (const Light& square : squares) sums.push_back(sum_of(square));
+  for (const Light& group : groups) sums.push_back(sum_of(group));
   const auto middle = sums.begin() + ptrdiff_t(sums.size() / 2);
   std::nth_element(sums.begin(), middle, sums.end());
   return *middle;
 }
 
-bool is_small(const std::vector<Light>& squares, size_t component, double light) {
-  double sum = 0.0, most = 0.0;
-  for (const Light& square : squares) {
-    sum += square[component];
-    most = std::max(most, square[component]);
+bool is_small(const std::vector<Light>& groups, size_t component, double light) {
+  double sum = 0.0, maximum = 0.0;
+  for (const Light& group : groups) {
+    sum += group[component];
+    maximum = std::max(maximum, group[component]);
   }
-  return most <= kSmallInSquare * light && sum <= kSmallInAll * light * double(squares.size());
+  return maximum <= kSmallInGroup * light && sum <= kSmallInAll * light * double(groups.size());
 }
 
 // Of a pixel, in each square of the film.
-std::vector<Light> look_at_squares(const Integrator& integrator, const GradusSettings& settings, const Region& film, int components,
+std::vector<Light> measure_groups(const Integrator& integrator, const GradusSettings& settings, const Region& film, int components,
                                    int channels, const std::atomic<bool>& stop) {
-  const int32_t side = cell_side(film);
-  const std::vector<Region> squares = make_cells(film, kCellsOfSquare * side);
-  std::vector<Light> light(squares.size());
+  const int32_t side = block_side(film);
+  const std::vector<Region> groups = make_pixel_blocks(film, kBlocksPerGroupSide * side);
+  std::vector<Light> light(groups.size());
   tbb::parallel_for(size_t{0}, light.size(), [&](size_t i) {
     const FlushDenormals flush;
     Counters counters;
-    const std::vector<Region> cells = make_cells(squares[i], side);
-    for (const Region& cell : cells) {
+    const std::vector<Region> blocks = make_pixel_blocks(groups[i], side);
+    for (const Region& block : blocks) {
       if (stop.load(std::memory_order_relaxed)) return;
       WorkUnit unit;
-      unit.tile = pixel_of(cell, settings.seed);
+      unit.tile = pixel_of(block, settings.seed);
       unit.count = kSamples;
-      Frame frame(settings.width, settings.height, unit.tile, channels, components, false);
+      Film frame(settings.width, settings.height, unit.tile, channels, components, false);
       integrator.sample(unit, &frame, &counters, stop);
       add(light_of(frame), &light[i]);
     }
-    for (double& part : light[i]) part /= double(cells.size());
+    for (double& part : light[i]) part /= double(blocks.size());
   });
   return light;
 }
@@ -104,13 +104,13 @@ std::vector<Light> look_at_squares(const Integrator& integrator, const GradusSet
 SmallComponents find_small_components(const Integrator& integrator, const GradusSettings& settings, const ComponentSet& set, int channels,
                                       const std::atomic<bool>& stop) {
   const Region film{0, 0, int32_t(settings.width), int32_t(settings.height)};
-  const std::vector<Light> squares = look_at_squares(integrator, settings, film, set.count(), channels, stop);
+  const std::vector<Light> groups = measure_groups(integrator, settings, film, set.count(), channels, stop);
   SmallComponents small;
   if (stop.load(std::memory_order_relaxed)) return small;  // that was cut short and has found nothing out
-  small.samples = kSamples * uint64_t(make_cells(film, cell_side(film)).size());
-  const double light = typical(squares);
+  small.samples = kSamples * uint64_t(make_pixel_blocks(film, block_side(film)).size());
+  const double light = typical(groups);
   for (int c = 0; c < set.count(); ++c) {
-    if (is_small(squares, size_t(c), light)) small.bits |= 1u << c;
+    if (is_small(groups, size_t(c), light)) small.bits |= 1u << c;
   }
   small.bits &= ~set.residual();
   return small;

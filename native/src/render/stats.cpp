@@ -45,7 +45,7 @@ json shifts(const Counters& c) {
 
 json phases(const PhaseTimes& t) {
   return {{"sample", t.sample}, {"preview", t.preview}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0},
-          {"links", t.links},   {"store", t.store}};
+          {"links", t.correspondence},   {"store", t.store}};
 }
 
 }  // namespace
@@ -60,13 +60,13 @@ void RenderStats::add(const RenderStats& part) {
   }
 }
 
-std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& frame) {
-  const GradusSettings& settings = frame.settings;
+std::string stats_json(const RenderStats& stats, const Plan& plan, const Film& film) {
+  const GradusSettings& settings = film.settings;
   const Region& d = plan.delivered;
   json j;
   j["schema"] = 1;
   j["version"] = gradus_version_text();
-  j["frame"] = frame.frame_number;
+  j["frame"] = film.frame_number;
   j["resolution"] = {settings.width, settings.height};
   j["region"] = {d.x0, d.y0, d.x1, d.y1};
   j["seed"] = settings.seed;
@@ -74,10 +74,10 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["reconstruction"] = choice_name(*find_option("reconstruction"), settings.reconstruction);
   j["denoiser"] = stats.denoiser.empty() ? json(nullptr) : json(stats.denoiser);
   j["unbiased"] = delivers_unbiased(plan, settings.reconstruction, settings.denoiser != GRADUS_DENOISER_NONE);
-  for (const ComponentPlanes& planes : frame.components) j["components"].push_back(planes.name);
-  j["samples"] = mean_samples(frame);
-  j["spp_base"] = mean_samples(frame) - stats.offset_samples;
-  j["spp_offset"] = stats.offset_samples;
+  for (const ComponentPlanes& planes : film.components) j["components"].push_back(planes.name);
+  j["samples"] = mean_samples(film);
+  j["spp_base"] = mean_samples(film) - stats.replayed_samples;
+  j["spp_offset"] = stats.replayed_samples;
   j["stopped"] = stats.stopped;
   j["plan"] = {{"chosen", reasons(plan.chosen, stats.chosen)}, {"skipped", reasons(plan.skipped, stats.skipped)}};
   j["seconds"] = phases(stats.seconds);
@@ -86,18 +86,18 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& 
   j["cpu_seconds"]["total"] = stats.cpu_seconds.total();
   j["process_cpu"] = stats.process_cpu;
   if (stats.threads > 0) j["threads"] = stats.threads;
-  j["rays"] = rays(frame.counters);
-  j["shifts"] = shifts(frame.counters);
-  j["nonfinite_dropped"] = {{"radiance", frame.counters.nonfinite_radiance},
-                            {"gradient", frame.counters.nonfinite_gradient},
-                            {"feature", frame.counters.nonfinite_feature}};
+  j["rays"] = rays(film.counters);
+  j["shifts"] = shifts(film.counters);
+  j["nonfinite_dropped"] = {{"radiance", film.counters.nonfinite_radiance},
+                            {"gradient", film.counters.nonfinite_gradient},
+                            {"feature", film.counters.nonfinite_feature}};
   if (settings.reconstruction != GRADUS_RECONSTRUCTION_NONE) {
     j["solver"] = {{"outer_steps", stats.solve.outer_steps},
                    {"inner_steps", stats.solve.inner_steps},
                    {"residual", stats.solve.residual},
                    {"hit_cap", stats.solve.hit_cap}};
   }
-  j["frame_memory_bytes"] = frame.memory_bytes();
+  j["frame_memory_bytes"] = film.memory_bytes();
   j["peak_memory_bytes"] = peak_memory_bytes();
   j["warnings"] = stats.warnings;
   if (stats.solve.hit_cap) j["warnings"].push_back("the reconstruction stopped at its limit of steps");

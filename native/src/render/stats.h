@@ -15,17 +15,17 @@ struct PhaseTimes {
   double preview = 0.0;  // what a watcher saw meanwhile
   double reconstruct = 0.0;
   double denoise = 0.0;
-  double links = 0.0;  // of a frame of a sequence to the one before
+  double correspondence = 0.0;  // of a frame of a sequence to the one before
   double store = 0.0;  // reading and writing frames
   void add(const PhaseTimes& other) {
     sample += other.sample;
     preview += other.preview;
     reconstruct += other.reconstruct;
     denoise += other.denoise;
-    links += other.links;
+    correspondence += other.correspondence;
     store += other.store;
   }
-  double total() const { return sample + preview + reconstruct + denoise + links + store; }
+  double total() const { return sample + preview + reconstruct + denoise + correspondence + store; }
 };
 
 struct RenderStats {
@@ -40,12 +40,12 @@ struct RenderStats {
   SolveReport solve;
   std::vector<std::string> warnings;
   Reasons chosen, skipped;      // what was decided after the plan, by samples
-  double offset_samples = 0.0;  // per pixel, those that replay the frame before
+  double replayed_samples = 0.0;  // per pixel, those that replay the frame before
 
   // The work of a second part of the frame.
   void add(const RenderStats& part);
 };
 
-std::string stats_json(const RenderStats& stats, const Plan& plan, const Frame& frame);
+std::string stats_json(const RenderStats& stats, const Plan& plan, const Film& film);
 
 }  // namespace gradus

@@ -23,15 +23,15 @@ bool has_pixels(const std::vector<uint8_t>& pixels, const Region& tile, const Re
 }  // namespace
 
 TileSampler::TileSampler(const Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients, AdaptiveSampling* adaptive,
-                         const Replay* replay, const std::atomic<bool>& stop, Frame* frame)
+                         const Replay* replay, const std::atomic<bool>& stop, Film* film)
     : integrator_(integrator),
       tiles_(std::move(tiles)),
       gradients_(gradients),
       adaptive_(adaptive),
       replay_(replay),
       stop_(stop),
-      frame_(frame),
-      first_sample_(frame->settings.first_sample) {}
+      film_(film),
+      first_sample_(film->settings.first_sample) {}
 
 void TileSampler::start_batch(uint32_t begin, uint32_t end) {
   begin_ = begin;
@@ -51,21 +51,21 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   unit.first_sample = first_sample_ + begin_;
   unit.count = end_ - begin_;
   if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
-  if (replay_ != nullptr) unit.sources = &replay_->sources;
+  if (replay_ != nullptr) unit.replay_map = &replay_->replay_map;
   if (replay_ != nullptr && !replay_->counts.empty()) unit.count_map = &replay_->counts;
   const uint64_t cpu = thread_cpu_nanoseconds();
-  const Counters counters = adaptive_ ? sample_cells(unit) : replay_ != nullptr ? sample_replay(unit) : sample(unit);
+  const Counters counters = adaptive_ ? sample_blocks(unit) : replay_ != nullptr ? sample_replay(unit) : sample(unit);
   done_[tile] = 1;
   const bool pause = after_tile(unit.tile, uint64_t(unit.tile.area()) * unit.count);
   cpu_ += thread_cpu_nanoseconds() - cpu;
   const std::lock_guard lock(counters_mutex_);
-  frame_->counters.add(counters);
+  film_->counters.add(counters);
   return pause;
 }
 
 Counters TileSampler::sample(const WorkUnit& unit) {
   Counters counters;
-  integrator_.sample(unit, frame_, &counters, stop_);
+  integrator_.sample(unit, film_, &counters, stop_);
   return counters;
 }
 
@@ -74,10 +74,10 @@ Counters TileSampler::sample_replay(WorkUnit unit) {
   const ComponentReplays& components = replay_->components;
   if (!components.shared.empty()) unit.component_map = &components.shared;
   Counters sum = sample(unit);
-  unit.again = true;
+  unit.adds_components = true;
   for (const ComponentReplay& replay : components.own) {
-    if (!has_pixels(replay.pixels, unit.tile, frame_->region)) continue;
-    unit.sources = &replay.sources;
+    if (!has_pixels(replay.pixels, unit.tile, film_->region)) continue;
+    unit.replay_map = &replay.replay_map;
     unit.pixel_map = &replay.pixels;
     unit.component_map = &replay.components;
     sum.add(sample(unit));
@@ -86,14 +86,14 @@ Counters TileSampler::sample_replay(WorkUnit unit) {
 }
 
 // Cell by cell, so that the cost of each is known.
-Counters TileSampler::sample_cells(WorkUnit unit) {
+Counters TileSampler::sample_blocks(WorkUnit unit) {
   unit.first_map = &adaptive_->batch().first;
   unit.count_map = &adaptive_->batch().count;
   Counters sum;
-  for (const Region& cell : make_cells(unit.tile)) {
-    unit.tile = cell;
+  for (const Region& block : make_pixel_blocks(unit.tile)) {
+    unit.tile = block;
     const Counters counters = sample(unit);
-    adaptive_->add_rays(cell, rays_of(counters));
+    adaptive_->add_rays(block, rays_of(counters));
     sum.add(counters);
   }
   return sum;

@@ -19,7 +19,7 @@ class TileSampler {
   // What it is given lives as long as it. adaptive: nullptr where all pixels take the same samples. replay: nullptr where they are the
   // frame's own.
   TileSampler(const Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients, AdaptiveSampling* adaptive,
-              const Replay* replay, const std::atomic<bool>& stop, Frame* frame);
+              const Replay* replay, const std::atomic<bool>& stop, Film* film);
 
   // Samples [begin, end) of each pixel; in adaptive renders that many on average, as the sharing of these says.
   void start_batch(uint32_t begin, uint32_t end);
@@ -32,7 +32,7 @@ class TileSampler {
 
  private:
   bool sample_tile(size_t tile, const AfterTile& after_tile);
-  Counters sample_cells(WorkUnit unit);
+  Counters sample_blocks(WorkUnit unit);
   Counters sample_replay(WorkUnit unit);
   Counters sample(const WorkUnit& unit);
 
@@ -42,7 +42,7 @@ class TileSampler {
   AdaptiveSampling* const adaptive_;
   const Replay* const replay_;
   const std::atomic<bool>& stop_;
-  Frame* const frame_;
+  Film* const film_;
   const uint32_t first_sample_;
 
   uint32_t begin_ = 0, end_ = 0;

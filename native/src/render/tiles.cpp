@@ -6,8 +6,8 @@ namespace gradus {
 
 int tile_side(const Region& region, unsigned threads) {
   constexpr int64_t kTilesPerThread = 16;
-  const int64_t large = region.area() / (4 * int64_t{kLattice} * kLattice);
-  return large >= kTilesPerThread * int64_t(threads) ? 2 * kLattice : kLattice;
+  const int64_t large = region.area() / (4 * int64_t{kPixelBlockSide} * kPixelBlockSide);
+  return large >= kTilesPerThread * int64_t(threads) ? 2 * kPixelBlockSide : kPixelBlockSide;
 }
 
 }  // namespace gradus

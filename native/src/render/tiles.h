@@ -5,7 +5,7 @@
 
 namespace gradus {
 
-// 32 where there are enough tiles to keep the threads busy, else 16. A multiple of kLattice.
+// 32 where there are enough tiles to keep the threads busy, else 16. A multiple of kPixelBlockSide.
 int tile_side(const Region& region, unsigned threads);
 
 }  // namespace gradus

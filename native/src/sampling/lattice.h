@@ -6,9 +6,9 @@
 
 namespace gradus {
 
-inline constexpr int32_t kLattice = 16;
+inline constexpr int32_t kPixelBlockSide = 16;
 
 // Cell of `side` that holds a coordinate; below 0, too, towards minus infinity.
-inline int32_t lattice_cell(int32_t x, int32_t side = kLattice) { return x >= 0 ? x / side : -((-x + side - 1) / side); }
+inline int32_t pixel_block_of(int32_t x, int32_t side = kPixelBlockSide) { return x >= 0 ? x / side : -((-x + side - 1) / side); }
 
 }  // namespace gradus

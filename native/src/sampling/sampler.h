@@ -5,7 +5,7 @@
 
 namespace gradus {
 
-enum class StreamKind : uint32_t { Pixel = 0, Pilot = 1, LightPath = 2, Chain = 3, Hole = 4, Lattice = 5 };
+enum class StreamKind : uint32_t { Pixel = 0, Pilot = 1, LightPath = 2, Chain = 3, Disocclusion = 4, PixelBlock = 5 };
 
 // Film pixel and scene time are separate from the key on purpose: a temporal offset sample has another film pixel and time but the
 // stream of its base (contract 1.1).

@@ -13,14 +13,14 @@ constexpr uint64_t kMinKeptTriangles = 1u << 18;
 
 using UserCounts = std::unordered_map<const MeshData*, uint64_t>;
 
-bool lies_in_top_level(const InstanceData& instance, const UserCounts& users) {
+bool is_in_top_level(const InstanceData& instance, const UserCounts& users) {
   if (instance.moves()) return false;
   const uint64_t count = users.at(instance.mesh.get());
   return count == 1 || count * instance.mesh->triangle_count <= kMaxCopiedTriangles;
 }
 
 // By what the frame itself tells of those around it: a picture must not depend on what was rendered before.
-bool rests(const InstanceData& instance) {
+bool is_static(const InstanceData& instance) {
   return !instance.moves() && (instance.visibility & GRADUS_MAY_MOVE) == 0 && instance.to_world_previous == instance.to_world &&
          instance.to_world_next == instance.to_world && instance.was_there && instance.will_be_there && instance.mesh->key_times.size() < 2;
 }
@@ -28,17 +28,17 @@ bool rests(const InstanceData& instance) {
 // Embree asks for triangles and for blurred instances one after the other: there a box around all that moves costs rays nothing.
 bool pays_to_split(const std::vector<InstanceData>& instances, const std::vector<bool>& flat) {
   uint64_t kept = 0;
-  bool all_rest = true, blurred = false;
+  bool all_static = true, blurred = false;
   for (size_t i = 0; i < instances.size(); ++i) {
     blurred |= instances[i].moves();
-    all_rest &= rests(instances[i]);
-    if (flat[i] && rests(instances[i])) kept += instances[i].mesh->triangle_count;
+    all_static &= is_static(instances[i]);
+    if (flat[i] && is_static(instances[i])) kept += instances[i].mesh->triangle_count;
   }
-  return !all_rest && (blurred || kept >= kMinKeptTriangles);
+  return !all_static && (blurred || kept >= kMinKeptTriangles);
 }
 
 struct Split {
-  GroupInput resting, moving;
+  GroupInput static_part, moving;
 };
 
 Split split_instances(const AcceleratorInput& input) {
@@ -46,13 +46,13 @@ Split split_instances(const AcceleratorInput& input) {
   UserCounts users;
   for (const InstanceData& instance : instances) ++users[instance.mesh.get()];
   std::vector<bool> flat(instances.size());
-  for (size_t i = 0; i < instances.size(); ++i) flat[i] = lies_in_top_level(instances[i], users);
+  for (size_t i = 0; i < instances.size(); ++i) flat[i] = is_in_top_level(instances[i], users);
   const bool splits = pays_to_split(instances, flat);
   const GroupInput none{&instances, &input.to_internal, {}};
   Split split{none, none};
   for (size_t i = 0; i < instances.size(); ++i)
-    (splits && !rests(instances[i]) ? split.moving : split.resting).members.push_back({uint32_t(i), (*input.masks)[i], flat[i]});
-  if (split.resting.members.empty()) std::swap(split.resting, split.moving);
+    (splits && !is_static(instances[i]) ? split.moving : split.static_part).members.push_back({uint32_t(i), (*input.masks)[i], flat[i]});
+  if (split.static_part.members.empty()) std::swap(split.static_part, split.moving);
   return split;
 }
 
@@ -61,7 +61,7 @@ class Builder {
  public:
   Builder(const EmbreeDevice& device, const Accelerator* before) : device_(device) {
     if (!before) return;
-    for (const Accelerator::Part* part : {&before->resting, &before->moving}) {
+    for (const Accelerator::Part* part : {&before->static_part, &before->moving}) {
       if (!part->group) continue;
       groups_.push_back(part->group);
       for (const auto& scene : part->group->mesh_scenes) mesh_scenes_.emplace(scene->mesh.get(), scene);
@@ -94,15 +94,15 @@ bool same(const Accelerator::Part& a, const Accelerator::Part& b) { return a.gro
 
 std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device, const AcceleratorInput& input,
                                                      const BuildProgress& progress, const std::shared_ptr<const Accelerator>& before) {
-  constexpr float kRestingShare = 0.5f;  // of the progress
+  constexpr float kStaticShare = 0.5f;  // of the progress
   const Split split = split_instances(input);
   Builder builder(device, before.get());
   auto built = std::make_shared<Accelerator>();
   const bool splits = !split.moving.members.empty();
-  const float share = splits ? kRestingShare : 1.0f;
-  built->resting = builder.part(split.resting, [&](float done) { return progress(share * done); });
+  const float share = splits ? kStaticShare : 1.0f;
+  built->static_part = builder.part(split.static_part, [&](float done) { return progress(share * done); });
   if (splits) built->moving = builder.part(split.moving, [&](float done) { return progress(share + (1.0f - share) * done); });
-  if (before && same(before->resting, built->resting) && same(before->moving, built->moving)) return before;
+  if (before && same(before->static_part, built->static_part) && same(before->moving, built->moving)) return before;
   return built;
 }
 

@@ -21,7 +21,7 @@ struct Accelerator {
     std::shared_ptr<const GeometryGroup> group;
     std::vector<uint32_t> instances;  // of the snapshot, for each member of the group
   };
-  Part resting;
+  Part static_part;
   Part moving;  // without a group where nothing moves, or where it would not pay
 };
 

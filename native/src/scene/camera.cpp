@@ -89,15 +89,15 @@ Camera Camera::without_lens() const {
   return pinhole;
 }
 
-Camera Camera::at_rest(float time) const {
-  Camera resting = *this;
-  if (!moves()) return resting;
-  Pose& now = resting.poses_[int(Moment::Now)];
+Camera Camera::frozen_at(float time) const {
+  Camera frozen = *this;
+  if (!moves()) return frozen;
+  Pose& now = frozen.poses_[int(Moment::Now)];
   pose_at(time, &now);
   now.inverse = Mat3(glm::inverse(glm::dmat3(now.axes)));  // as of any camera at rest
-  resting.keys_ = {};
-  resting.windows_.clear();
-  return resting;
+  frozen.keys_ = {};
+  frozen.windows_.clear();
+  return frozen;
 }
 
 Vec2 Camera::lens_point(const Vec2& u) const {
@@ -175,7 +175,7 @@ bool Camera::panorama_plane(const Pose& pose, const Vec3& local, Vec2* point) co
   return true;
 }
 
-Vec2 Camera::way(const Vec2& from, const Vec2& to) const {
+Vec2 Camera::film_displacement(const Vec2& from, const Vec2& to) const {
   Vec2 step = to - from;
   if (is_panorama() && panorama_wraps(desc_)) {
     const auto& w = pose(Moment::Now).window;

@@ -32,14 +32,14 @@ class Camera {
   // Where a direction at infinity appears.
   bool project_direction(const Vec3& direction, Moment when, Vec2* film) const;
   // From where a point appears to where another does, in pixels: the shortest way, where the film comes back to its beginning.
-  Vec2 way(const Vec2& from, const Vec2& to) const;
+  Vec2 film_displacement(const Vec2& from, const Vec2& to) const;
   // Planar distance along the view axis; panorama: distance.
   float depth(const Vec3& world, float time) const;
   bool has_lens() const { return desc_.aperture_radius > 0.0f; }
   // The same, with a point for a lens.
   Camera without_lens() const;
   // The same, held where it is at a time of the shutter.
-  Camera at_rest(float time) const;
+  Camera frozen_at(float time) const;
   bool is_panorama() const { return desc_.type == GRADUS_CAMERA_PANORAMA; }
   // It moves while the shutter is open.
   bool moves() const { return !keys_.empty(); }

@@ -37,7 +37,7 @@ void move_matrix(float* matrix, const Vec3& origin) {
 }
 
 // A camera that is elsewhere in the frame around, and no longer or not yet the same one, is said to be nowhere. Told; and then it rests.
-bool take_out_cut(const GradusCamera& now, float* matrix, float* window) {
+bool remove_shot_change(const GradusCamera& now, float* matrix, float* window) {
   if (std::all_of(matrix, matrix + 16, [](float value) { return is_finite(value); })) return false;
   std::copy_n(now.matrix, 16, matrix);
   std::copy_n(now.window, 4, window);
@@ -47,8 +47,8 @@ bool take_out_cut(const GradusCamera& now, float* matrix, float* window) {
 void place_camera(const Scene::State& state, Snapshot* snapshot) {
   snapshot->has_camera = state.has_camera;
   GradusCamera& camera = snapshot->camera = state.camera;
-  snapshot->cut_before = take_out_cut(camera, camera.matrix_previous, camera.window_previous);
-  snapshot->cut_after = take_out_cut(camera, camera.matrix_next, camera.window_next);
+  snapshot->shot_change_before = remove_shot_change(camera, camera.matrix_previous, camera.window_previous);
+  snapshot->shot_change_after = remove_shot_change(camera, camera.matrix_next, camera.window_next);
   for (float* matrix : {snapshot->camera.matrix, snapshot->camera.matrix_previous, snapshot->camera.matrix_next})
     move_matrix(matrix, snapshot->origin);
   auto keys = std::make_shared<CameraKeys>(state.camera_keys);
@@ -70,47 +70,47 @@ void place_world(const Scene::State& state, const MaterialIndex& indices, Snapsh
   if (state.has_world) snapshot->world_material = index_of(indices, state.world.material, UINT32_MAX);
 }
 
-// A program that emits the same everywhere is folded into the lamp's strength.
-void set_lamp_material(const Snapshot& snapshot, uint32_t material, Lamp* lamp) {
-  lamp->material = material;
+// A program that emits the same everywhere is folded into the light's strength.
+void set_light_material(const Snapshot& snapshot, uint32_t material, AnalyticLight* analytic_light) {
+  analytic_light->material = material;
   if (material == UINT32_MAX || !snapshot.materials[material]->emission_is_constant) return;
-  lamp->intensity *= snapshot.materials[material]->constant_emission;
-  lamp->material = UINT32_MAX;
+  analytic_light->intensity *= snapshot.materials[material]->constant_emission;
+  analytic_light->material = UINT32_MAX;
 }
 
-std::vector<Lamp> place_lamps(const Scene::State& state, const MaterialIndex& indices, Snapshot* snapshot) {
-  std::vector<Lamp> lamps;
+std::vector<AnalyticLight> place_lights(const Scene::State& state, const MaterialIndex& indices, Snapshot* snapshot) {
+  std::vector<AnalyticLight> analytic_lights;
   std::vector<std::string> broken;
   for (const LightSource& light : state.lights) {
-    Lamp lamp;
-    if (!make_lamp(light.desc, snapshot->origin, &lamp)) {
+    AnalyticLight analytic_light;
+    if (!make_analytic_light(light.desc, snapshot->origin, &analytic_light)) {
       if (!is_finite_light(light.desc)) broken.push_back(light.name);
       continue;
     }
-    set_lamp_material(*snapshot, index_of(indices, light.desc.material, UINT32_MAX), &lamp);
-    if (!is_black(lamp.intensity)) lamps.push_back(lamp);
+    set_light_material(*snapshot, index_of(indices, light.desc.material, UINT32_MAX), &analytic_light);
+    if (!is_black(analytic_light.intensity)) analytic_lights.push_back(analytic_light);
   }
   if (!broken.empty())
     snapshot->warnings.push_back(std::to_string(broken.size()) + " lights were left out, the first is '" + broken[0] +
                                  "': their values are not finite");
-  return lamps;
+  return analytic_lights;
 }
 
 void warn_beyond_limit(const InstanceArrays& arrays, const std::vector<size_t>& chosen, Snapshot* snapshot) {
   AffectedObjects objects;
-  for (const uint32_t i : snapshot->emitters->beyond_limit) objects.add(arrays.name(chosen[i]));
+  for (const uint32_t i : snapshot->light_table->beyond_limit) objects.add(arrays.name(chosen[i]));
   objects.warn("is not sampled as a light", "are not sampled as lights", "too many triangles emit light", &snapshot->warnings);
 }
 
-void build_lights(const EmbreeDevice& device, std::vector<Lamp> lamps, const std::vector<size_t>& chosen,
+void build_lights(const EmbreeDevice& device, std::vector<AnalyticLight> analytic_lights, const std::vector<size_t>& chosen,
                   const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
-  const auto lamp_scene = std::make_shared<const LampScene>(device, lamps);
+  const auto light_scene = std::make_shared<const LightScene>(device, analytic_lights);
   SceneFeatures& features = snapshot->features;
-  features.has_lamps_with_extent = std::any_of(lamps.begin(), lamps.end(), [](const Lamp& lamp) { return lamp.found_by_rays(); });
-  auto table = build_emitters(*snapshot, std::move(lamps), &state->world_map, monitor);
-  table->lamps_with_extent = features.has_lamps_with_extent ? lamp_scene : nullptr;
-  features.has_emitters = !table->lamps.empty() || !table->triangles.empty() || !table->world.black();
-  snapshot->emitters = std::move(table);
+  features.has_lights_with_extent = std::any_of(analytic_lights.begin(), analytic_lights.end(), [](const AnalyticLight& analytic_light) { return analytic_light.found_by_rays(); });
+  auto table = build_light_table(*snapshot, std::move(analytic_lights), &state->world_map, monitor);
+  table->lights_with_extent = features.has_lights_with_extent ? light_scene : nullptr;
+  features.has_lights = !table->analytic_lights.empty() || !table->triangles.empty() || !table->world.black();
+  snapshot->light_table = std::move(table);
   warn_beyond_limit(state->instances, chosen, snapshot);
 }
 
@@ -131,17 +131,17 @@ void find_holdouts(Snapshot* snapshot) {
   });
 }
 
-void find_what_shines(Snapshot* snapshot) {
+void find_emission(Snapshot* snapshot) {
   const auto dark = [&](uint32_t m) {
     const MaterialData& material = *snapshot->materials[m];
     return !material.emits && !material.may_be_transparent && !material.uses_fallback;
   };
-  snapshot->features.only_lights_shine = std::all_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const InstanceData& i) {
+  snapshot->features.only_lights_emit = std::all_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const InstanceData& i) {
     return i.materials.empty() ? dark(0) : std::all_of(i.materials.begin(), i.materials.end(), dark);
   });
   const uint32_t world = snapshot->world_material;
   const MaterialData* material = world < snapshot->materials.size() ? snapshot->materials[world].get() : nullptr;
-  snapshot->features.world_shines =
+  snapshot->features.world_emits =
       material != nullptr && material->emits && !(material->emission_is_constant && is_black(material->constant_emission));
 }
 
@@ -169,10 +169,10 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     place_camera(*state_, snapshot.get());
     find_motion(snapshot.get());
     place_world(*state_, materials, snapshot.get());
-    build_lights(device_->embree(), place_lamps(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
+    build_lights(device_->embree(), place_lights(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
     find_holdouts(snapshot.get());
-    find_what_shines(snapshot.get());
+    find_emission(snapshot.get());
   };
   // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.
   device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });

@@ -1,4 +1,4 @@
-// The emitters of a commit: lamps, emissive triangles with their power, the tree.
+// The emitters of a commit: lights, emissive triangles with their power, the tree.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +30,7 @@ bool any_light(const LitScene& scene, const InstanceData& instance) {
                      [&](uint32_t m) { return is_light(scene.materials[m].get()); });
 }
 
-void find_triangles(const LitScene& scene, const CommitMonitor& monitor, EmitterTable* table) {
+void find_triangles(const LitScene& scene, const CommitMonitor& monitor, LightTable* table) {
   std::vector<EmissiveTriangle>& triangles = table->triangles;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     table->first_triangle.push_back(uint32_t(triangles.size()));
@@ -102,42 +102,42 @@ LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& trian
   return b;
 }
 
-std::vector<LightBounds> all_bounds(const LitScene& scene, const EmitterTable& table, const CommitMonitor& monitor) {
+std::vector<LightBounds> all_bounds(const LitScene& scene, const LightTable& table, const CommitMonitor& monitor) {
   std::vector<LightBounds> bounds;
-  for (const uint32_t lamp : table.tree_lamps) bounds.push_back(lamp_bounds(table.lamps[lamp]));
-  const size_t lamps = bounds.size();
-  bounds.resize(lamps + table.triangles.size());
+  for (const uint32_t light : table.tree_lights) bounds.push_back(light_bounds(table.analytic_lights[light]));
+  const size_t analytic_lights = bounds.size();
+  bounds.resize(analytic_lights + table.triangles.size());
   const bool measure = table.triangles.size() <= kMaxMeasured;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, table.triangles.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
-    if (!monitor.go_on()) return;
-    for (size_t i = range.begin(); i < range.end(); ++i) bounds[lamps + i] = triangle_bounds(scene, table.triangles[i], measure);
+    if (!monitor.is_running()) return;
+    for (size_t i = range.begin(); i < range.end(); ++i) bounds[analytic_lights + i] = triangle_bounds(scene, table.triangles[i], measure);
   });
   monitor.check();
   return bounds;
 }
 
-void sort_lamps(EmitterTable* table) {
-  for (uint32_t i = 0; i < table->lamps.size(); ++i) {
-    const Lamp& lamp = table->lamps[i];
-    auto& list = lamp.at_infinity() ? table->suns : table->tree_lamps;
+void sort_lights(LightTable* table) {
+  for (uint32_t i = 0; i < table->analytic_lights.size(); ++i) {
+    const AnalyticLight& light = table->analytic_lights[i];
+    auto& list = light.at_infinity() ? table->suns : table->tree_lights;
     table->slot.push_back(uint32_t(list.size()));
     list.push_back(i);
-    if (!lamp.at_infinity()) continue;
+    if (!light.at_infinity()) continue;
     // Irradiance facing the disk: radiance times its projected solid angle pi sin².
-    const float projected = kPi * lamp.one_minus_cos_sun * (2.0f - lamp.one_minus_cos_sun);
-    table->sun_irradiance.push_back(mean_component(glm::abs(lamp.intensity)) * (lamp.dirac() ? 1.0f : projected));
+    const float projected = kPi * light.one_minus_cos_sun * (2.0f - light.one_minus_cos_sun);
+    table->sun_irradiance.push_back(mean_component(glm::abs(light.intensity)) * (light.dirac() ? 1.0f : projected));
   }
 }
 
 }  // namespace
 
-std::shared_ptr<EmitterTable> build_emitters(const LitScene& scene, std::vector<Lamp> lamps, WorldMap* world,
+std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector<AnalyticLight> analytic_lights, WorldMap* world,
                                              const CommitMonitor& monitor) {
-  auto table = std::make_shared<EmitterTable>();
-  table->lamps = std::move(lamps);
-  sort_lamps(table.get());
+  auto table = std::make_shared<LightTable>();
+  table->analytic_lights = std::move(analytic_lights);
+  sort_lights(table.get());
   find_triangles(scene, monitor, table.get());
-  table->tree.build(all_bounds(scene, *table, monitor), [&] { return !monitor.go_on(); });
+  table->tree.build(all_bounds(scene, *table, monitor), [&] { return !monitor.is_running(); });
   monitor.check();
   table->world = build_world(scene, world, monitor);
   return table;

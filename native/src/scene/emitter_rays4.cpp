@@ -2,9 +2,9 @@
 
 namespace gradus {
 
-Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to) {
+Rays4 rays_to_light(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const LightPoint& to) {
   if (to.at_infinity()) return {start, direction, same(kInfinity), from.time};
-  if (to.kind == EmitterKind::Triangle) {
+  if (to.kind == LightKind::Triangle) {
     const Points4 end{same(to.position), same(to.normal), same(to.error), from.time};
     return rays_between(start, offset_origins(end, -direction), direction, from.time);
   }

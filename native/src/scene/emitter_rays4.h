@@ -6,7 +6,7 @@
 
 namespace gradus {
 
-// ray_to_emitter() from each of four points. direction and distance: of the emitter point, as seen from each.
-Rays4 rays_to_emitter(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const EmitterPoint& to);
+// ray_to_light() from each of four points. direction and distance: of the emitter point, as seen from each.
+Rays4 rays_to_light(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const LightPoint& to);
 
 }  // namespace gradus

@@ -16,7 +16,7 @@ constexpr uint32_t kMinWidth = 16, kMaxWidth = 4096;
 // At most this part of the samples goes to suns: what lies in their shadow has the rest for the sky, but gets most of its noise from
 // surfaces in the sun. Measured for a block on a floor, sun at 35°: variance in the shade 1.34 at a half, 0.88 at 3/4, 0.73 at 7/8, 0.70 at
 // 15/16.
-constexpr double kMostForSuns = 0.875;
+constexpr double kMaxSunShare = 0.875;
 // Parts are whole eighths: a net's points fall on both sides in just these numbers.
 constexpr double kParts = 8.0;
 // Suns that give less than this part of the world's light are left to the map.
@@ -40,7 +40,7 @@ float measure_at(const Environment::Radiance& radiance, const Vec2& p) {
 }
 
 // Mean channel of the radiance in each cell. Returns false when stopped.
-bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const CancelTest& cancel, std::vector<float>* out) {
+bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const CancelCheck& cancel, std::vector<float>* out) {
   const uint32_t height = width / 2;
   const float step = 1.0f / float(points);
   out->assign(size_t(width) * height, 0.0f);
@@ -137,7 +137,7 @@ Environment Environment::uniform(float mean) {
   return world;
 }
 
-void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelTest& cancel) {
+void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelCheck& cancel) {
   *this = Environment();
   std::vector<Cone> cones;
   for (const Cone& cone : suns) {
@@ -162,7 +162,7 @@ double Environment::share_of_suns(const Receiver& receiver, double* sum) const {
   *sum = 0.0;
   for (const Sun& sun : suns_) *sum += sun_weight(sun, receiver);
   if (!(*sum > 0.0)) return 0.0;
-  const double part = std::min(*sum / (*sum + mean_ * kPi), kMostForSuns);
+  const double part = std::min(*sum / (*sum + mean_ * kPi), kMaxSunShare);
   return part > 0.5 / kParts ? std::round(part * kParts) / kParts : part;
 }
 

@@ -30,7 +30,7 @@ class Environment {
   static Environment uniform(float mean);
   // suns: cones that hold little but a sun each; those that shine no more than what lies beside them are left to the map. cancel is polled.
   // Without a map where the radiance turns out to be constant. black(): there is nothing to sample.
-  void build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelTest& cancel);
+  void build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelCheck& cancel);
   bool black() const { return mean_ <= 0.0f && suns_.empty(); }
   // Mean over the sphere of the mean channel, without the suns.
   float mean() const { return mean_; }

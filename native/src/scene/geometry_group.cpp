@@ -74,7 +74,7 @@ std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device, co
   built->mesh = mesh;
   built->scene = rtcNewScene(device.get());
   const bool deforms = mesh->shutter_keys > 0;
-  attach_triangles(device.get(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->rest_positions(),
+  attach_triangles(device.get(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->frame_positions(),
                    deforms ? mesh->shutter_keys : 1);
   commit_scene(device.get(), built->scene, progress, at, at);
   return built;
@@ -83,7 +83,7 @@ std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device, co
 // In double: a mesh that lies far from its own origin may be brought back by its matrix.
 std::unique_ptr<std::vector<Vec3>> transform_positions(const MeshData& mesh, const glm::dmat4& m) {
   auto out = std::make_unique<std::vector<Vec3>>(size_t(mesh.vertex_count) + 1);
-  const Vec3* in = mesh.rest_positions();
+  const Vec3* in = mesh.frame_positions();
   tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count, 1 << 14), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) (*out)[i] = Vec3(m * glm::dvec4(glm::dvec3(in[i]), 1.0));
   });

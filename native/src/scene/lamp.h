@@ -1,4 +1,4 @@
-// Lamps: lights that are not surfaces. Units as in gradus.h, strengths as in Cycles.
+// Lights: lights that are not surfaces. Units as in gradus.h, strengths as in Cycles.
 #pragma once
 
 #include "base/types.h"
@@ -9,7 +9,7 @@
 namespace gradus {
 
 // In the snapshot's internal space, with what sampling needs worked out.
-struct Lamp {
+struct AnalyticLight {
   enum class Shape : uint8_t { Point, Sphere, FacingDisk, Rectangle, Ellipse, Direction, Cone };
 
   Shape shape = Shape::Point;
@@ -24,7 +24,7 @@ struct Lamp {
   Vec3 position{0.0f};
   Vec3 axis_x{1, 0, 0};
   Vec3 axis_y{0, 1, 0};
-  Vec3 shine{0, 0, -1};  // where it shines to
+  Vec3 emission_direction{0, 0, -1};  // where it shines to
   Rgb intensity{0.0f};   // point: W/sr; direction: W/m2; all with extent: radiance
   float radius = 0.0f;
   float half_width = 0.0f, half_height = 0.0f;
@@ -42,17 +42,17 @@ struct Lamp {
 
 bool is_finite_light(const GradusLight& desc);
 // False: it cannot shine (non-finite values, no strength, no area).
-bool make_lamp(const GradusLight& desc, const Vec3& origin, Lamp* lamp);
-// Of lamps that are not at infinity.
-LightBounds lamp_bounds(const Lamp& lamp);
+bool make_analytic_light(const GradusLight& desc, const Vec3& origin, AnalyticLight* light);
+// Of lights that are not at infinity.
+LightBounds light_bounds(const AnalyticLight& light);
 
-// A point of the lamp as sampled from `from`, written to a fresh one; false: it does not shine there. solid_angle: see view_lamp().
-bool sample_lamp(const Lamp& lamp, const Vec3& from, const Vec2& u, EmitterPoint* point, float* solid_angle);
-// Direction, distance, cosine, radiance (material left out), and the density of sample_lamp() in solid angle (1 if Dirac).
-// solid_angle: what sample_lamp() found from there, so that it need not be found again; 0: the lamp is sampled in another way.
+// A point of the light as sampled from `from`, written to a fresh one; false: it does not shine there. solid_angle: see evaluate_analytic_light().
+bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point, float* solid_angle);
+// Direction, distance, cosine, radiance (material left out), and the density of sample_analytic_light() in solid angle (1 if Dirac).
+// solid_angle: what sample_analytic_light() found from there, so that it need not be found again; 0: the light is sampled in another way.
 // view: a fresh one.
-void view_lamp(const Lamp& lamp, const EmitterPoint& point, const Vec3& from, const float* solid_angle, EmitterView* view);
-// Where a ray crosses a lamp with extent; false: nowhere between t_min and t_max.
-bool intersect_lamp(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance);
+void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point, const Vec3& from, const float* solid_angle, LightEvaluation* view);
+// Where a ray crosses a light with extent; false: nowhere between t_min and t_max.
+bool intersect_light(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance);
 
 }  // namespace gradus

@@ -1,4 +1,4 @@
-// Rays against lamps with extent.
+// Rays against lights with extent.
 #include <algorithm>
 #include <cmath>
 
@@ -14,17 +14,17 @@ namespace {
 
 bool within(const Ray& ray, float t) { return t > ray.t_min && t < ray.t_max; }
 
-bool hit_sphere(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  const Vec3 to_centre = lamp.position - ray.origin;
+bool hit_sphere(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
+  const Vec3 to_centre = light.position - ray.origin;
   const float middle = glm::dot(to_centre, ray.direction);
   const Vec3 closest = to_centre - ray.direction * middle;
-  const float rest = lamp.radius * lamp.radius - glm::dot(closest, closest);
+  const float rest = light.radius * light.radius - glm::dot(closest, closest);
   if (!(rest >= 0.0f)) return false;
-  const bool inside = glm::dot(to_centre, to_centre) < lamp.radius * lamp.radius;
+  const bool inside = glm::dot(to_centre, to_centre) < light.radius * light.radius;
   *distance = inside ? middle + std::sqrt(rest) : middle - std::sqrt(rest);
   if (!within(ray, *distance)) return false;
   point->normal = glm::normalize(ray.direction * *distance - to_centre);
-  point->position = lamp.position + point->normal * lamp.radius;
+  point->position = light.position + point->normal * light.radius;
   return true;
 }
 
@@ -37,40 +37,40 @@ bool hit_plane(const Ray& ray, const Vec3& position, const Vec3& normal, float* 
   return true;
 }
 
-bool hit_facing_disk(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  const Vec3 to_origin = ray.origin - lamp.position;
+bool hit_facing_disk(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
+  const Vec3 to_origin = ray.origin - light.position;
   const float length = glm::length(to_origin);
   if (!(length > 0.0f)) return false;
   point->normal = to_origin / length;
   Vec3 offset, x, y;
-  if (!hit_plane(ray, lamp.position, point->normal, distance, &offset)) return false;
+  if (!hit_plane(ray, light.position, point->normal, distance, &offset)) return false;
   orthonormal_basis(point->normal, &x, &y);
-  point->barycentric = Vec2(glm::dot(offset, x), glm::dot(offset, y)) / lamp.radius;
-  point->position = lamp.position + offset;
+  point->barycentric = Vec2(glm::dot(offset, x), glm::dot(offset, y)) / light.radius;
+  point->position = light.position + offset;
   return glm::dot(point->barycentric, point->barycentric) <= 1.0f;
 }
 
-bool within_ellipse(const Lamp& lamp, float x, float y) {
-  const float u = x / lamp.half_width, v = y / lamp.half_height;
+bool within_ellipse(const AnalyticLight& light, float x, float y) {
+  const float u = x / light.half_width, v = y / light.half_height;
   return u * u + v * v <= 1.0f;
 }
 
-// One test at the end: on which side a ray passes the lamp cannot be foretold, that it misses nearly always can.
-bool hit_flat(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  const float cosine = glm::dot(ray.direction, lamp.shine);
-  *distance = glm::dot(lamp.position - ray.origin, lamp.shine) / cosine;
-  const Vec3 offset = ray.origin + ray.direction * *distance - lamp.position;
-  const float x = glm::dot(offset, lamp.axis_x), y = glm::dot(offset, lamp.axis_y);
-  const bool inside = lamp.shape == Lamp::Shape::Ellipse ? within_ellipse(lamp, x, y)
-                                                         : int(std::fabs(x) <= lamp.half_width) & int(std::fabs(y) <= lamp.half_height);
+// One test at the end: on which side a ray passes the light cannot be foretold, that it misses nearly always can.
+bool hit_flat(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
+  const float cosine = glm::dot(ray.direction, light.emission_direction);
+  *distance = glm::dot(light.position - ray.origin, light.emission_direction) / cosine;
+  const Vec3 offset = ray.origin + ray.direction * *distance - light.position;
+  const float x = glm::dot(offset, light.axis_x), y = glm::dot(offset, light.axis_y);
+  const bool inside = light.shape == AnalyticLight::Shape::Ellipse ? within_ellipse(light, x, y)
+                                                         : int(std::fabs(x) <= light.half_width) & int(std::fabs(y) <= light.half_height);
   if (!(int(cosine < 0.0f) & int(*distance > ray.t_min) & int(*distance < ray.t_max) & int(inside))) return false;
-  point->normal = lamp.shine;
-  point->position = lamp.position + offset;
+  point->normal = light.emission_direction;
+  point->position = light.position + offset;
   return true;
 }
 
-bool hit_cone(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  if (ray.t_max != kInfinity || !Cone{-lamp.shine, lamp.one_minus_cos_sun}.contains(ray.direction)) return false;
+bool hit_cone(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
+  if (ray.t_max != kInfinity || !Cone{-light.emission_direction, light.one_minus_cos_sun}.contains(ray.direction)) return false;
   point->direction = ray.direction;
   *distance = kInfinity;
   return true;
@@ -78,29 +78,29 @@ bool hit_cone(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* dist
 
 }  // namespace
 
-bool intersect_lamp(const Lamp& lamp, const Ray& ray, EmitterPoint* point, float* distance) {
-  point->kind = EmitterKind::Lamp;
-  switch (lamp.shape) {
-    case Lamp::Shape::Sphere:
-      return hit_sphere(lamp, ray, point, distance);
-    case Lamp::Shape::FacingDisk:
-      return hit_facing_disk(lamp, ray, point, distance);
-    case Lamp::Shape::Rectangle:
-    case Lamp::Shape::Ellipse:
-      return hit_flat(lamp, ray, point, distance);
-    case Lamp::Shape::Cone:
-      return hit_cone(lamp, ray, point, distance);
-    case Lamp::Shape::Point:
-    case Lamp::Shape::Direction:
+bool intersect_light(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
+  point->kind = LightKind::AnalyticLight;
+  switch (light.shape) {
+    case AnalyticLight::Shape::Sphere:
+      return hit_sphere(light, ray, point, distance);
+    case AnalyticLight::Shape::FacingDisk:
+      return hit_facing_disk(light, ray, point, distance);
+    case AnalyticLight::Shape::Rectangle:
+    case AnalyticLight::Shape::Ellipse:
+      return hit_flat(light, ray, point, distance);
+    case AnalyticLight::Shape::Cone:
+      return hit_cone(light, ray, point, distance);
+    case AnalyticLight::Shape::Point:
+    case AnalyticLight::Shape::Direction:
       break;
   }
   return false;
 }
 
-void intersect_lamps(const LitScene& scene, const Ray& ray, std::vector<LampHit>* hits) {
+void intersect_lights(const LitScene& scene, const Ray& ray, std::vector<LightHit>* hits) {
   hits->clear();
-  const LampScene* lamps = scene.emitters->lamps_with_extent.get();
-  if (lamps) lamps->intersect(scene.emitters->lamps, ray, hits);
+  const LightScene* analytic_lights = scene.light_table->lights_with_extent.get();
+  if (analytic_lights) analytic_lights->intersect(scene.light_table->analytic_lights, ray, hits);
 }
 
 }  // namespace gradus

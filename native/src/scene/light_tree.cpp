@@ -44,9 +44,9 @@ float LightTree::importance(const Node& node, const Receiver& receiver) {
   const float sin_w = sine(cos_w), sin_o = sine(node.cos_normals);
   const float cos_x = cos_difference(sin_w, cos_w, sin_o, node.cos_normals);
   const float sin_x = sin_difference(sin_w, cos_w, sin_o, node.cos_normals);
-  const float cos_emitter = cos_difference(sin_x, cos_x, sin_b, cos_b);
-  if (cos_emitter <= node.cos_emission) return 0.0f;
-  return node.power * std::max(cos_emitter, 0.0f) * at_receiver / distance2;
+  const float cos_light = cos_difference(sin_x, cos_x, sin_b, cos_b);
+  if (cos_light <= node.cos_emission) return 0.0f;
+  return node.power * std::max(cos_light, 0.0f) * at_receiver / distance2;
 }
 
 // Where neither child seems to reach the receiver, by power: the sample will be black, but the probabilities still sum to one.
@@ -74,12 +74,12 @@ void LightTree::refine(const Receiver& receiver, Cut* cut) const {
   while (found) {
     found = false;
     for (int i = 0, count = cut->count_; i < count; ++i) {
-      Cut::Part& part = cut->parts_[size_t(i)];
-      const Node& node = nodes_[part.node];
+      Cut::CutNode& cut_node = cut->cut_nodes_[size_t(i)];
+      const Node& node = nodes_[cut_node.node];
       if (!is_near(node, receiver)) continue;
-      if (cut->count_ == Cut::kMost) return;
-      cut->parts_[size_t(cut->count_++)] = {node.child + 1, part.depth + 1, part.trail | (uint64_t(1) << part.depth), 0.0f};
-      part = {node.child, part.depth + 1, part.trail, 0.0f};
+      if (cut->count_ == Cut::kMax) return;
+      cut->cut_nodes_[size_t(cut->count_++)] = {node.child + 1, cut_node.depth + 1, cut_node.trail | (uint64_t(1) << cut_node.depth), 0.0f};
+      cut_node = {node.child, cut_node.depth + 1, cut_node.trail, 0.0f};
       found = true;
     }
   }
@@ -90,17 +90,17 @@ bool LightTree::weigh(const Receiver& receiver, Cut* cut) const {
   int count = 0;
   double sum = 0.0;
   for (int i = 0; i < cut->count_; ++i) {
-    Cut::Part part = cut->parts_[size_t(i)];
-    part.weight = importance(nodes_[part.node], receiver);
-    if (!(part.weight > 0.0f)) continue;
-    sum += double(part.weight);
-    cut->parts_[size_t(count++)] = part;
+    Cut::CutNode cut_node = cut->cut_nodes_[size_t(i)];
+    cut_node.weight = importance(nodes_[cut_node.node], receiver);
+    if (!(cut_node.weight > 0.0f)) continue;
+    sum += double(cut_node.weight);
+    cut->cut_nodes_[size_t(count++)] = cut_node;
   }
   cut->count_ = count;
   if (count == 0 || !std::isfinite(sum)) return false;
   const auto share = float(kDefensive * sum / count);
   for (int i = 0; i < count; ++i) {
-    float& weight = cut->parts_[size_t(i)].weight;
+    float& weight = cut->cut_nodes_[size_t(i)].weight;
     weight = (1.0f - float(kDefensive)) * weight + share;
     cut->sum_ += double(weight);
   }
@@ -111,24 +111,24 @@ void LightTree::cut(const Receiver& receiver, Cut* cut) const {
   cut->count_ = 0;
   cut->sum_ = 0.0;
   if (nodes_.empty()) return;
-  const Cut::Part root{0, 0, 0, 1.0f};
-  cut->parts_[0] = root;
+  const Cut::CutNode root{0, 0, 0, 1.0f};
+  cut->cut_nodes_[0] = root;
   cut->count_ = 1;
   refine(receiver, cut);
   if (weigh(receiver, cut)) return;
   // All of the tree then; that the sum is 0 tells.
-  cut->parts_[0] = root;
+  cut->cut_nodes_[0] = root;
   cut->count_ = 1;
 }
 
 uint32_t LightTree::sample(const Receiver& receiver, const Cut& cut, double u, double* probability) const {
   double x = u * cut.total();
   int i = 0;
-  for (; i + 1 < cut.count_ && x >= double(cut.parts_[size_t(i)].weight); ++i) x -= double(cut.parts_[size_t(i)].weight);
-  const double weight = double(cut.parts_[size_t(i)].weight);
+  for (; i + 1 < cut.count_ && x >= double(cut.cut_nodes_[size_t(i)].weight); ++i) x -= double(cut.cut_nodes_[size_t(i)].weight);
+  const double weight = double(cut.cut_nodes_[size_t(i)].weight);
   u = std::min(x / weight, 1.0 - 1e-12);
   *probability = weight / cut.total();
-  const Node* node = &nodes_[cut.parts_[size_t(i)].node];
+  const Node* node = &nodes_[cut.cut_nodes_[size_t(i)].node];
   while (!(node->child & kLeaf)) {
     const double p = first_probability(*node, receiver);
     const bool first = u < p;
@@ -142,13 +142,13 @@ uint32_t LightTree::sample(const Receiver& receiver, const Cut& cut, double u, d
 
 double LightTree::probability(uint32_t light, const Receiver& receiver, const Cut& cut) const {
   const uint64_t trail = trails_[light];
-  const auto holds = [&](const Cut::Part& part) { return ((trail ^ part.trail) & ((uint64_t(1) << part.depth) - 1)) == 0; };
-  const auto end = cut.parts_.begin() + cut.count_;
-  const auto part = std::find_if(cut.parts_.begin(), end, holds);
-  if (part == end) return 0.0;
-  double product = double(part->weight) / cut.total();
-  const Node* node = &nodes_[part->node];
-  for (uint64_t rest = trail >> part->depth; !(node->child & kLeaf); rest >>= 1) {
+  const auto holds = [&](const Cut::CutNode& cut_node) { return ((trail ^ cut_node.trail) & ((uint64_t(1) << cut_node.depth) - 1)) == 0; };
+  const auto end = cut.cut_nodes_.begin() + cut.count_;
+  const auto cut_node = std::find_if(cut.cut_nodes_.begin(), end, holds);
+  if (cut_node == end) return 0.0;
+  double product = double(cut_node->weight) / cut.total();
+  const Node* node = &nodes_[cut_node->node];
+  for (uint64_t rest = trail >> cut_node->depth; !(node->child & kLeaf); rest >>= 1) {
     const double p = first_probability(*node, receiver);
     product *= rest & 1 ? 1.0 - p : p;
     node = &nodes_[node->child + (rest & 1)];

@@ -29,7 +29,7 @@ struct LightBounds {
 class LightTree {
  public:
   // cancel is polled; true: the tree is left unfinished.
-  void build(const std::vector<LightBounds>& lights, const CancelTest& cancel);
+  void build(const std::vector<LightBounds>& lights, const CancelCheck& cancel);
   bool empty() const { return nodes_.empty(); }
   size_t size() const { return trails_.size(); }
 
@@ -41,18 +41,18 @@ class LightTree {
 
    private:
     friend class LightTree;
-    // Relative variance of the choice among 10,000 lamps over a plane: 0.72 with 32, 0.21 with 48 (before kDefensive), 7.7 without a cut.
-    static constexpr int kMost = 48;
-    struct Part {
+    // Relative variance of the choice among 10,000 lights over a plane: 0.72 with 32, 0.21 with 48 (before kDefensive), 7.7 without a cut.
+    static constexpr int kMax = 48;
+    struct CutNode {
       uint32_t node;
       uint32_t depth;
       uint64_t trail;  // from the root, as in trails_
       float weight;
     };
     // By which weights become probabilities.
-    double total() const { return sum_ > 0.0 ? sum_ : double(parts_[0].weight); }
+    double total() const { return sum_ > 0.0 ? sum_ : double(cut_nodes_[0].weight); }
 
-    std::array<Part, kMost> parts_;
+    std::array<CutNode, kMax> cut_nodes_;
     int count_ = 0;
     double sum_ = 0.0;  // of the weights; 0: one part stands for a tree that cannot reach the receiver
   };

@@ -18,7 +18,7 @@ struct LightTree::Builder {
 
   LightTree* tree;
   const std::vector<LightBounds>& lights;
-  const CancelTest& cancel;
+  const CancelCheck& cancel;
   std::vector<uint32_t> order;
   std::atomic<uint32_t> next{1};  // node not yet used
   std::atomic<bool> stopped{false};
@@ -126,7 +126,7 @@ struct LightTree::Builder {
   }
 };
 
-void LightTree::build(const std::vector<LightBounds>& lights, const CancelTest& cancel) {
+void LightTree::build(const std::vector<LightBounds>& lights, const CancelCheck& cancel) {
   nodes_.clear();
   trails_.assign(lights.size(), 0);
   if (lights.empty()) return;

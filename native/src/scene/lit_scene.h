@@ -7,12 +7,12 @@
 
 namespace gradus {
 
-struct EmitterTable;  // scene/emitter_table.h: analytic lights, emissive triangles, environment distribution, their choice
+struct LightTable;  // scene/emitter_table.h: analytic lights, emissive triangles, environment distribution, their choice
 
 // A shaded scene with its emitters. Functions that sample or evaluate light take this part of a snapshot.
 class LitScene : public ShadedScene {
  public:
-  std::shared_ptr<const EmitterTable> emitters;
+  std::shared_ptr<const LightTable> light_table;
 };
 
 }  // namespace gradus

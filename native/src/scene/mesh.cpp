@@ -34,7 +34,7 @@ Vec3 turned_with_vertex(const MeshData& mesh, uint32_t vertex, float time, const
 
 }  // namespace
 
-std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle) { return positions_of_key(mesh, triangle, mesh.rest_key); }
+std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle) { return positions_of_key(mesh, triangle, mesh.frame_key); }
 
 MeshMoment mesh_moment(const MeshData& mesh, float time) {
   const auto& times = mesh.key_times;

@@ -27,7 +27,7 @@ struct MeshData {
   uint32_t vertex_count = 0;
   uint32_t triangle_count = 0;
   std::vector<float> key_times;             // one per key, ascending
-  uint32_t rest_key = 0;                    // the key at time 0 (or nearest to it): what is rendered
+  uint32_t frame_key = 0;                    // the key at time 0 (or nearest to it): what is rendered
   std::vector<Vec3> positions;              // key after key, and one element of padding (Embree reads 16 bytes)
   uint32_t shutter_keys = 0;                // evenly over the time that the shutter is open; 0: stands still then
   std::vector<Vec3> shutter_positions;      // key after key, padded likewise
@@ -48,7 +48,7 @@ struct MeshData {
   uint64_t content_hash = 0;
   uint64_t topology_hash = 0;  // of vertex count and triangles: equal where a triangle of one frame is that of another
 
-  const Vec3* rest_positions() const { return positions.data() + size_t(rest_key) * vertex_count; }
+  const Vec3* frame_positions() const { return positions.data() + size_t(frame_key) * vertex_count; }
   bool is_dropped(uint32_t triangle) const { return triangle_vertices[size_t(triangle) * 3] == kDroppedVertex; }
   uint32_t face(uint32_t triangle) const { return triangle_faces.empty() ? triangle : triangle_faces[triangle]; }
   uint32_t material_slot(uint32_t triangle) const { return face_materials.empty() ? 0 : face_materials[face(triangle)]; }

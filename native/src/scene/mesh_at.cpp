@@ -19,7 +19,7 @@ std::vector<Vec3> positions_at(const MeshData& mesh, float frames) {
 
 void turn_normals(const MeshData& from, MeshData* mesh) {
   if (mesh->normals.empty() || mesh->normal_domain == GRADUS_DOMAIN_FACE) return;
-  const std::vector<Vec3> rest = smooth_normals(from, from.rest_positions()), now = smooth_normals(*mesh, mesh->positions.data());
+  const std::vector<Vec3> rest = smooth_normals(from, from.frame_positions()), now = smooth_normals(*mesh, mesh->positions.data());
   const bool by_vertex = mesh->normal_domain == GRADUS_DOMAIN_POINT;
   std::vector<bool> done(mesh->normals.size());
   for (size_t i = 0; i < mesh->triangle_vertices.size(); ++i) {
@@ -48,11 +48,11 @@ std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames) {
   auto moved = std::make_shared<MeshData>(mesh);
   moved->positions = positions_at(mesh, frames);
   moved->key_times = {0.0f};
-  moved->rest_key = 0;
+  moved->frame_key = 0;
   moved->shutter_keys = 0;
   moved->shutter_positions.clear();
   moved->shutter_normals.clear();
-  if (moved->generated_points.empty()) moved->generated_points.assign(mesh.rest_positions(), mesh.rest_positions() + mesh.vertex_count);
+  if (moved->generated_points.empty()) moved->generated_points.assign(mesh.frame_positions(), mesh.frame_positions() + mesh.vertex_count);
   turn_normals(mesh, moved.get());
   find_bounds(moved.get());
   ContentHash hash;

@@ -56,7 +56,7 @@ void copy_keys(const GradusMesh& m, const Check& check, MeshData* out) {
   for (uint32_t k = 0; m.key_times && k < m.key_count; ++k) {
     out->key_times[k] = m.key_times[k];
     check.that(is_finite(m.key_times[k]) && (k == 0 || m.key_times[k] > m.key_times[k - 1]), "key_times do not ascend");
-    if (std::fabs(m.key_times[k]) < std::fabs(out->key_times[out->rest_key])) out->rest_key = k;
+    if (std::fabs(m.key_times[k]) < std::fabs(out->key_times[out->frame_key])) out->frame_key = k;
   }
   out->positions.resize(m.vertex_count * m.key_count + 1);
   if (m.vertex_count) std::memcpy(out->positions.data(), m.positions, m.vertex_count * m.key_count * sizeof(Vec3));
@@ -72,7 +72,7 @@ void copy_shutter_keys(const GradusMesh& m, MeshData* out) {
 // After the triangles: the normals are theirs.
 void add_shutter_normals(MeshData* mesh) {
   if (mesh->shutter_keys == 0 || mesh->normals.empty()) return;
-  mesh->shutter_normals = smooth_normals(*mesh, mesh->rest_positions());
+  mesh->shutter_normals = smooth_normals(*mesh, mesh->frame_positions());
   for (size_t k = 0; k < mesh->shutter_keys; ++k) {
     const std::vector<Vec3> normals = smooth_normals(*mesh, mesh->shutter_positions.data() + k * mesh->vertex_count);
     mesh->shutter_normals.insert(mesh->shutter_normals.end(), normals.begin(), normals.end());
@@ -110,7 +110,7 @@ void drop_unusable(MeshData* mesh) {
   for (uint32_t i = 0; i < mesh->vertex_count; ++i) good[i] = usable_in_all_keys(*mesh, i);
   mesh->lower = Vec3(kInfinity);
   mesh->upper = Vec3(-kInfinity);
-  const Vec3* p = mesh->rest_positions();
+  const Vec3* p = mesh->frame_positions();
   for (size_t t = 0; t < mesh->triangle_count; ++t) {
     uint32_t* v = mesh->triangle_vertices.data() + t * 3;
     if (!good[v[0]] || !good[v[1]] || !good[v[2]]) {
@@ -143,7 +143,7 @@ std::vector<float> copy_finite(const float* data, size_t count) {
 void fill_smooth_corners(const GradusMesh& m, MeshData* out) {
   const auto first = std::find(out->normals.begin(), out->normals.end(), Vec3(0.0f));
   if (first == out->normals.end()) return;
-  const std::vector<Vec3> smooth = smooth_normals(*out, out->rest_positions());
+  const std::vector<Vec3> smooth = smooth_normals(*out, out->frame_positions());
   for (size_t corner = size_t(first - out->normals.begin()); corner < out->normals.size(); ++corner) {
     if (out->normals[corner] == Vec3(0.0f)) out->normals[corner] = smooth[size_t(m.corner_vertices[corner])];
   }
@@ -151,7 +151,7 @@ void fill_smooth_corners(const GradusMesh& m, MeshData* out) {
 
 void copy_normals(const GradusMesh& m, MeshData* out) {
   out->normal_domain = GradusDomain(m.normal_domain);
-  if (!m.normals && m.normal_domain == GRADUS_DOMAIN_POINT) out->normals = smooth_normals(*out, out->rest_positions());
+  if (!m.normals && m.normal_domain == GRADUS_DOMAIN_POINT) out->normals = smooth_normals(*out, out->frame_positions());
   if (!m.normals || m.normal_domain == GRADUS_DOMAIN_FACE) return;
   const size_t count = domain_size(m, m.normal_domain);
   const std::vector<float> values = copy_finite(m.normals, count * 3);

@@ -75,16 +75,16 @@ void move_camera(const Step& step, GradusCamera* camera) {
 
 }  // namespace
 
-std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment when, const CancelTest& is_cancelled, float share) {
+std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment when, const CancelCheck& is_cancelled, float share) {
   const Step step{when, share};
   auto moved = std::make_shared<Snapshot>(snapshot);
   moved->features.has_motion = false;
-  moved->is_other_shot = step.is_next() ? snapshot.cut_after : snapshot.cut_before;
+  moved->is_other_shot = step.is_next() ? snapshot.shot_change_after : snapshot.shot_change_before;
   move_camera(step, &moved->camera);
   if (!move_instances(step, moved.get())) return moved;
   add_tangents(&snapshot, moved.get());
   const auto exact = [&](size_t i) { return glm::dmat4(moved->instances[i].to_world); };
-  const EmbreeDevice& device = snapshot.accelerator->resting.group->device;
+  const EmbreeDevice& device = snapshot.accelerator->static_part.group->device;
   build_geometry(
       device, exact, [&](float) { return !is_cancelled(); }, snapshot.accelerator, moved.get());
   return moved;

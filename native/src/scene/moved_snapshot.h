@@ -12,6 +12,6 @@ namespace gradus {
 // What does not move is shared. share: of the way there; vertices go straight, objects and the camera as while the shutter is open. Throws
 // Error CANCELLED or OUT_OF_MEMORY.
 std::shared_ptr<const Snapshot> moved_snapshot(
-    const Snapshot& snapshot, Moment when, const CancelTest& is_cancelled = [] { return false; }, float share = 1.0f);
+    const Snapshot& snapshot, Moment when, const CancelCheck& is_cancelled = [] { return false; }, float share = 1.0f);
 
 }  // namespace gradus

@@ -20,7 +20,7 @@
 
 namespace gradus {
 
-// A lamp as set; the pointers of `desc` are null.
+// A light as set; the pointers of `desc` are null.
 struct LightSource {
   GradusLight desc{};
   std::string name;

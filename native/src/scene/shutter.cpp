@@ -17,8 +17,8 @@ Shutter::Shutter(const GradusCamera& desc) {
     curve_.push_back(is_finite(value) ? std::max(value, 0.0f) : 0.0f);
   }
   // Its scale says nothing, and squares must not overflow.
-  const float most = *std::max_element(curve_.begin(), curve_.end());
-  for (float& value : curve_) value = most > 0.0f ? value / most : 0.0f;
+  const float maximum = *std::max_element(curve_.begin(), curve_.end());
+  for (float& value : curve_) value = maximum > 0.0f ? value / maximum : 0.0f;
   double sum = 0.0;
   std::vector<double> sums;
   for (size_t i = 1; i < curve_.size(); ++i) sums.push_back(sum += 0.5 * (double(curve_[i - 1]) + double(curve_[i])));

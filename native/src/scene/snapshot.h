@@ -17,12 +17,12 @@ namespace gradus {
 // What a scene contains, so that what it does not need can be left out.
 struct SceneFeatures {
   bool has_transparent_shadows = false;
-  bool has_lamps_with_extent = false;
+  bool has_lights_with_extent = false;
   float min_alpha = 1.0f;                  // roughness: surely no lobe is sharper
   float min_refracting_alpha = kInfinity;  // likewise, of those that refract; infinite: there are none
-  bool has_emitters = false;
-  bool only_lights_shine = false;  // no surface has anything to show to a ray that ends a path: it sees lamps and the world alone
-  bool world_shines = true;
+  bool has_lights = false;
+  bool only_lights_emit = false;  // no surface has anything to show to a ray that ends a path: it sees lights and the world alone
+  bool world_emits = true;
   bool has_motion = false;    // something moves while the shutter is open
   bool has_holdouts = false;  // holes in the film, which have alpha 0 in an opaque one, too
 };
@@ -35,7 +35,7 @@ class Snapshot : public LitScene {
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
 
   std::shared_ptr<const CameraKeys> camera_keys;
-  bool cut_before = false, cut_after = false;  // the frame around is seen by another camera
+  bool shot_change_before = false, shot_change_after = false;  // the frame around is seen by another camera
   bool is_other_shot = false;                  // of moved_snapshot() over such a cut
   Shutter shutter;
   SceneFeatures features;

@@ -42,7 +42,7 @@ void build_geometry(const EmbreeDevice& device, const ExactMatrices& to_internal
     snapshot->features.has_transparent_shadows |= transparent && (masks[k] & kMaskTransparentShadow);
   }
   snapshot->accelerator = build_accelerator(device, {&snapshot->instances, &masks, to_internal}, progress, before);
-  refer_to_triangles(snapshot->accelerator->resting, snapshot);
+  refer_to_triangles(snapshot->accelerator->static_part, snapshot);
   refer_to_triangles(snapshot->accelerator->moving, snapshot);
 }
 

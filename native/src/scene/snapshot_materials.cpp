@@ -18,7 +18,7 @@ void load_new_images(Device& device, Scene::State* state, const CommitMonitor& m
   for (auto& [key, image] : state->images)
     if (!image.image) pending.push_back(&image);
   tbb::parallel_for(size_t(0), pending.size(), [&](size_t i) {
-    if (monitor.go_on()) pending[i]->image = load_image(pending[i]->source, device.color());
+    if (monitor.is_running()) pending[i]->image = load_image(pending[i]->source, device.color());
   });
   monitor.check();
 }

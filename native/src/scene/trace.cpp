@@ -73,13 +73,13 @@ bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
   rtcInitIntersectContext(&context);
   RTCRay r;
   set_ray(ray, mask, &r);
-  rtcOccluded1(accelerator.resting.group->scene, &context, &r);
+  rtcOccluded1(accelerator.static_part.group->scene, &context, &r);
   if (r.tfar >= 0.0f && may_meet_moving(accelerator, r)) rtcOccluded1(accelerator.moving.group->scene, &context, &r);
   return r.tfar < 0.0f;
 }
 
 // Of the valid lanes; false: there are none. Occluded rays end before they start.
-bool keep_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& r, int valid[4]) {
+bool mask_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& r, int valid[4]) {
   if (!accelerator.moving.group) return false;
   const RayBox& box = accelerator.moving.group->box;
   bool any = false;
@@ -116,7 +116,7 @@ bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask
     hit->barycentric = Vec2(query.hit.u, query.hit.v);
     hit->time = ray.time;
   };
-  take(accelerator.resting);
+  take(accelerator.static_part);
   if (may_meet_moving(accelerator, query.ray)) take(accelerator.moving);
   return hit->valid();
 }
@@ -156,8 +156,8 @@ void Geometry::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) c
       hits[i].time = rays[i].time;
     }
   };
-  take(accelerator->resting);
-  if (keep_lanes_that_meet_moving(*accelerator, query.ray, valid)) take(accelerator->moving);
+  take(accelerator->static_part);
+  if (mask_lanes_that_meet_moving(*accelerator, query.ray, valid)) take(accelerator->moving);
 }
 
 void Geometry::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const {
@@ -184,8 +184,8 @@ void Geometry::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4
   rtcInitIntersectContext(&context);
   alignas(16) int lanes[4];
   std::memcpy(lanes, &valid, sizeof(lanes));
-  rtcOccluded4(lanes, accelerator->resting.group->scene, &context, &query);
-  if (keep_lanes_that_meet_moving(*accelerator, query, lanes)) rtcOccluded4(lanes, accelerator->moving.group->scene, &context, &query);
+  rtcOccluded4(lanes, accelerator->static_part.group->scene, &context, &query);
+  if (mask_lanes_that_meet_moving(*accelerator, query, lanes)) rtcOccluded4(lanes, accelerator->moving.group->scene, &context, &query);
   for (int i = 0; i < 4; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0.0f;
 }
 

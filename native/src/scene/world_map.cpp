@@ -42,10 +42,10 @@ bool same_world(const WorldMap& a, const WorldMap& b) {
 
 // Cells and points so close that no sun can hide between them, within reason.
 void look_for_sun(float half_angle, uint32_t map_size, Environment::Resolution* resolution) {
-  constexpr uint32_t kMostPoints = 4;
+  constexpr uint32_t kMaxPoints = 4;
   if (map_size == 0) resolution->width = kWidest;
   const float cell = 2.0f * kPi / float(resolution->width);
-  resolution->points = std::clamp(uint32_t(std::ceil(cell / (1.2f * half_angle))), resolution->points, kMostPoints);
+  resolution->points = std::clamp(uint32_t(std::ceil(cell / (1.2f * half_angle))), resolution->points, kMaxPoints);
 }
 
 // One point in each cell sees every texel of an image that is no wider than the map: look-ups are interpolated. Otherwise 2×2, so that a
@@ -77,7 +77,7 @@ Environment measure_world(const LitScene& scene, const WorldMap& map, const Comm
   state.flags = 0;
   Environment world;
   const auto radiance = [&](const Vec3& direction) { return shade_world(scene, direction, state); };
-  world.build(radiance, sun_cones(*map.material), resolution(scene, map), [&] { return !monitor.go_on(); });
+  world.build(radiance, sun_cones(*map.material), resolution(scene, map), [&] { return !monitor.is_running(); });
   monitor.check();
   return world;
 }

@@ -34,15 +34,15 @@ const ComponentPassInfo& component_pass_info(uint32_t pass) {
   return all_component_passes()[pass];
 }
 
-bool wants_any(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass)) {
+bool any_wanted(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass)) {
   return std::ranges::any_of(all_component_passes(), [&](const ComponentPassInfo& info) {
-    return wants(component_passes, info.pass) && is_of_kind(info.pass);
+    return has_bit(component_passes, info.pass) && is_of_kind(info.pass);
   });
 }
 
 uint64_t needed_passes(uint64_t passes) {
   for (const PassInfo& info : all_passes()) {
-    if (wants(passes, info.pass) && info.color != kNone) passes |= uint64_t{1} << info.color;
+    if (has_bit(passes, info.pass) && info.color != kNone) passes |= uint64_t{1} << info.color;
   }
   return passes;
 }
@@ -51,7 +51,7 @@ std::vector<PassInfo> stored_passes(uint64_t passes) {
   std::vector<PassInfo> stored;
   const uint64_t needed = needed_passes(passes);
   for (const PassInfo& info : all_passes()) {
-    if (wants(needed, info.pass) && is_stored(info.kind)) stored.push_back(info);
+    if (has_bit(needed, info.pass) && is_stored(info.kind)) stored.push_back(info);
   }
   return stored;
 }

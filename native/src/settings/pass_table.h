@@ -58,7 +58,7 @@ std::span<const ComponentPassInfo> all_component_passes();
 // Throws invalid_argument for a number that is none.
 const ComponentPassInfo& component_pass_info(uint32_t pass);
 
-inline bool wants(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
+inline bool has_bit(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
 
 // Motion by optical flow, which is about that of what the component shows.
 constexpr bool is_irradiance_motion(uint32_t component_pass) {
@@ -69,11 +69,11 @@ constexpr bool is_irradiance_motion(uint32_t component_pass) {
 constexpr bool is_of_picture(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_COLOR || component_pass == GRADUS_COMPONENT_IRRADIANCE;
 }
-constexpr bool is_of_rough_vertices(uint32_t component_pass) {
+constexpr bool is_of_non_specular_vertices(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_REFLECTANCE || component_pass == GRADUS_COMPONENT_IRRADIANCE ||
          component_pass == GRADUS_COMPONENT_NORMAL || component_pass == GRADUS_COMPONENT_DEPTH || is_irradiance_motion(component_pass);
 }
-constexpr bool is_of_rough_details(uint32_t component_pass) {
+constexpr bool is_of_non_specular_details(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_UV || component_pass == GRADUS_COMPONENT_OBJECT_INDEX ||
          component_pass == GRADUS_COMPONENT_FACE_INDEX || component_pass == GRADUS_COMPONENT_EMIT;
 }
@@ -81,13 +81,13 @@ constexpr bool is_motion(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_MOTION || component_pass == GRADUS_COMPONENT_TRACKED || is_irradiance_motion(component_pass);
 }
 // Whether some pass of that kind is wanted.
-bool wants_any(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass));
+bool any_wanted(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass));
 // In sequences: Irradiance Motion, and Motion of Residual, are made of two frames.
-inline bool wants_flow(const GradusSettings& settings) {
-  return settings.use_decomposition != 0 && wants_any(settings.component_passes, is_motion);
+inline bool needs_flow(const GradusSettings& settings) {
+  return settings.use_decomposition != 0 && any_wanted(settings.component_passes, is_motion);
 }
-inline bool wants_pictures(const GradusSettings& settings) {
-  return settings.use_decomposition != 0 && wants_any(settings.component_passes, is_of_picture);
+inline bool needs_pictures(const GradusSettings& settings) {
+  return settings.use_decomposition != 0 && any_wanted(settings.component_passes, is_of_picture);
 }
 
 // `passes` plus what they need: the colours that light passes are divided by.

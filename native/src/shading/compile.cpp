@@ -214,9 +214,9 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   auto m = std::make_shared<MaterialData>();
   m->name = desc.name ? desc.name : "";
   const Graph graph = build_graph(desc, images);
-  m->surface = emit_program(graph, ProgramPart::All, m->name);
-  m->emission = emit_program(graph, ProgramPart::Emission, m->name);
-  m->transparency = emit_program(graph, ProgramPart::Transparency, m->name);
+  m->surface = emit_program(graph, ProgramScope::All, m->name);
+  m->emission = emit_program(graph, ProgramScope::Emission, m->name);
+  m->transparency = emit_program(graph, ProgramScope::Transparency, m->name);
   m->sample_as_light = desc.sample_as_light != 0;
   m->transparent_shadow = desc.transparent_shadow != 0;
   m->uses_fallback = desc.uses_fallback != 0;

@@ -33,7 +33,7 @@ ShadeContext background_context(const ShadedScene& scene, const Vec3& direction,
   return c;
 }
 
-ShadeContext lamp_context(const ShadedScene& scene, const LampPoint& point, const RayState& ray) {
+ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& point, const RayState& ray) {
   ShadeContext c;
   c.scene = &scene;
   c.images = scene.images.get();
@@ -41,7 +41,7 @@ ShadeContext lamp_context(const ShadedScene& scene, const LampPoint& point, cons
   c.normal = c.geometric_normal = point.normal;
   c.wo = point.wo;
   c.uv = point.uv;
-  c.lamp_axes = &point.axes;
+  c.light_axes = &point.axes;
   c.ray = ray;
   return c;
 }
@@ -64,7 +64,7 @@ ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3
 }
 
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
-  if (c.lamp_axes) return glm::transpose(*c.lamp_axes) * normal;
+  if (c.light_axes) return glm::transpose(*c.light_axes) * normal;
   // The inverse of the inverse transpose.
   Placement room;
   return c.instance ? safe_normalize(glm::transpose(Mat3(placement_of(c, &room).to_world)) * normal) : normal;

@@ -15,14 +15,14 @@ class ImageStore;
 struct ShadeContext {
   const ShadedScene* scene = nullptr;  // nullptr: estimates without a scene
   const ImageStore* images = nullptr;
-  const InstanceData* instance = nullptr;  // nullptr: world and lamps
+  const InstanceData* instance = nullptr;  // nullptr: world and lights
   Hit hit;
   Vec3 position = Vec3(0.0f);             // internal space; world: the direction
   Vec3 normal = Vec3(0, 0, 1);            // shading normal, turned as the geometric normal is
   Vec3 geometric_normal = Vec3(0, 0, 1);  // on the side of wo
   Vec3 wo = Vec3(0, 0, 1);
-  Vec2 uv = Vec2(0.0f);             // of lamps
-  const Mat3* lamp_axes = nullptr;  // nullptr: no lamp
+  Vec2 uv = Vec2(0.0f);             // of lights
+  const Mat3* light_axes = nullptr;  // nullptr: no light
   RayState ray;
   bool backfacing = false;
   bool is_background = false;
@@ -31,7 +31,7 @@ struct ShadeContext {
 
 ShadeContext surface_context(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
 ShadeContext background_context(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
-ShadeContext lamp_context(const ShadedScene& scene, const LampPoint& point, const RayState& ray);
+ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& point, const RayState& ray);
 
 // Of the instance at the time of the hit.
 const Placement& placement_of(const ShadeContext& context, Placement* room);

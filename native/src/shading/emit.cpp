@@ -25,7 +25,7 @@ bool matters_for_emission(const GraphNode& n, size_t k) {
 
 class Emitter {
  public:
-  Emitter(const Graph& graph, ProgramPart part, const std::string& name) : graph_(graph), part_(part), name_(name) {
+  Emitter(const Graph& graph, ProgramScope scope, const std::string& name) : graph_(graph), scope_(scope), name_(name) {
     program_.floats = graph.floats;
     program_.names = graph.names;
     find_present();
@@ -51,11 +51,11 @@ class Emitter {
   [[noreturn]] void refuse(const char* text) const { throw invalid_argument("material '" + name_ + "': " + text); }
 
   bool leaf_present(const GraphNode& n) const {
-    switch (part_) {
-      case ProgramPart::Emission:
+    switch (scope_) {
+      case ProgramScope::Emission:
         if (n.op == GRADUS_OP_PRINCIPLED) return !n.inputs[17].is_zero();
         return n.op == GRADUS_OP_EMISSION && !n.inputs[0].is_zero() && !n.inputs[1].is_zero();
-      case ProgramPart::Transparency:
+      case ProgramScope::Transparency:
         return n.op == GRADUS_OP_TRANSPARENT && !n.inputs[0].is_zero();
       default:
         return true;
@@ -102,7 +102,7 @@ class Emitter {
 
   bool wants_input(const GraphNode& n, size_t k) const {
     if (n.op == GRADUS_OP_BUMP && k == kHeight) return false;
-    return n.op != GRADUS_OP_PRINCIPLED || part_ != ProgramPart::Emission || matters_for_emission(n, k);
+    return n.op != GRADUS_OP_PRINCIPLED || scope_ != ProgramScope::Emission || matters_for_emission(n, k);
   }
 
   // Value nodes that must run before `v` is known, emitted ones excepted.
@@ -214,7 +214,7 @@ class Emitter {
     for (size_t k = 0; k < n.inputs.size(); k++)
       if (wants_input(n, k)) emit_value(n.inputs[k]);
     Instruction i = instruction_of(n);
-    if (n.op == GRADUS_OP_PRINCIPLED && part_ == ProgramPart::Emission) i.mode |= kEmissionOnly;
+    if (n.op == GRADUS_OP_PRINCIPLED && scope_ == ProgramScope::Emission) i.mode |= kEmissionOnly;
     i.weight = weight;
     push(i, 0, 0);
   }
@@ -296,7 +296,7 @@ class Emitter {
   }
 
   const Graph& graph_;
-  ProgramPart part_;
+  ProgramScope scope_;
   const std::string& name_;
   Program program_;
   NodeSet present_, emitted_;
@@ -311,6 +311,6 @@ class Emitter {
 
 }  // namespace
 
-Program emit_program(const Graph& graph, ProgramPart part, const std::string& name) { return Emitter(graph, part, name).emit(); }
+Program emit_program(const Graph& graph, ProgramScope scope, const std::string& name) { return Emitter(graph, scope, name).emit(); }
 
 }  // namespace gradus

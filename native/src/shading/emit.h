@@ -9,10 +9,10 @@
 namespace gradus {
 
 // Which closures a program is for; values that only other closures need are left out.
-enum class ProgramPart { All, Emission, Transparency };
+enum class ProgramScope { All, Emission, Transparency };
 
 // Throws Error INVALID_ARGUMENT for graphs beyond all reason (thousands of closures, hundreds of values alive at once).
-Program emit_program(const Graph& graph, ProgramPart part, const std::string& name);
+Program emit_program(const Graph& graph, ProgramScope scope, const std::string& name);
 
 // Virtual registers that an instruction writes: `count` of them from `first` on.
 struct VirtualOutputs {

@@ -17,7 +17,7 @@ struct Octaves {
   float gain = 0.0f;
   bool normalize = true;
   int count() const { return static_cast<int>(detail); }
-  float rest() const { return detail - std::floor(detail); }
+  float octave_fraction() const { return detail - std::floor(detail); }
 };
 
 template <class P>
@@ -30,9 +30,9 @@ float fbm(P p, const Octaves& o) {
     frequency *= o.lacunarity;
   }
   const auto scaled = [&](float s, float t) { return o.normalize ? 0.5f * s / t + 0.5f : s; };
-  if (o.rest() == 0.0f) return scaled(sum, total);
+  if (o.octave_fraction() == 0.0f) return scaled(sum, total);
   const float more = sum + signed_noise(p * frequency) * amplitude;
-  return scaled(sum, total) * (1.0f - o.rest()) + scaled(more, total + amplitude) * o.rest();
+  return scaled(sum, total) * (1.0f - o.octave_fraction()) + scaled(more, total + amplitude) * o.octave_fraction();
 }
 
 template <class P>
@@ -43,7 +43,7 @@ float multifractal(P p, const Octaves& o) {
     power *= o.roughness;
     p *= o.lacunarity;
   }
-  return o.rest() != 0.0f ? result * (o.rest() * power * signed_noise(p) + 1.0f) : result;
+  return o.octave_fraction() != 0.0f ? result * (o.octave_fraction() * power * signed_noise(p) + 1.0f) : result;
 }
 
 template <class P>
@@ -55,7 +55,7 @@ float hetero_terrain(P p, const Octaves& o) {
     power *= o.roughness;
     p *= o.lacunarity;
   }
-  return o.rest() != 0.0f ? result + o.rest() * (signed_noise(p) + o.offset) * power * result : result;
+  return o.octave_fraction() != 0.0f ? result + o.octave_fraction() * (signed_noise(p) + o.offset) * power * result : result;
 }
 
 template <class P>
@@ -69,7 +69,7 @@ float hybrid_multifractal(P p, const Octaves& o) {
     weight *= o.gain * signal;
     p *= o.lacunarity;
   }
-  if (o.rest() != 0.0f && weight > 0.001f) result += o.rest() * std::min(weight, 1.0f) * (signed_noise(p) + o.offset) * power;
+  if (o.octave_fraction() != 0.0f && weight > 0.001f) result += o.octave_fraction() * std::min(weight, 1.0f) * (signed_noise(p) + o.offset) * power;
   return result;
 }
 

@@ -29,7 +29,7 @@ Vec3 geometry(uint32_t mode, const ShadeContext& c) {
     case GRADUS_GEOMETRY_INCOMING:
       return c.wo;
     case GRADUS_GEOMETRY_PARAMETRIC:
-      if (c.lamp_axes) return Vec3(c.uv, 0.0f);
+      if (c.light_axes) return Vec3(c.uv, 0.0f);
       return Vec3(1.0f - c.hit.barycentric.x - c.hit.barycentric.y, c.hit.barycentric.x, 0.0f);
     case GRADUS_GEOMETRY_BACKFACING:
       return Vec3(c.backfacing ? 1.0f : 0.0f);

@@ -68,7 +68,7 @@ void shade_surface(const ShadedScene& scene, const SurfacePoint& point, const Ve
   complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
-void shade_again(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
+void shade_from_tape(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
                  const RayState& ray, float roughness_threshold, ShadeResult* result) {
   const MaterialData& material = material_of(scene, point.material);
   const ShadeContext context = surface_context(scene, point, wo, ray);
@@ -82,7 +82,7 @@ void shade_again(const ShadedScene& scene, const SurfacePoint& point, const Clos
   complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
-void shade_seen(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+void shade_without_closures(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                 ShadeResult* result) {
   const MaterialData& material = material_of(scene, point.material);
   if (material.may_be_transparent || material.has_holdout) {
@@ -116,9 +116,9 @@ Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState&
   return emission_of(material, background_context(scene, direction, ray));
 }
 
-Rgb shade_lamp(const ShadedScene& scene, uint32_t material, const LampPoint& point, const RayState& ray) {
+Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray) {
   if (material >= scene.materials.size()) return Rgb(1.0f);
-  return emission_of(*scene.materials[material], lamp_context(scene, point, ray));
+  return emission_of(*scene.materials[material], light_context(scene, point, ray));
 }
 
 }  // namespace gradus

@@ -39,7 +39,7 @@ struct ShadeResult {
   bool fallback = false;        // the material holds a replaced node
   bool complete = false;        // the closures are there; then:
   bool ignores_wo = false;      // all of this is the same seen from anywhere on this side
-  ClosureTape* tape = nullptr;  // not owned: if there is one, shade_surface() records the closures for shade_again()
+  ClosureTape* tape = nullptr;  // not owned: if there is one, shade_surface() records the closures for shade_from_tape()
 };
 
 // wo: towards the previous vertex. roughness_threshold: alpha that separates classes.
@@ -47,10 +47,10 @@ void shade_surface(const ShadedScene& scene, const SurfacePoint& point, const Ve
                    ShadeResult* result);
 // What a ray sees before anything is scattered, which a path that ends here needs alone: without closures where the surface is opaque.
 // shade_surface() adds them.
-void shade_seen(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
+void shade_without_closures(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
                 ShadeResult* result);
 // As shade_surface(), for a point that was shaded with a tape for `known_wo`.
-void shade_again(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
+void shade_from_tape(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
                  const RayState& ray, float roughness_threshold, ShadeResult* result);
 // Emission alone, for emitter points that light sampling chose.
 Rgb shade_emission(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
@@ -59,14 +59,14 @@ Rgb shade_transparency(const ShadedScene& scene, const SurfacePoint& point, cons
 // Background radiance from a direction (pointing away from the scene).
 Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 
-// A point of a lamp: what the lamp's program multiplies its strength by. material: index in the scene. uv: on its surface.
-struct LampPoint {
+// A point of a light: what the light's program multiplies its strength by. material: index in the scene. uv: on its surface.
+struct LightShadingPoint {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0, 0, 1);
   Vec3 wo = Vec3(0, 0, 1);  // towards the receiver
   Vec2 uv = Vec2(0.0f);
-  Mat3 axes{1.0f};  // of the lamp, without scale
+  Mat3 axes{1.0f};  // of the light, without scale
 };
-Rgb shade_lamp(const ShadedScene& scene, uint32_t material, const LampPoint& point, const RayState& ray);
+Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray);
 
 }  // namespace gradus

@@ -19,7 +19,7 @@ bool same_classes(const Closures& x, const Closures& y) {
   return true;
 }
 
-bool choose_alike(const Closures& x, const Closures& y, float u) {
+bool choose_same_class(const Closures& x, const Closures& y, float u) {
   ScatterClass of_x = ScatterClass::Diffuse, of_y = ScatterClass::Diffuse;
   const bool some_x = choose_class(x, u, &of_x);
   const bool some_y = choose_class(y, u, &of_y);

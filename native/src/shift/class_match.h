@@ -14,6 +14,6 @@ bool same_form(const Closures& x, const Closures& y, ScatterClass c);
 // All classes have the same form.
 bool same_classes(const Closures& x, const Closures& y);
 // The random number u takes both to one class of the same form, or to none.
-bool choose_alike(const Closures& x, const Closures& y, float u);
+bool choose_same_class(const Closures& x, const Closures& y, float u);
 
 }  // namespace gradus

@@ -8,16 +8,16 @@ namespace gradus {
 namespace {
 
 // Below this difference of indices a refraction hardly bends and its half-vector has no direction.
-constexpr float kLeastBend = 1e-3f;
+constexpr float kMinBend = 1e-3f;
 // Shortest |wo + η wi|, |wo + wi| that still has a direction in float.
-constexpr float kLeastLength = 1e-4f;
+constexpr float kMinLength = 1e-4f;
 
 ShiftedDirection failed(ShiftFailure failure) { return {Vec3(0.0f), 0.0f, failure}; }
 
 ShiftedDirection copy_reflection(const HalfVectorFrame& base, const Vec3& wi, const HalfVectorFrame& offset) {
   const Vec3 sum = base.wo + wi;
   const float length = glm::length(sum);
-  if (!(length > kLeastLength)) {
+  if (!(length > kMinLength)) {
     return failed(ShiftFailure::Jacobian);
   }
   const Vec3 h = sum / length;
@@ -45,7 +45,7 @@ bool refract_through(const Vec3& wo, const Vec3& h, float eta, Vec3* wi) {
 }
 
 ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, const HalfVectorFrame& offset) {
-  if (std::fabs(base.eta - 1.0f) < kLeastBend || std::fabs(offset.eta - 1.0f) < kLeastBend) {
+  if (std::fabs(base.eta - 1.0f) < kMinBend || std::fabs(offset.eta - 1.0f) < kMinBend) {
     return failed(ShiftFailure::Jacobian);
   }
   // H points to the side of the denser medium, while the frames' normals lie on the side of wo on both vertices: a pair that passes from
@@ -55,7 +55,7 @@ ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, co
   }
   const Vec3 sum = base.wo + base.eta * wi;
   const float length = glm::length(sum);
-  if (!(length > kLeastLength)) {
+  if (!(length > kMinLength)) {
     return failed(ShiftFailure::Jacobian);
   }
   const Vec3 h = sum / length;

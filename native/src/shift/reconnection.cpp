@@ -5,7 +5,7 @@
 
 namespace gradus {
 
-float emitter_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset) {
+float light_point_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset) {
   const float ratio = distance_base / distance_offset;
   return cosine_offset / cosine_base * ratio * ratio;
 }
@@ -24,7 +24,7 @@ bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curv
   return curvature * edge > kCurved ? !is_short_edge(x, y, z) : !transmission && is_parallax_below(x, y, z, kSmall);
 }
 
-bool looks_alike(const Vec3& x, const Vec3& y, const Vec3& z, float width) { return is_parallax_below(x, y, z, width); }
+bool looks_similar(const Vec3& x, const Vec3& y, const Vec3& z, float width) { return is_parallax_below(x, y, z, width); }
 
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal) {
   Reconnection result;
@@ -35,7 +35,7 @@ Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target,
   result.direction = from_offset / result.distance;
   const float cosine_base = std::fabs(glm::dot(target_normal, from_base)) / distance_base;
   const float cosine_offset = std::fabs(glm::dot(target_normal, result.direction));
-  result.jacobian = emitter_jacobian(cosine_base, distance_base, cosine_offset, result.distance);
+  result.jacobian = light_point_jacobian(cosine_base, distance_base, cosine_offset, result.distance);
   if (!(result.jacobian > 0.0f) || !is_finite(result.jacobian)) {
     result.failure = ShiftFailure::Jacobian;
   }

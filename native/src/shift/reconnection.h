@@ -33,10 +33,10 @@ bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curv
 
 // Whether a lobe of this width (alpha) at z looks much the same from x and y, so that the event need not be copied: its direction is
 // shared, too.
-bool looks_alike(const Vec3& x, const Vec3& y, const Vec3& z, float width);
+bool looks_similar(const Vec3& x, const Vec3& y, const Vec3& z, float width);
 
 // Jacobian of copying an emitter point, in solid angle at the receivers; 1 at infinity, where the direction is copied, and for Dirac
 // emitters, whose choice is discrete.
-float emitter_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset);
+float light_point_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset);
 
 }  // namespace gradus

@@ -7,9 +7,9 @@
 
 namespace gradus {
 
-// surface: link_pixels() of the two frames, of this region. motion: where the second shows what the component shows through smooth surfaces
+// surface: match_pixels() of the two frames, of this region. motion: where the second shows what the component shows through smooth surfaces
 // (temporal/component_ways.h). One-to-one: of several chains that lead to one pixel the one that comes nearest to its centre has it, and a
 // chain before a surface.
-PixelLinks link_component(const PixelLinks& surface, const Region& region, const ChainMotion& motion);
+PixelCorrespondence match_component(const PixelCorrespondence& surface, const Region& region, const ChainMotion& motion);
 
 }  // namespace gradus

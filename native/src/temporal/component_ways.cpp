@@ -17,9 +17,9 @@ CentreView rows_of(const CentreView& view, int32_t y0, int32_t y1) {
   return {view.snapshot, view.camera, {view.region.x0, y0, view.region.x1, y1}, cut(view.hits), cut(view.directions)};
 }
 
-void leave_out_what_is_seen_directly(ChainView* view) {
+void exclude_directly_seen(ChainView* view) {
   for (int32_t& place : view->places) {
-    if (place >= 0 && view->chains[size_t(place)].way.length == 0) place = -1;
+    if (place >= 0 && view->chains[size_t(place)].signature.length == 0) place = -1;
   }
 }
 
@@ -31,8 +31,8 @@ void append(const ChainMotion& rows, ChainMotion* motion) {
 
 }  // namespace
 
-std::vector<ChainMotion> follow_components(const CentreView& from, const ChainTracer& to, const ComponentSet& components, uint32_t wanted,
-                                           const CancelTest& is_cancelled) {
+std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to, const ComponentSet& components, uint32_t wanted,
+                                           const CancelCheck& is_cancelled) {
   Change change(*from.snapshot);
   change.add(to.snapshot());
   const Region& film = from.region;
@@ -43,14 +43,14 @@ std::vector<ChainMotion> follow_components(const CentreView& from, const ChainTr
     const CentreView rows = rows_of(from, std::max(y - 1, film.y0), std::min(band.y1 + 1, film.y1));
     std::vector<ChainView> views = view_chains(rows, to.settings(), components, wanted, is_cancelled, &change);
     for (size_t k = 0; k < views.size(); ++k) {
-      leave_out_what_is_seen_directly(&views[k]);
+      exclude_directly_seen(&views[k]);
       append(track_chains(views[k], to, band, is_cancelled), &motion[k]);
     }
   }
   return motion;
 }
 
-bool shows_through(const ChainMotion& motion) {
+bool is_seen_through_smooth(const ChainMotion& motion) {
   return std::any_of(motion.tracking.begin(), motion.tracking.end(), [](Tracking t) { return t != Tracking::NoPath; });
 }
 

@@ -9,9 +9,9 @@ namespace gradus {
 
 // Of the components whose bits are set in `wanted`, in order, by pixels of `from`; NoPath where a component is seen directly, or not at
 // all. Cancelled: pixels are NotConverged.
-std::vector<ChainMotion> follow_components(const CentreView& from, const ChainTracer& to, const ComponentSet& components, uint32_t wanted,
-                                           const CancelTest& is_cancelled);
+std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to, const ComponentSet& components, uint32_t wanted,
+                                           const CancelCheck& is_cancelled);
 // Whether a component is seen through smooth surfaces anywhere.
-bool shows_through(const ChainMotion& motion);
+bool is_seen_through_smooth(const ChainMotion& motion);
 
 }  // namespace gradus

@@ -14,10 +14,10 @@ const std::vector<float>& plane_of(const GradientImages& images, RowKind kind) {
 }
 
 // Mean over all samples; what one of the two lacks is the other's.
-float mixed(float base, float replay, float share) {
-  if (std::isnan(base)) return replay;
-  if (std::isnan(replay)) return base;
-  return base + share * (replay - base);
+float mixed(float fresh, float replay, float share) {
+  if (std::isnan(fresh)) return replay;
+  if (std::isnan(replay)) return fresh;
+  return fresh + share * (replay - fresh);
 }
 
 }  // namespace
@@ -25,25 +25,25 @@ float mixed(float base, float replay, float share) {
 FrameWindow::FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frames) : frames_(std::move(frames)) {
   for (size_t t = 0; t + 1 < frames_.size(); ++t) {
     const TemporalFrame &frame = *frames_[t], &next = *frames_[t + 1];
-    check_alike(frame.base.values, next.replay.values, next.stream);
-    links_.push_back(links_between(frame, next));
+    check_same_layout(frame.fresh.values, next.replay.values, next.stream);
+    correspondence_.push_back(correspondence_between(frame, next));
   }
 }
 
 WindowSize FrameWindow::size() const {
-  const GradientImages& first = frames_.front()->base.values;
+  const GradientImages& first = frames_.front()->fresh.values;
   return {first.width, first.height, first.channels, int(frames_.size())};
 }
 
 void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const {
   const TemporalFrame& frame = *frames_[size_t(t)];
   const size_t width = size_t(size().width), channels = size_t(size().channels), first = size_t(y) * width;
-  const float* base = plane_of(frame.base.*part, kind).data();
+  const float* fresh = plane_of(frame.fresh.*part, kind).data();
   if (!is_temporal(kind)) {
     const float* replay = plane_of(frame.replay.*part, kind).data();
     for (size_t i = first; i < first + width; ++i) {
       const float share = frame.replay_share[i];
-      for (size_t k = i * channels; k < (i + 1) * channels; ++k) *out++ = mixed(base[k], replay[k], share);
+      for (size_t k = i * channels; k < (i + 1) * channels; ++k) *out++ = mixed(fresh[k], replay[k], share);
     }
     return;
   }
@@ -53,9 +53,9 @@ void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const 
   }
   const float* next = plane_of(frames_[size_t(t) + 1]->replay.*part, kind).data();
   for (size_t i = first; i < first + width; ++i) {
-    const int32_t link = links_[size_t(t)].pixel[i];
+    const int32_t link = correspondence_[size_t(t)].pixel[i];
     for (size_t c = 0; c < channels; ++c) {
-      *out++ = link == kNoLink ? kAbsentPair : next[size_t(link) * channels + c] - base[i * channels + c];
+      *out++ = link == kNoCorrespondence ? kAbsentPair : next[size_t(link) * channels + c] - fresh[i * channels + c];
     }
   }
 }
@@ -66,13 +66,13 @@ void FrameWindow::read_half_differences(RowKind kind, int t, int y, float* out) 
   read(kind, t, y, &HalvedImages::half_differences, out);
 }
 
-void FrameWindow::read_links(int t, int y, int32_t* out) const {
-  const auto first = links_[size_t(t)].pixel.begin() + ptrdiff_t(y) * size().width;
+void FrameWindow::read_correspondence(int t, int y, int32_t* out) const {
+  const auto first = correspondence_[size_t(t)].pixel.begin() + ptrdiff_t(y) * size().width;
   std::copy(first, first + size().width, out);
 }
 
 void FrameWindow::read_off_centre(int t, int y, Vec2* out) const {
-  const std::vector<Vec2>& off_centre = links_[size_t(t)].off_centre;
+  const std::vector<Vec2>& off_centre = correspondence_[size_t(t)].off_centre;
   if (off_centre.empty()) return HalvedWindowSource::read_off_centre(t, y, out);
   const auto first = off_centre.begin() + ptrdiff_t(y) * size().width;
   std::copy(first, first + size().width, out);

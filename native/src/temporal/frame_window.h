@@ -18,7 +18,7 @@ class FrameWindow final : public HalvedWindowSource {
   WindowSize size() const override;
   void read_row(RowKind kind, int t, int y, float* out) const override;
   void read_half_differences(RowKind kind, int t, int y, float* out) const override;
-  void read_links(int t, int y, int32_t* out) const override;
+  void read_correspondence(int t, int y, int32_t* out) const override;
   void read_off_centre(int t, int y, Vec2* out) const override;
 
  private:
@@ -27,7 +27,7 @@ class FrameWindow final : public HalvedWindowSource {
   void read(RowKind kind, int t, int y, Part part, float* out) const;
 
   std::vector<std::shared_ptr<const TemporalFrame>> frames_;
-  std::vector<PixelLinks> links_;  // from each frame but the last
+  std::vector<PixelCorrespondence> correspondence_;  // from each frame but the last
 };
 
 }  // namespace gradus

@@ -10,6 +10,6 @@
 namespace gradus {
 
 // A part of a frame, by its place: its own half, or the one that replays the frame before. Throws the Error CANCELLED.
-using LoadPart = std::function<std::shared_ptr<Frame>(int place, const CancelTest& cancel)>;
+using LoadSamples = std::function<std::shared_ptr<Film>(int place, const CancelCheck& cancel)>;
 
 }  // namespace gradus

@@ -13,8 +13,8 @@ namespace gradus {
 namespace {
 
 constexpr float kLargestReturn = 1.0f;  // pixels, in x and in y
-const float kCutCosine = std::cos(kPi / 6.0f);
-constexpr float kCutZoom = 1.5f;
+const float kShotChangeCosine = std::cos(kPi / 6.0f);
+constexpr float kShotChangeZoom = 1.5f;
 constexpr float kStepsOfPixel = 256.0f;
 
 // Where a pixel's centre goes, and how far from the camera that is.
@@ -53,7 +53,7 @@ class Tracker {
 
 bool returns(const Tracker& back, const CentreView& from, size_t pixel, int32_t next) {
   const Target t = back.target(size_t(next));
-  const Vec2 away = glm::abs(from.camera.way(centre_of(from.region, pixel), t.film));
+  const Vec2 away = glm::abs(from.camera.film_displacement(centre_of(from.region, pixel), t.film));
   return t.found && away.x <= kLargestReturn && away.y <= kLargestReturn;
 }
 
@@ -78,14 +78,14 @@ Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film) {
 int32_t pixel_at(const Region& region, const Vec2& film) {
   const float x = std::floor(film.x), y = std::floor(film.y);
   const bool inside = x >= float(region.x0) && x < float(region.x1) && y >= float(region.y0) && y < float(region.y1);
-  if (!inside) return kNoLink;
+  if (!inside) return kNoCorrespondence;
   return (int32_t(y) - region.y0) * region.width() + (int32_t(x) - region.x0);
 }
 
-CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelTest& is_cancelled) {
+CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelCheck& is_cancelled) {
   const auto pixels = size_t(region.area());
   const float time = snapshot.shutter.time_of_frame();
-  const Camera camera = Camera(snapshot.camera, width, height).at_rest(time).without_lens();
+  const Camera camera = Camera(snapshot.camera, width, height).frozen_at(time).without_lens();
   CentreView view{&snapshot, camera, region, std::vector<Hit>(pixels), std::vector<Vec3>(pixels)};
   for_each_pixel(view.hits.size(), [&](size_t i) {
     if (is_cancelled()) return;
@@ -96,48 +96,48 @@ CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t heigh
   return view;
 }
 
-PixelLinks link_pixels(const CentreView& from, const CentreView& to) {
+PixelCorrespondence match_pixels(const CentreView& from, const CentreView& to) {
   const Tracker forward(from, to), back(to, from);
-  PixelLinks found{std::vector<int32_t>(from.hits.size(), kNoLink), std::vector<Vec2>(from.hits.size(), Vec2(0.0f))};
-  std::vector<int32_t>& links = found.pixel;
+  PixelCorrespondence found{std::vector<int32_t>(from.hits.size(), kNoCorrespondence), std::vector<Vec2>(from.hits.size(), Vec2(0.0f))};
+  std::vector<int32_t>& correspondence = found.pixel;
   std::vector<float> distances(from.hits.size(), kInfinity);
-  for_each_pixel(links.size(), [&](size_t i) {
+  for_each_pixel(correspondence.size(), [&](size_t i) {
     const Target t = forward.target(i);
-    const int32_t next = t.found ? pixel_at(to.region, t.film) : kNoLink;
-    if (next == kNoLink || !returns(back, from, i, next)) return;
-    links[i] = next;
+    const int32_t next = t.found ? pixel_at(to.region, t.film) : kNoCorrespondence;
+    if (next == kNoCorrespondence || !returns(back, from, i, next)) return;
+    correspondence[i] = next;
     found.off_centre[i] = off_centre(to.region, size_t(next), t.film);
     distances[i] = t.distance;
   });
   // In the pixels' order, so that ties go the same way on any number of threads.
-  std::vector<int32_t> owner(to.hits.size(), kNoLink);
-  for (size_t i = 0; i < links.size(); ++i) {
-    if (links[i] == kNoLink) continue;
-    int32_t& other = owner[size_t(links[i])];
-    const bool nearest = other == kNoLink || distances[i] < distances[size_t(other)];
-    if (nearest && other != kNoLink) links[size_t(other)] = kNoLink;
+  std::vector<int32_t> owner(to.hits.size(), kNoCorrespondence);
+  for (size_t i = 0; i < correspondence.size(); ++i) {
+    if (correspondence[i] == kNoCorrespondence) continue;
+    int32_t& other = owner[size_t(correspondence[i])];
+    const bool nearest = other == kNoCorrespondence || distances[i] < distances[size_t(other)];
+    if (nearest && other != kNoCorrespondence) correspondence[size_t(other)] = kNoCorrespondence;
     if (nearest) other = int32_t(i);
-    if (!nearest) links[i] = kNoLink;
+    if (!nearest) correspondence[i] = kNoCorrespondence;
   }
   return found;
 }
 
-PixelLinks inverse_links(const PixelLinks& links) {
-  PixelLinks inverse{std::vector<int32_t>(links.pixel.size(), kNoLink), std::vector<Vec2>(links.off_centre.size(), Vec2(0.0f))};
-  for (size_t i = 0; i < links.pixel.size(); ++i) {
-    if (links.pixel[i] == kNoLink) continue;
-    const auto end = size_t(links.pixel[i]);
+PixelCorrespondence inverse_correspondence(const PixelCorrespondence& correspondence) {
+  PixelCorrespondence inverse{std::vector<int32_t>(correspondence.pixel.size(), kNoCorrespondence), std::vector<Vec2>(correspondence.off_centre.size(), Vec2(0.0f))};
+  for (size_t i = 0; i < correspondence.pixel.size(); ++i) {
+    if (correspondence.pixel[i] == kNoCorrespondence) continue;
+    const auto end = size_t(correspondence.pixel[i]);
     inverse.pixel[end] = int32_t(i);
-    if (!links.off_centre.empty()) inverse.off_centre[end] = links.off_centre[i];
+    if (!correspondence.off_centre.empty()) inverse.off_centre[end] = correspondence.off_centre[i];
   }
   return inverse;
 }
 
-bool is_cut(const GradusCamera& from, const GradusCamera& to) {
+bool is_shot_change(const GradusCamera& from, const GradusCamera& to) {
   if (from.type != to.type) return true;
   const auto axis = [](const GradusCamera& c) { return glm::normalize(-Vec3(c.matrix[8], c.matrix[9], c.matrix[10])); };
   const float zoom = (to.window[1] - to.window[0]) / (from.window[1] - from.window[0]);
-  const bool near = glm::dot(axis(from), axis(to)) >= kCutCosine && zoom < kCutZoom && zoom > 1.0f / kCutZoom;
+  const bool near = glm::dot(axis(from), axis(to)) >= kShotChangeCosine && zoom < kShotChangeZoom && zoom > 1.0f / kShotChangeZoom;
   return !near;
 }
 

@@ -22,11 +22,11 @@ struct CentreView {
 };
 // The snapshot lives as long as the view; the region is one of a film of width × height. Cancelled: some of its pixels see nothing.
 CentreView view_centres(
-    const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelTest& is_cancelled = [] { return false; });
+    const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelCheck& is_cancelled = [] { return false; });
 
 // Middle of a pixel of the region.
 Vec2 centre_of(const Region& region, size_t pixel);
-// The pixel of the region that holds a film position; kNoLink outside.
+// The pixel of the region that holds a film position; kNoCorrespondence outside.
 int32_t pixel_at(const Region& region, const Vec2& film);
 
 // How far a film position lies from the middle of its pixel, in steps that leave what rests exactly there.
@@ -34,12 +34,12 @@ Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film);
 
 // By pixels of `from`: the pixel of `to`. One-to-one. A link leads back to within a pixel of where it came from; of several
 // pixels that lead to one the nearest to the camera has it. Both views have the same region.
-PixelLinks link_pixels(const CentreView& from, const CentreView& to);
+PixelCorrespondence match_pixels(const CentreView& from, const CentreView& to);
 // The other way round: by pixels of `to`, the pixel of `from`.
-PixelLinks inverse_links(const PixelLinks& links);
+PixelCorrespondence inverse_correspondence(const PixelCorrespondence& correspondence);
 
 // Whether the film or the view changes so much between two frames that they are no motion but a cut (test C8: a turn of more than 30°,
 // another type of camera, a jump of the zoom).
-bool is_cut(const GradusCamera& from, const GradusCamera& to);
+bool is_shot_change(const GradusCamera& from, const GradusCamera& to);
 
 }  // namespace gradus

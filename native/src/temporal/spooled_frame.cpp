@@ -10,19 +10,19 @@
 
 namespace gradus {
 
-SpooledFrame::SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content, const CancelTest& cancel)
-    : size_(FrameWindow({frame}).size()), gradients_(!frame->base.values.dx.empty()), halves_(content.halves) {
+SpooledFrame::SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content, const CancelCheck& cancel)
+    : size_(FrameWindow({frame}).size()), gradients_(!frame->fresh.values.dx.empty()), halves_(content.halves) {
   write(FrameWindow({frame}), false, cancel);
 }
 
 void SpooledFrame::write_differences(const std::shared_ptr<const TemporalFrame>& frame, const std::shared_ptr<const TemporalFrame>& next,
-                                     const CancelTest& cancel) {
+                                     const CancelCheck& cancel) {
   write(FrameWindow({frame, next}), true, cancel);
 }
 
-void SpooledFrame::write(const HalvedWindowSource& rows, bool temporal, const CancelTest& cancel) {
+void SpooledFrame::write(const HalvedWindowSource& rows, bool temporal, const CancelCheck& cancel) {
   tbb::parallel_for(0, size_.height, [&](int y) {
-    stop_if(cancel);
+    throw_if_cancelled(cancel);
     std::vector<float> row(size_t(size_.width) * size_t(size_.channels));
     for (const RowKind kind : kRowKinds) {
       if (is_temporal(kind) != temporal || !holds(kind)) continue;
@@ -33,9 +33,9 @@ void SpooledFrame::write(const HalvedWindowSource& rows, bool temporal, const Ca
       file_.write(place_of(kind, kHalfDifferences, y), row.data(), row_bytes());
     }
     if (!temporal) return;
-    std::vector<int32_t> links(size_t(size_.width));
-    rows.read_links(0, y, links.data());
-    file_.write(place_of_links(y), links.data(), links.size() * sizeof(int32_t));
+    std::vector<int32_t> correspondence(size_t(size_.width));
+    rows.read_correspondence(0, y, correspondence.data());
+    file_.write(place_of_correspondence(y), correspondence.data(), correspondence.size() * sizeof(int32_t));
   });
 }
 
@@ -46,7 +46,7 @@ uint64_t SpooledFrame::place_of(RowKind kind, Part part, int y) const {
   return (plane * uint64_t(size_.height) + uint64_t(y)) * row_bytes();
 }
 
-uint64_t SpooledFrame::place_of_links(int y) const {
+uint64_t SpooledFrame::place_of_correspondence(int y) const {
   const uint64_t planes = std::size(kRowKinds) * kParts * uint64_t(size_.height) * row_bytes();
   return planes + uint64_t(y) * uint64_t(size_.width) * sizeof(int32_t);
 }
@@ -57,6 +57,6 @@ void SpooledFrame::read(RowKind kind, Part part, int y, float* out) const {
   file_.read(place_of(kind, part, y), out, row_bytes());
 }
 
-void SpooledFrame::read_links(int y, int32_t* out) const { file_.read(place_of_links(y), out, size_t(size_.width) * sizeof(int32_t)); }
+void SpooledFrame::read_correspondence(int y, int32_t* out) const { file_.read(place_of_correspondence(y), out, size_t(size_.width) * sizeof(int32_t)); }
 
 }  // namespace gradus

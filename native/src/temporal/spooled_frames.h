@@ -13,7 +13,7 @@ namespace gradus {
 
 class SpooledFrames {
  public:
-  SpooledFrames(LoadPart base, LoadPart replay, TemporalContent content);
+  SpooledFrames(LoadSamples fresh, LoadSamples replay, TemporalContent content);
   ~SpooledFrames();
 
   // The frames from `first` to `last`. Windows come in order: frames before this one's are forgotten. Reads what is new, one frame after
@@ -21,19 +21,19 @@ class SpooledFrames {
   // time alone: to read others throws invalid_operation. `cancel` is asked all the while, and for every row that is read of the window:
   // throws the Error CANCELLED, after which no window can be had.
   std::unique_ptr<HalvedWindowSource> window(
-      int first, int last, const CancelTest& cancel = [] { return false; });
+      int first, int last, const CancelCheck& cancel = [] { return false; });
 
  private:
-  class SpooledBase;
+  class SpooledFresh;
 
-  std::shared_ptr<const TemporalFrame> load(int place, const CancelTest& cancel) const;
+  std::shared_ptr<const TemporalFrame> load(int place, const CancelCheck& cancel) const;
   // What the differences to the next frame need of one that is there.
-  std::shared_ptr<const TemporalFrame> base_of(int place, const CancelTest& cancel) const;
+  std::shared_ptr<const TemporalFrame> fresh_of(int place, const CancelCheck& cancel) const;
 
-  const LoadPart base_, replay_;
+  const LoadSamples fresh_, replay_;
   const TemporalContent content_;
   std::map<int, std::shared_ptr<SpooledFrame>> frames_;
-  std::unique_ptr<const SpooledBase> end_;  // of the window before: its last frame
+  std::unique_ptr<const SpooledFresh> end_;  // of the window before: its last frame
 };
 
 }  // namespace gradus

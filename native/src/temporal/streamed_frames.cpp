@@ -7,15 +7,15 @@
 
 namespace gradus {
 
-StreamedFrames::StreamedFrames(LoadPart base, LoadPart replay, Merge merge)
-    : base_(std::move(base)), replay_(std::move(replay)), merge_(std::move(merge)) {}
+StreamedFrames::StreamedFrames(LoadSamples fresh, LoadSamples replay, Merge merge)
+    : fresh_(std::move(fresh)), replay_(std::move(replay)), merge_(std::move(merge)) {}
 
-std::shared_ptr<const Frame> StreamedFrames::frame(int place, const CancelTest& cancel) {
+std::shared_ptr<const Film> StreamedFrames::frame(int place, const CancelCheck& cancel) {
   if (merged_.count(place) == 0) load(place, cancel);
   return std::move(merged_.extract(place).mapped());
 }
 
-std::vector<std::unique_ptr<HalvedWindowSource>> StreamedFrames::differences(int place, const CancelTest& cancel) {
+std::vector<std::unique_ptr<HalvedWindowSource>> StreamedFrames::differences(int place, const CancelCheck& cancel) {
   const Images frame = images(place, cancel), next = images(place + 1, cancel);
   images_ = {{place + 1, next}};
   if (frame.size() != next.size()) throw invalid_argument("two frames of a sequence have other components");
@@ -26,22 +26,22 @@ std::vector<std::unique_ptr<HalvedWindowSource>> StreamedFrames::differences(int
   return windows;
 }
 
-const StreamedFrames::Images& StreamedFrames::images(int place, const CancelTest& cancel) {
+const StreamedFrames::Images& StreamedFrames::images(int place, const CancelCheck& cancel) {
   if (images_.count(place) == 0) load(place, cancel);
   return images_.at(place);
 }
 
-void StreamedFrames::load(int place, const CancelTest& cancel) {
+void StreamedFrames::load(int place, const CancelCheck& cancel) {
   merged_.clear();
-  const std::shared_ptr<Frame> base = base_(place, cancel);
-  const std::shared_ptr<const Frame> replay = replay_(place, cancel);
+  const std::shared_ptr<Film> fresh = fresh_(place, cancel);
+  const std::shared_ptr<const Film> replay = replay_(place, cancel);
   while (images_.size() > 1) images_.erase(images_.begin());
   Images& images = images_[place];
   images.clear();
-  for (int k = 0; k < int(base->components.size()); ++k) {
-    images.push_back(std::make_shared<TemporalFrame>(make_temporal_frame(*base, *replay, {.gradients = false}, k)));
+  for (int k = 0; k < int(fresh->components.size()); ++k) {
+    images.push_back(std::make_shared<TemporalFrame>(make_temporal_frame(*fresh, *replay, {.gradients = false}, k)));
   }
-  merged_[place] = merge_(place, base, *replay);
+  merged_[place] = merge_(place, fresh, *replay);
 }
 
 }  // namespace gradus

@@ -15,25 +15,25 @@ namespace gradus {
 class StreamedFrames {
  public:
   // All samples of a frame, made of its two parts.
-  using Merge = std::function<std::shared_ptr<const Frame>(int place, std::shared_ptr<Frame> base, const Frame& replay)>;
+  using Merge = std::function<std::shared_ptr<const Film>(int place, std::shared_ptr<Film> fresh, const Film& replay)>;
   // Parts of frames with the same components.
-  StreamedFrames(LoadPart base, LoadPart replay, Merge merge);
+  StreamedFrames(LoadSamples fresh, LoadSamples replay, Merge merge);
 
   // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena. Throws the Error
   // CANCELLED.
-  std::shared_ptr<const Frame> frame(int place, const CancelTest& cancel);
+  std::shared_ptr<const Film> frame(int place, const CancelCheck& cancel);
   // Of each component a window of the frame and the next one, with pixels and their differences over time alone.
-  std::vector<std::unique_ptr<HalvedWindowSource>> differences(int place, const CancelTest& cancel);
+  std::vector<std::unique_ptr<HalvedWindowSource>> differences(int place, const CancelCheck& cancel);
 
  private:
   using Images = std::vector<std::shared_ptr<const TemporalFrame>>;  // by component
-  const Images& images(int place, const CancelTest& cancel);
-  void load(int place, const CancelTest& cancel);
+  const Images& images(int place, const CancelCheck& cancel);
+  void load(int place, const CancelCheck& cancel);
 
-  const LoadPart base_, replay_;
+  const LoadSamples fresh_, replay_;
   const Merge merge_;
   std::map<int, Images> images_;                        // of two at most
-  std::map<int, std::shared_ptr<const Frame>> merged_;  // of the last one that was read, until it is asked for
+  std::map<int, std::shared_ptr<const Film>> merged_;  // of the last one that was read, until it is asked for
 };
 
 }  // namespace gradus

@@ -20,7 +20,7 @@ void add(GradientImages term, GradientImages* sum) {
   }
 }
 
-HalvedImages read_halved(const Frame& frame, TemporalContent content, int component = kAllComponents) {
+HalvedImages read_halved(const Film& frame, TemporalContent content, int component = kAllComponents) {
   HalvedImages images;
   const bool is_one = component != kAllComponents;
   const int first = is_one ? component : 0, end = is_one ? component + 1 : int(frame.components.size());
@@ -33,22 +33,22 @@ HalvedImages read_halved(const Frame& frame, TemporalContent content, int compon
 }
 
 // Of one component: where that was.
-SampleSources sources_of(const SampleSources& replayed, int component) {
-  SampleSources sources = replayed;
-  if (component != kAllComponents && replayed.has_own(component)) sources.links = replayed.of_component[size_t(component)];
-  if (component != kAllComponents) sources.of_component.clear();
-  return sources;
+ReplayMap sources_of(const ReplayMap& replayed, int component) {
+  ReplayMap replay_map = replayed;
+  if (component != kAllComponents && replayed.has_component_map(component)) replay_map.correspondence = replayed.of_component[size_t(component)];
+  if (component != kAllComponents) replay_map.of_component.clear();
+  return replay_map;
 }
 
 }  // namespace
 
-void check_alike(const GradientImages& images, const GradientImages& other, int32_t frame) {
+void check_same_layout(const GradientImages& images, const GradientImages& other, int32_t frame) {
   const bool fits = images.width == other.width && images.height == other.height && images.channels == other.channels &&
                     images.dx.empty() == other.dx.empty();
   if (!fits) throw invalid_argument("stored frame " + std::to_string(frame) + " has another size or other planes than those beside it");
 }
 
-TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent content) {
+TemporalFrame make_replay(const Film& replay, int32_t stream, TemporalContent content) {
   TemporalFrame frame;
   frame.replay = read_halved(replay, content);
   frame.stream = stream;
@@ -57,37 +57,37 @@ TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent c
   return frame;
 }
 
-TemporalFrame make_base(const Frame& base, TemporalContent content) {
+TemporalFrame make_fresh(const Film& fresh, TemporalContent content) {
   TemporalFrame frame;
-  frame.base = read_halved(base, content);
-  frame.stream = base.frame_number;
-  frame.scene_key = base.scene_key;
+  frame.fresh = read_halved(fresh, content);
+  frame.stream = fresh.frame_number;
+  frame.scene_key = fresh.scene_key;
   return frame;
 }
 
-TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content, int component) {
+TemporalFrame make_temporal_frame(const Film& fresh, const Film& replay, TemporalContent content, int component) {
   TemporalFrame frame;
   frame.replay = read_halved(replay, content, component);
-  frame.base = read_halved(base, content, component);
-  frame.stream = base.frame_number;
+  frame.fresh = read_halved(fresh, content, component);
+  frame.stream = fresh.frame_number;
   frame.scene_key = replay.scene_key;
   frame.replayed = sources_of(replay.replayed, component);
-  check_alike(frame.replay.values, frame.base.values, base.frame_number);
-  frame.replay_share.resize(base.count[0].size());
+  check_same_layout(frame.replay.values, frame.fresh.values, fresh.frame_number);
+  frame.replay_share.resize(fresh.count[0].size());
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {
-    const auto own = float(samples_at(base, i)), other = float(samples_at(replay, i));
+    const auto own = float(samples_at(fresh, i)), other = float(samples_at(replay, i));
     frame.replay_share[i] = own + other > 0.0f ? other / (own + other) : 0.0f;
   }
   return frame;
 }
 
-PixelLinks links_between(const TemporalFrame& frame, const TemporalFrame& next) {
+PixelCorrespondence correspondence_between(const TemporalFrame& frame, const TemporalFrame& next) {
   const GradientImages& images = next.replay.values;
-  std::vector<int32_t> pixel(size_t(images.width) * size_t(images.height), kNoLink);
+  std::vector<int32_t> pixel(size_t(images.width) * size_t(images.height), kNoCorrespondence);
   if (is_repeated(frame, next)) std::iota(pixel.begin(), pixel.end(), 0);
-  const SampleSources& replayed = next.replayed;
-  const bool follows = replayed.stream_frame == frame.stream && replayed.links.pixel.size() == pixel.size();
-  return follows && !is_repeated(frame, next) ? inverse_links(replayed.links) : PixelLinks{std::move(pixel)};
+  const ReplayMap& replayed = next.replayed;
+  const bool follows = replayed.stream_frame == frame.stream && replayed.correspondence.pixel.size() == pixel.size();
+  return follows && !is_repeated(frame, next) ? inverse_correspondence(replayed.correspondence) : PixelCorrespondence{std::move(pixel)};
 }
 
 }  // namespace gradus

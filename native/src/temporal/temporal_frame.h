@@ -20,29 +20,29 @@ struct HalvedImages {
 };
 
 struct TemporalFrame {
-  HalvedImages base;
+  HalvedImages fresh;
   HalvedImages replay;              // of the random numbers of the frame before
   std::vector<float> replay_share;  // of the samples of each pixel
   int32_t stream = 0;               // whose random numbers the base has taken
   uint64_t scene_key = 0;           // of the scene that both show
-  SampleSources replayed;           // and whose the replay has
+  ReplayMap replayed;           // and whose the replay has
 };
 
 // Of all their components together, or of one, with what it has replayed. Throws invalid_argument where the two do not belong together.
 inline constexpr int kAllComponents = -1;
-TemporalFrame make_temporal_frame(const Frame& base, const Frame& replay, TemporalContent content = {}, int component = kAllComponents);
+TemporalFrame make_temporal_frame(const Film& fresh, const Film& replay, TemporalContent content = {}, int component = kAllComponents);
 // Of one of the two: all that differences over time from the frame to the next, or to the frame from the one before, read of it.
-TemporalFrame make_base(const Frame& base, TemporalContent content);
-TemporalFrame make_replay(const Frame& replay, int32_t stream, TemporalContent content);
+TemporalFrame make_fresh(const Film& fresh, TemporalContent content);
+TemporalFrame make_replay(const Film& replay, int32_t stream, TemporalContent content);
 
 // Throws invalid_argument where the images differ in size or kinds: whatever a folder may hold under the names of frames.
-void check_alike(const GradientImages& images, const GradientImages& other, int32_t frame);
+void check_same_layout(const GradientImages& images, const GradientImages& other, int32_t frame);
 
 // The next frame has the samples of this one, for nothing has changed. Of one that was stored of an older scene it has none.
 inline bool is_repeated(const TemporalFrame& frame, const TemporalFrame& next) {
   return next.stream == frame.stream && next.scene_key == frame.scene_key;
 }
 // By pixels of the frame: that of the next one, as y·width + x: those that the replay of the next has followed.
-PixelLinks links_between(const TemporalFrame& frame, const TemporalFrame& next);
+PixelCorrespondence correspondence_between(const TemporalFrame& frame, const TemporalFrame& next);
 
 }  // namespace gradus

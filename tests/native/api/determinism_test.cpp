@@ -19,24 +19,24 @@ class L1_Determinism : public WithScene<::testing::TestWithParam<uint32_t>> {
     return s;
   }
   // Renders to the end, going on from `resumed` if it is not 0.
-  GradusFrame render(const GradusSettings& s, GradusFrame resumed = 0) {
+  GradusFilm render(const GradusSettings& s, GradusFilm resumed = 0) {
     GradusRender r = 0;
-    GradusFrame frame = 0;
+    GradusFilm film = 0;
     EXPECT_OK(resumed ? gradus_render_resume(scene, &s, resumed, &r) : gradus_render_start(scene, &s, &r));
     EXPECT_OK(gradus_render_wait(r, -1.0));
-    EXPECT_OK(gradus_render_frame(r, &frame));
+    EXPECT_OK(gradus_render_film(r, &film));
     EXPECT_OK(gradus_render_release(r));
-    return frame;
+    return film;
   }
-  static std::vector<float> pass(GradusFrame frame, uint32_t pass) {
+  static std::vector<float> pass(GradusFilm film, uint32_t pass) {
     uint32_t width = 0, height = 0, channels = 0;
-    EXPECT_OK(gradus_frame_size(frame, &width, &height));
+    EXPECT_OK(gradus_film_size(film, &width, &height));
     EXPECT_OK(gradus_pass_info(pass, nullptr, &channels));
     std::vector<float> pixels(size_t(width) * height * channels);
-    EXPECT_OK(gradus_frame_read_pass(frame, pass, pixels.data(), pixels.size()));
+    EXPECT_OK(gradus_film_read_pass(film, pass, pixels.data(), pixels.size()));
     return pixels;
   }
-  static void expect_equal(GradusFrame a, GradusFrame b) {
+  static void expect_equal(GradusFilm a, GradusFilm b) {
     for (const uint32_t p : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y,
                              GRADUS_PASS_VARIANCE, GRADUS_PASS_ERROR, GRADUS_PASS_NORMAL, GRADUS_PASS_DIFFUSE_DIRECT}) {
       EXPECT_EQ(pass(a, p), pass(b, p)) << "pass " << p;
@@ -48,16 +48,16 @@ TEST_P(L1_Determinism, SameBitsForAnyNumberOfThreads) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   GradusSettings s = settings(8);
   s.threads = 1;
-  const GradusFrame first = render(s);
+  const GradusFilm first = render(s);
   const std::vector<float> image = pass(first, GRADUS_PASS_NOISY_IMAGE);
   EXPECT_GT(*std::max_element(image.begin(), image.end()), 0.1f);
   for (const uint32_t threads : {2u, 3u, 7u}) {
     s.threads = threads;
-    const GradusFrame other = render(s);
+    const GradusFilm other = render(s);
     expect_equal(first, other);
-    EXPECT_OK(gradus_frame_release(other));
+    EXPECT_OK(gradus_film_release(other));
   }
-  EXPECT_OK(gradus_frame_release(first));
+  EXPECT_OK(gradus_film_release(first));
 }
 
 // Threads that share one processor meet in another order than those with processors of their own.
@@ -65,7 +65,7 @@ TEST_P(L1_Determinism, SameBitsOnOneProcessor) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   GradusSettings s = settings(8);
   s.threads = 3;
-  const GradusFrame first = render(s);
+  const GradusFilm first = render(s);
   cpu_set_t all, one;
   ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
   CPU_ZERO(&one);
@@ -73,26 +73,26 @@ TEST_P(L1_Determinism, SameBitsOnOneProcessor) {
   while (!CPU_ISSET(cpu, &all)) ++cpu;
   CPU_SET(cpu, &one);
   ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);  // threads begin with that of their maker
-  const GradusFrame other = render(s);
+  const GradusFilm other = render(s);
   EXPECT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
   expect_equal(first, other);
-  for (const GradusFrame frame : {first, other}) EXPECT_OK(gradus_frame_release(frame));
+  for (const GradusFilm film : {first, other}) EXPECT_OK(gradus_film_release(film));
 }
 
 TEST_P(L1_Determinism, L3_ResumeHasTheBitsOfOneRender) {
-  const GradusFrame whole = render(settings(64)), part = render(settings(16)), resumed = render(settings(64), part);
+  const GradusFilm whole = render(settings(64)), part = render(settings(16)), resumed = render(settings(64), part);
   expect_equal(whole, resumed);
-  for (const GradusFrame frame : {whole, part, resumed}) EXPECT_OK(gradus_frame_release(frame));
+  for (const GradusFilm film : {whole, part, resumed}) EXPECT_OK(gradus_film_release(film));
 }
 
 TEST_P(L1_Determinism, L3_BorderHasTheBitsOfTheFullFrame) {
   GradusSettings s = settings(8);
   // Linear, with a known reach; automatic, a pilot tells where there are gradients, and must tell the same of both.
   if (s.integrator != GRADUS_INTEGRATOR_PATH) s.reconstruction = GRADUS_RECONSTRUCTION_L2;
-  const GradusFrame full = render(s);
+  const GradusFilm full = render(s);
   const uint32_t region[4] = {40, 20, 60, 45};
   std::copy(region, region + 4, s.region);
-  const GradusFrame part = render(s);
+  const GradusFilm part = render(s);
   const std::vector<float> a = pass(full, GRADUS_PASS_NOISY_IMAGE), b = pass(part, GRADUS_PASS_NOISY_IMAGE);
   const std::vector<float> ca = pass(full, GRADUS_PASS_COMBINED), cb = pass(part, GRADUS_PASS_COMBINED);
   for (uint32_t y = region[1]; y < region[3]; ++y) {
@@ -104,8 +104,8 @@ TEST_P(L1_Determinism, L3_BorderHasTheBitsOfTheFullFrame) {
       }
     }
   }
-  EXPECT_OK(gradus_frame_release(full));
-  EXPECT_OK(gradus_frame_release(part));
+  EXPECT_OK(gradus_film_release(full));
+  EXPECT_OK(gradus_film_release(part));
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, L1_Determinism,

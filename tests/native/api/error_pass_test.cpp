@@ -22,20 +22,20 @@ class ErrorOfFrames : public WithScene<> {
     return s;
   }
   // The frame of a render, and the pass that the render itself gives.
-  GradusFrame render(const GradusSettings& s, std::vector<float>* error) const {
+  GradusFilm render(const GradusSettings& s, std::vector<float>* error) const {
     GradusRender r = 0;
-    GradusFrame frame = 0;
+    GradusFilm film = 0;
     error->resize(size_t{kWidth} * kHeight);
     EXPECT_OK(gradus_render_start(scene, &s, &r));
     EXPECT_OK(gradus_render_wait(r, -1.0));
     EXPECT_OK(gradus_render_read_pass(r, GRADUS_PASS_ERROR, error->data(), error->size()));
-    EXPECT_OK(gradus_render_frame(r, &frame));
+    EXPECT_OK(gradus_render_film(r, &film));
     EXPECT_OK(gradus_render_release(r));
-    return frame;
+    return film;
   }
-  static std::vector<float> error_of(GradusFrame frame) {
+  static std::vector<float> error_of(GradusFilm film) {
     std::vector<float> error(size_t{kWidth} * kHeight);
-    EXPECT_OK(gradus_frame_read_pass(frame, GRADUS_PASS_ERROR, error.data(), error.size()));
+    EXPECT_OK(gradus_film_read_pass(film, GRADUS_PASS_ERROR, error.data(), error.size()));
     return error;
   }
 };
@@ -44,14 +44,14 @@ TEST_F(ErrorOfFrames, IsThatOfTheRenderAndSurvivesTheStore) {
   const std::string path = testing::TempDir() + "/error_of_frames.exr";
   for (const GradusReconstruction how : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     std::vector<float> of_render;
-    const GradusFrame frame = render(settings(how), &of_render);
+    const GradusFilm film = render(settings(how), &of_render);
     EXPECT_GT(*std::max_element(of_render.begin(), of_render.end()), 0.0f);
-    EXPECT_EQ(error_of(frame), of_render) << how;
-    EXPECT_OK(gradus_frame_save(frame, path.c_str()));
-    GradusFrame loaded = 0;
-    ASSERT_OK(gradus_frame_load(device, path.c_str(), &loaded));
+    EXPECT_EQ(error_of(film), of_render) << how;
+    EXPECT_OK(gradus_film_save(film, path.c_str()));
+    GradusFilm loaded = 0;
+    ASSERT_OK(gradus_film_load(device, path.c_str(), &loaded));
     EXPECT_EQ(error_of(loaded), of_render) << how;
-    for (const GradusFrame f : {frame, loaded}) EXPECT_OK(gradus_frame_release(f));
+    for (const GradusFilm f : {film, loaded}) EXPECT_OK(gradus_film_release(f));
   }
   std::filesystem::remove(path);
 }
@@ -59,18 +59,18 @@ TEST_F(ErrorOfFrames, IsThatOfTheRenderAndSurvivesTheStore) {
 // A frame that is reconstructed in another way has another error; and it need not be asked for when the frame was rendered.
 TEST_F(ErrorOfFrames, ComesWithAnotherReconstruction) {
   std::vector<float> of_l2, of_none, rgba(size_t{4} * kWidth * kHeight), error(of_l2.size());
-  const GradusFrame l2 = render(settings(GRADUS_RECONSTRUCTION_L2), &of_l2), none = render(settings(GRADUS_RECONSTRUCTION_NONE), &of_none);
+  const GradusFilm l2 = render(settings(GRADUS_RECONSTRUCTION_L2), &of_l2), none = render(settings(GRADUS_RECONSTRUCTION_NONE), &of_none);
   error.resize(of_l2.size());
-  EXPECT_OK(gradus_frame_reconstruct(none, GRADUS_RECONSTRUCTION_L2, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
+  EXPECT_OK(gradus_film_reconstruct(none, GRADUS_RECONSTRUCTION_L2, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
   EXPECT_EQ(error, of_l2);
-  EXPECT_OK(gradus_frame_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
+  EXPECT_OK(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
   EXPECT_EQ(error, of_none);
-  EXPECT_OK(gradus_frame_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+  EXPECT_OK(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
   auto* misaligned = reinterpret_cast<float*>(reinterpret_cast<char*>(error.data()) + 1);
-  EXPECT_EQ(gradus_frame_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), misaligned),
+  EXPECT_EQ(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), misaligned),
             GRADUS_ERROR_INVALID_ARGUMENT);
   gradus_error(nullptr);
-  for (const GradusFrame f : {l2, none}) EXPECT_OK(gradus_frame_release(f));
+  for (const GradusFilm f : {l2, none}) EXPECT_OK(gradus_film_release(f));
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ std::vector<std::function<GradusError(uint64_t)>> handle_functions(uint32_t kind
                 return gradus_scene_load(h, "/nonexistent", &s, nullptr);
               },
               [](uint64_t h) {
-                GradusFrame f;
-                return gradus_frame_load(h, "/nonexistent", &f);
+                GradusFilm f;
+                return gradus_film_load(h, "/nonexistent", &f);
               },
               [](uint64_t h) {
                 GradusColorSpace s = sized<GradusColorSpace>();
@@ -103,24 +103,24 @@ std::vector<std::function<GradusError(uint64_t)>> handle_functions(uint32_t kind
                 return gradus_render_stats(h, &j);
               },
               [](uint64_t h) {
-                GradusFrame f;
-                return gradus_render_frame(h, &f);
+                GradusFilm f;
+                return gradus_render_film(h, &f);
               }};
     default:
-      return {[](uint64_t h) { return gradus_frame_release(h); },
-              [](uint64_t h) { return gradus_frame_save(h, "/nonexistent/x"); },
-              [](uint64_t h) { return gradus_frame_merge(h, h); },
+      return {[](uint64_t h) { return gradus_film_release(h); },
+              [](uint64_t h) { return gradus_film_save(h, "/nonexistent/x"); },
+              [](uint64_t h) { return gradus_film_merge(h, h); },
               [](uint64_t h) {
                 uint32_t a, b;
-                return gradus_frame_size(h, &a, &b);
+                return gradus_film_size(h, &a, &b);
               },
               [](uint64_t h) {
                 float p[4];
-                return gradus_frame_reconstruct(h, 0, 0.2f, GRADUS_DENOISER_NONE, p, 4, nullptr);
+                return gradus_film_reconstruct(h, 0, 0.2f, GRADUS_DENOISER_NONE, p, 4, nullptr);
               },
               [](uint64_t h) {
                 float p[4];
-                return gradus_frame_read_pass(h, 0, p, 4);
+                return gradus_film_read_pass(h, 0, p, 4);
               }};
   }
 }
@@ -184,7 +184,7 @@ TEST(G1_Handles, TenThousandRandomCalls) {
         gradus_render_start(any(random), &settings, &made);
         break;
       default:
-        gradus_render_frame(any(random), &made);
+        gradus_render_film(any(random), &made);
         break;
     }
     if (made) keep(made);
@@ -203,7 +203,7 @@ TEST(G1_Handles, TenThousandRandomCalls) {
   calls(1);
   other.join();
   for (const uint64_t handle : handles) {
-    for (const auto release : {gradus_render_release, gradus_frame_release, gradus_scene_release, gradus_device_release}) release(handle);
+    for (const auto release : {gradus_render_release, gradus_film_release, gradus_scene_release, gradus_device_release}) release(handle);
   }
   gradus_error(nullptr);
 }
@@ -325,15 +325,15 @@ TEST(G6_Order, RendersOutliveTheirSceneAndDevice) {
   EXPECT_OK(gradus_scene_release(scene));
   EXPECT_OK(gradus_device_release(device));
   EXPECT_OK(gradus_render_wait(render, -1.0));
-  GradusFrame frame = 0;
-  ASSERT_OK(gradus_render_frame(render, &frame));
+  GradusFilm film = 0;
+  ASSERT_OK(gradus_render_film(render, &film));
   EXPECT_OK(gradus_render_release(render));
   uint32_t width = 0, height = 0;
-  EXPECT_OK(gradus_frame_size(frame, &width, &height));
+  EXPECT_OK(gradus_film_size(film, &width, &height));
   EXPECT_EQ(width, 24u);
   std::vector<float> rgba(size_t(width) * height * 4);
-  EXPECT_OK(gradus_frame_reconstruct(frame, GRADUS_RECONSTRUCTION_L1, 0.2f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
-  EXPECT_OK(gradus_frame_release(frame));
+  EXPECT_OK(gradus_film_reconstruct(film, GRADUS_RECONSTRUCTION_L1, 0.2f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+  EXPECT_OK(gradus_film_release(film));
 }
 
 TEST(G6_Order, ReleaseWhileRenderingWaits) {
@@ -344,8 +344,8 @@ TEST(G6_Order, ReleaseWhileRenderingWaits) {
   ASSERT_OK(gradus_render_start(scene, &settings, &render));
   EXPECT_EQ(gradus_render_wait(render, 0.0), GRADUS_TIMEOUT);
   EXPECT_EQ(gradus_error(nullptr), GRADUS_OK);  // it is none
-  GradusFrame frame = 0;
-  EXPECT_EQ(gradus_render_frame(render, &frame), GRADUS_ERROR_INVALID_OPERATION);
+  GradusFilm film = 0;
+  EXPECT_EQ(gradus_render_film(render, &film), GRADUS_ERROR_INVALID_OPERATION);
   const char* json = nullptr;
   EXPECT_EQ(gradus_render_stats(render, &json), GRADUS_ERROR_INVALID_OPERATION);
   EXPECT_EQ(json, nullptr);
@@ -431,9 +431,9 @@ TEST(G10_Registry, HandlesComeAndGo) {
   api::Registry registry;
   uint64_t last = 0;
   for (int i = 0; i < 100000; ++i) {
-    const uint64_t handle = registry.add(api::HandleType::Frame, std::make_shared<int>(i));
+    const uint64_t handle = registry.add(api::HandleType::Film, std::make_shared<int>(i));
     EXPECT_NE(handle, last);
-    EXPECT_EQ(*std::static_pointer_cast<int>(registry.remove(api::HandleType::Frame, handle)), i);
+    EXPECT_EQ(*std::static_pointer_cast<int>(registry.remove(api::HandleType::Film, handle)), i);
     last = handle;
   }
   EXPECT_EQ(registry.size(), 0u);

@@ -22,22 +22,22 @@ class FrameLightPasses : public WithScene<::testing::Test> {
     settings.passes |= needed_passes(light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
     ASSERT_OK(gradus_render_start(scene, &settings, &render));
     ASSERT_OK(gradus_render_wait(render, -1.0));
-    ASSERT_OK(gradus_render_frame(render, &frame));
+    ASSERT_OK(gradus_render_film(render, &film));
   }
   void TearDown() override {
-    EXPECT_OK(gradus_frame_release(frame));
+    EXPECT_OK(gradus_film_release(film));
     EXPECT_OK(gradus_render_release(render));
     WithScene::TearDown();
   }
 
   std::vector<float> read(uint32_t pass) const {
     std::vector<float> pixels(pass_info(pass).channels * kSide * kSide);
-    EXPECT_OK(gradus_frame_read_pass(frame, pass, pixels.data(), pixels.size()));
+    EXPECT_OK(gradus_film_read_pass(film, pass, pixels.data(), pixels.size()));
     return pixels;
   }
   std::vector<float> reconstruct(uint32_t reconstruction) const {
     std::vector<float> rgba(4 * kSide * kSide);
-    EXPECT_OK(gradus_frame_reconstruct(frame, reconstruction, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+    EXPECT_OK(gradus_film_reconstruct(film, reconstruction, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
     return rgba;
   }
   void expect_to_add_up(const std::vector<float>& rgba) const {
@@ -45,7 +45,7 @@ class FrameLightPasses : public WithScene<::testing::Test> {
   }
 
   GradusRender render = 0;
-  GradusFrame frame = 0;
+  GradusFilm film = 0;
 };
 
 TEST_F(FrameLightPasses, AreThoseOfTheRenderAtFirst) {
@@ -79,14 +79,14 @@ TEST_F(FrameLightPasses, AreMadeAnewOfAMergedFrame) {
   settings.passes |= needed_passes(light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
   settings.first_sample = 4;
   GradusRender more = 0;
-  GradusFrame other = 0;
+  GradusFilm other = 0;
   ASSERT_OK(gradus_render_start(scene, &settings, &more));
   ASSERT_OK(gradus_render_wait(more, -1.0));
-  ASSERT_OK(gradus_render_frame(more, &other));
-  ASSERT_OK(gradus_frame_merge(frame, other));
+  ASSERT_OK(gradus_render_film(more, &other));
+  ASSERT_OK(gradus_film_merge(film, other));
   EXPECT_NE(read(GRADUS_PASS_DIFFUSE_DIRECT), before);
   expect_to_add_up(read(GRADUS_PASS_COMBINED));
-  EXPECT_OK(gradus_frame_release(other));
+  EXPECT_OK(gradus_film_release(other));
   EXPECT_OK(gradus_render_release(more));
 }
 

@@ -98,7 +98,7 @@ TEST_F(J1_Temporary, AFolderThatCannotBeOpenedIsRemovedAndNamed) {
 
 TEST_F(J1_Temporary, APlaceThatIsNotThereIsReplacedByTheSystemsOwn) {
   setenv("TMPDIR", (place_ + "/missing").c_str(), 1);
-  EXPECT_EQ(temporary_place(), "/tmp");
+  EXPECT_EQ(temporary_path(), "/tmp");
 }
 
 TEST_F(J1_Temporary, APlaceThatTakesNoFilesIsNamed) {

@@ -188,15 +188,15 @@ TEST_F(FakeOidn, StopsWhenCancelled) {
   NoisyPicture p = picture(kColor);
   p.albedo = kAlbedo.data();
   p.normal = kNormal.data();
-  for (const int asked : {0, 1, 5, 12}) {  // in every phase
+  for (const int requested : {0, 1, 5, 12}) {  // in every phase
     int count = 0;
     try {
-      denoise(*fake(), p, 1, [&] { return ++count > asked; });
-      ADD_FAILURE() << asked;
+      denoise(*fake(), p, 1, [&] { return ++count > requested; });
+      ADD_FAILURE() << requested;
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), GRADUS_ERROR_CANCELLED) << asked;
+      EXPECT_EQ(e.code(), GRADUS_ERROR_CANCELLED) << requested;
     }
-    EXPECT_LE(count, asked + 2) << "went on";
+    EXPECT_LE(count, requested + 2) << "went on";
   }
 }
 

@@ -35,10 +35,10 @@ GradusSettings without_features(uint32_t samples) {
 }
 
 // A frame that keeps them though nobody asked for them, as the plan may have it.
-Frame with_unasked_features() {
-  Frame frame = *rendered(with_features(6));
-  frame.settings.passes = uint64_t{1} << GRADUS_PASS_COMBINED;
-  return frame;
+Film with_unasked_features() {
+  Film film = *rendered(with_features(6));
+  film.settings.passes = uint64_t{1} << GRADUS_PASS_COMBINED;
+  return film;
 }
 
 struct StoredFeatures : ::testing::Test {
@@ -47,14 +47,14 @@ struct StoredFeatures : ::testing::Test {
 };
 
 TEST(Features, HalvesAverageToThePass) {
-  const auto frame = rendered(with_features(5));  // three of the one half, two of the other
-  ASSERT_TRUE(has_features(*frame));
-  const Features both = read_features(*frame), a = read_features(*frame, {0, 1}), b = read_features(*frame, {1, 2});
-  EXPECT_EQ(both.width, frame->region.width());
-  EXPECT_EQ(both.height, frame->region.height());
+  const auto film = rendered(with_features(5));  // three of the one half, two of the other
+  ASSERT_TRUE(has_features(*film));
+  const Features both = read_features(*film), a = read_features(*film, {0, 1}), b = read_features(*film, {1, 2});
+  EXPECT_EQ(both.width, film->region.width());
+  EXPECT_EQ(both.height, film->region.height());
   EXPECT_NE(a.normal.values, b.normal.values);
-  std::vector<float> pass(size_t(frame->region.area()) * 3);
-  read_frame_pass(*frame, GRADUS_PASS_DENOISING_NORMAL, frame->region, pass.data());
+  std::vector<float> pass(size_t(film->region.area()) * 3);
+  read_film_pass(*film, GRADUS_PASS_DENOISING_NORMAL, film->region, pass.data());
   EXPECT_EQ(both.normal.values, pass);
   EXPECT_TRUE(a.normal.variance.empty());
   for (size_t i = 0; i < pass.size(); ++i) {
@@ -68,18 +68,18 @@ TEST(Features, HalvesAverageToThePass) {
 }
 
 TEST(Features, OneHalfAloneHasNoVariance) {
-  const auto frame = rendered(with_features(1));
-  const Features features = read_features(*frame);
+  const auto film = rendered(with_features(1));
+  const Features features = read_features(*film);
   const std::vector<float> none(features.albedo.values.size());
   EXPECT_NE(features.albedo.values, none);
-  EXPECT_EQ(read_features(*frame, {1, 2}).albedo.values, none);
+  EXPECT_EQ(read_features(*film, {1, 2}).albedo.values, none);
   for (const float v : features.albedo.variance) EXPECT_TRUE(std::isnan(v));
 }
 
 TEST(Features, FramesWithoutThemSaySo) {
-  const auto frame = rendered(without_features(2));
-  EXPECT_FALSE(has_features(*frame));
-  EXPECT_THROW(read_features(*frame), Error);
+  const auto film = rendered(without_features(2));
+  EXPECT_FALSE(has_features(*film));
+  EXPECT_THROW(read_features(*film), Error);
   EXPECT_THROW(read_feature(*rendered(with_features(2)), GRADUS_PASS_NORMAL), Error) << "not kept in halves";
 }
 
@@ -92,18 +92,18 @@ TEST(Features, FollowTheCountsOfAdaptiveRenders) {
                               fake->feature_seed = 0;
                             }));
   ASSERT_TRUE(render->wait(-1.0));
-  const std::shared_ptr<const Frame> frame = render->frame();
-  const auto [least, most] = std::minmax_element(frame->count[0].begin(), frame->count[0].end());
-  ASSERT_LT(*least, *most);
-  const std::vector<float> depth = read_features(*frame).depth.values, primal = read_images(*frame, 0).primal;
+  const std::shared_ptr<const Film> film = render->film();
+  const auto [minimum, maximum] = std::minmax_element(film->count[0].begin(), film->count[0].end());
+  ASSERT_LT(*minimum, *maximum);
+  const std::vector<float> depth = read_features(*film).depth.values, primal = read_images(*film, 0).primal;
   for (size_t i = 0; i < depth.size(); ++i) EXPECT_NEAR(depth[i], primal[3 * i], 1e-5f);  // made so above
 }
 
 TEST(Features, HalvesAreMergedApart) {
   GradusSettings late = with_features(25);
   late.first_sample = 7;
-  Frame merged = *rendered(with_features(7));
-  merge_frames(&merged, *rendered(late));
+  Film merged = *rendered(with_features(7));
+  merge_films(&merged, *rendered(late));
   const auto whole = rendered(with_features(32));
   for (int half = 0; half < kHalves; ++half) {
     const Features a = read_features(merged, {half, half + 1}), b = read_features(*whole, {half, half + 1});
@@ -120,25 +120,25 @@ TEST(L3_Resume, RefusesFramesThatLackWhatTheReconstructionReads) {
   const GradusSettings settings = without_features(16);
   Plan plan = make_plan(settings, *empty_snapshot());
   const uint64_t scene = empty_snapshot()->content_key;
-  Frame frame = *rendered(without_features(8));
-  EXPECT_NO_THROW(check_resumable(frame, settings, plan, scene));
+  Film film = *rendered(without_features(8));
+  EXPECT_NO_THROW(check_resumable(film, settings, plan, scene));
   plan.passes |= feature_passes();
-  EXPECT_THROW(check_resumable(frame, settings, plan, scene), Error);
+  EXPECT_THROW(check_resumable(film, settings, plan, scene), Error);
   EXPECT_NO_THROW(check_resumable(with_unasked_features(), settings, plan, scene));
 }
 
 TEST_F(StoredFeatures, ComeBackWithTheirHalves) {
-  const Frame frame = with_unasked_features();
-  save_frame(frame, path);
-  const auto back = load_frame(path);
-  EXPECT_EQ(kept_passes(*back), feature_passes());
-  EXPECT_TRUE(same_samples(frame, *back));
-  EXPECT_EQ(read_features(*back).depth.variance, read_features(frame).depth.variance);
+  const Film film = with_unasked_features();
+  save_film(film, path);
+  const auto back = load_film(path);
+  EXPECT_EQ(film_passes(*back), feature_passes());
+  EXPECT_TRUE(same_samples(film, *back));
+  EXPECT_EQ(read_features(*back).depth.variance, read_features(film).depth.variance);
 }
 
 // Files from before features had halves have one plane of each.
 TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
-  save_frame(*rendered(with_features(2)), path);
+  save_film(*rendered(with_features(2)), path);
   std::stringstream content;
   content << std::ifstream(path, std::ios::binary).rdbuf();
   std::string bytes = content.str();
@@ -147,7 +147,7 @@ TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
   ASSERT_NE(format, std::string::npos);
   bytes[format + key.size()] = '3';
   std::ofstream(path, std::ios::binary) << bytes;
-  const std::string refusal = refusal_of([&] { load_frame(path); });
+  const std::string refusal = refusal_of([&] { load_film(path); });
   EXPECT_NE(refusal.find("another version"), std::string::npos) << refusal;
 }
 

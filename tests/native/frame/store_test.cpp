@@ -64,118 +64,118 @@ TEST_F(F6_Store, RoundTripIsExact) {
   GradusSettings settings = all_passes(61, 37, 8);
   settings.film_transparent = 1;
   settings.frame = -7;
-  const auto frame = rendered(settings);
-  save_frame(*frame, path());
+  const auto film = rendered(settings);
+  save_film(*film, path());
   EXPECT_EQ(files(), 1u);
-  const auto back = load_frame(path());
-  EXPECT_TRUE(same_samples(*frame, *back));
-  EXPECT_EQ(frame->fallback, back->fallback);
-  EXPECT_EQ(frame->samples, back->samples);
+  const auto back = load_film(path());
+  EXPECT_TRUE(same_samples(*film, *back));
+  EXPECT_EQ(film->fallback, back->fallback);
+  EXPECT_EQ(film->samples, back->samples);
   EXPECT_EQ(back->samples.list(), (std::vector<SampleRange>{{0, 8}}));
-  EXPECT_EQ(back->scene_key, frame->scene_key);
+  EXPECT_EQ(back->scene_key, film->scene_key);
   EXPECT_EQ(back->frame_number, -7);
-  EXPECT_EQ(back->counters.rays_primary, frame->counters.rays_primary);
-  EXPECT_EQ(std::memcmp(&back->settings, &frame->settings, sizeof(GradusSettings)), 0);
+  EXPECT_EQ(back->counters.rays_primary, film->counters.rays_primary);
+  EXPECT_EQ(std::memcmp(&back->settings, &film->settings, sizeof(GradusSettings)), 0);
 }
 
 TEST_F(F6_Store, RegionsAndPathFramesToo) {
   GradusSettings settings = small_settings(200, 100, 2);
   const uint32_t region[4] = {80, 60, 90, 67};
   std::copy(region, region + 4, settings.region);
-  auto frame = rendered(settings);
-  save_frame(*frame, path());
-  EXPECT_TRUE(same_samples(*frame, *load_frame(path())));
-  EXPECT_EQ(load_frame(path())->region.y0, 16);  // 60 less the guard ring, where a square begins
+  auto film = rendered(settings);
+  save_film(*film, path());
+  EXPECT_TRUE(same_samples(*film, *load_film(path())));
+  EXPECT_EQ(load_film(path())->region.y0, 16);  // 60 less the guard ring, where a square begins
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  frame = rendered(settings);
-  save_frame(*frame, path());
-  EXPECT_TRUE(same_samples(*frame, *load_frame(path())));
-  EXPECT_FALSE(load_frame(path())->gradients);
+  film = rendered(settings);
+  save_film(*film, path());
+  EXPECT_TRUE(same_samples(*film, *load_film(path())));
+  EXPECT_FALSE(load_film(path())->gradients);
 }
 
 TEST_F(F6_Store, L3_ResumeFromAFileHasTheSameBits) {
-  save_frame(*rendered(all_passes(40, 30, 16)), path());
-  EXPECT_TRUE(same_samples(*rendered(all_passes(40, 30, 64), load_frame(path())), *rendered(all_passes(40, 30, 64))));
+  save_film(*rendered(all_passes(40, 30, 16)), path());
+  EXPECT_TRUE(same_samples(*rendered(all_passes(40, 30, 64), load_film(path())), *rendered(all_passes(40, 30, 64))));
 }
 
 TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
-  const auto frame = rendered(small_settings(64, 48, 4));
-  save_frame(*frame, path());
+  const auto film = rendered(small_settings(64, 48, 4));
+  save_film(*film, path());
   SolveReport report;
   const auto never = [] { return false; };
   for (const uint32_t kind : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
-    EXPECT_EQ(combine(*frame, kind, 0.2f, frame->region, never, &report),
-              combine(*load_frame(path()), kind, 0.2f, frame->region, never, &report));
+    EXPECT_EQ(combine(*film, kind, 0.2f, film->region, never, &report),
+              combine(*load_film(path()), kind, 0.2f, film->region, never, &report));
   }
 }
 
 TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
-  Frame frame = *rendered(small_settings(20, 10, 2));
-  frame.replayed.stream_frame = -3;
-  frame.replayed.seed = 11;
-  for (int32_t i = 0; i < 200; ++i) frame.replayed.links.pixel.push_back(i % 7 == 0 ? kNoLink : 199 - i);
-  save_frame(frame, path());
-  EXPECT_EQ(load_frame(path())->replayed.stream_frame, -3);
-  EXPECT_EQ(load_frame(path())->replayed.seed, 11u);
-  EXPECT_EQ(load_frame(path())->replayed.links, frame.replayed.links);
-  frame.replayed.links.pixel[5] = 200;
-  save_frame(frame, path());
-  EXPECT_THROW(load_frame(path()), Error);
+  Film film = *rendered(small_settings(20, 10, 2));
+  film.replayed.stream_frame = -3;
+  film.replayed.seed = 11;
+  for (int32_t i = 0; i < 200; ++i) film.replayed.correspondence.pixel.push_back(i % 7 == 0 ? kNoCorrespondence : 199 - i);
+  save_film(film, path());
+  EXPECT_EQ(load_film(path())->replayed.stream_frame, -3);
+  EXPECT_EQ(load_film(path())->replayed.seed, 11u);
+  EXPECT_EQ(load_film(path())->replayed.correspondence, film.replayed.correspondence);
+  film.replayed.correspondence.pixel[5] = 200;
+  save_film(film, path());
+  EXPECT_THROW(load_film(path()), Error);
 }
 
 TEST_F(F6_Store, ReplaysKeepWhereWaysEnd) {
-  Frame frame = *rendered(small_settings(20, 10, 2));
-  frame.replayed.links.pixel.assign(200, 3);
-  frame.replayed.links.off_centre.assign(200, Vec2(0.25f, -0.5f));
-  frame.replayed.links.off_centre[7] = Vec2(-0.125f, 0.0f);
-  save_frame(frame, path());
-  EXPECT_EQ(load_frame(path())->replayed.links, frame.replayed.links);
+  Film film = *rendered(small_settings(20, 10, 2));
+  film.replayed.correspondence.pixel.assign(200, 3);
+  film.replayed.correspondence.off_centre.assign(200, Vec2(0.25f, -0.5f));
+  film.replayed.correspondence.off_centre[7] = Vec2(-0.125f, 0.0f);
+  save_film(film, path());
+  EXPECT_EQ(load_film(path())->replayed.correspondence, film.replayed.correspondence);
 }
 
 // They would take any pixel of the still picture for what is seen, or none.
 TEST_F(F6_Store, WaysThatEndOutsideTheirPixelAreRefused) {
   for (const float wrong : {0.6f, -100.0f, NAN, INFINITY}) {
-    Frame frame = *rendered(small_settings(20, 10, 2));
-    frame.replayed.links.pixel.assign(200, 3);
-    frame.replayed.links.off_centre.assign(200, Vec2(0.0f));
-    frame.replayed.links.off_centre[7].y = wrong;
-    save_frame(frame, path());
-    EXPECT_THROW(load_frame(path()), Error) << wrong;
+    Film film = *rendered(small_settings(20, 10, 2));
+    film.replayed.correspondence.pixel.assign(200, 3);
+    film.replayed.correspondence.off_centre.assign(200, Vec2(0.0f));
+    film.replayed.correspondence.off_centre[7].y = wrong;
+    save_film(film, path());
+    EXPECT_THROW(load_film(path()), Error) << wrong;
   }
 }
 
 class F6_StoredComponents : public F6_Store {
  protected:
   // Three, each as bright as its number.
-  Frame frame() const {
-    Frame frame = *rendered(small_settings(20, 10, 2));
-    const ComponentPlanes planes = frame.components.front();
-    frame.components.assign(3, planes);
+  Film film() const {
+    Film film = *rendered(small_settings(20, 10, 2));
+    const ComponentPlanes planes = film.components.front();
+    film.components.assign(3, planes);
     for (int c = 0; c < 3; ++c) {
-      frame.components[size_t(c)].name = kNames[c];
-      frame.components[size_t(c)].primal[0].assign(200, Radiance(Rgb(float(c + 1)), 0.0f));
+      film.components[size_t(c)].name = kNames[c];
+      film.components[size_t(c)].primal[0].assign(200, Radiance(Rgb(float(c + 1)), 0.0f));
     }
-    frame.replayed.links.pixel.assign(200, kNoLink);
-    frame.replayed.of_component = {{}, {}, {std::vector<int32_t>(200, 7)}};
-    return frame;
+    film.replayed.correspondence.pixel.assign(200, kNoCorrespondence);
+    film.replayed.of_component = {{}, {}, {std::vector<int32_t>(200, 7)}};
+    return film;
   }
-  std::shared_ptr<Frame> load(const char* name) const {
+  std::shared_ptr<Film> load(const char* name) const {
     return load_component(path(), name, StoredContent::kAll, [] { return false; });
   }
   static constexpr const char* kNames[3] = {"Seen", "Diffuse", "Reflection"};
 };
 
 TEST_F(F6_StoredComponents, ComeBackTogether) {
-  const Frame stored = frame();
-  save_frame(stored, path());
-  const auto back = load_frame(path());
+  const Film stored = film();
+  save_film(stored, path());
+  const auto back = load_film(path());
   EXPECT_TRUE(same_samples(stored, *back));
   EXPECT_EQ(back->replayed.of_component, stored.replayed.of_component);
 }
 
 TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
-  const Frame stored = frame();
-  save_frame(stored, path());
+  const Film stored = film();
+  save_film(stored, path());
   for (int c = 0; c < 3; ++c) {
     const auto one = load(kNames[c]);
     ASSERT_EQ(one->components.size(), 1u);
@@ -183,13 +183,13 @@ TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
     EXPECT_EQ(one->components[0].primal, stored.components[size_t(c)].primal);
     EXPECT_EQ(one->components[0].gradient, stored.components[size_t(c)].gradient);
     EXPECT_EQ(one->count, stored.count);
-    EXPECT_EQ(one->replayed.links.pixel, c == 2 ? stored.replayed.of_component[2].pixel : stored.replayed.links.pixel);
+    EXPECT_EQ(one->replayed.correspondence.pixel, c == 2 ? stored.replayed.of_component[2].pixel : stored.replayed.correspondence.pixel);
     EXPECT_TRUE(one->replayed.of_component.empty());
   }
 }
 
 TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
-  save_frame(frame(), path());
+  save_film(film(), path());
   const auto one = load("Glass");
   ASSERT_EQ(one->components.size(), 1u);
   EXPECT_EQ(one->components[0].name, "Glass");
@@ -197,10 +197,10 @@ TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
 }
 
 TEST_F(F6_StoredComponents, WaysToPixelsThatDoNotExistAreRefused) {
-  Frame stored = frame();
+  Film stored = film();
   stored.replayed.of_component[2].pixel[3] = 200;
-  save_frame(stored, path());
-  EXPECT_THROW(load_frame(path()), Error);
+  save_film(stored, path());
+  EXPECT_THROW(load_film(path()), Error);
   EXPECT_THROW(load("Reflection"), Error);
   EXPECT_NO_THROW(load("Seen"));
 }
@@ -234,10 +234,10 @@ void rewrite(const std::string& from, const std::string& to, const Change& chang
 
 TEST_F(F6_Store, OpenExrReadsItAndWhatOpenExrPackedIsRead) {
   for (const auto& [width, height] : {std::pair{61u, 37u}, {64u, 48u}, {1u, 1u}}) {
-    const auto frame = rendered(all_passes(width, height, 4));
-    save_frame(*frame, path());
+    const auto film = rendered(all_passes(width, height, 4));
+    save_film(*film, path());
     rewrite(path(), path("again.exr"), [](std::vector<Imf::Header>*) {});
-    EXPECT_TRUE(same_samples(*frame, *load_frame(path("again.exr"))));
+    EXPECT_TRUE(same_samples(*film, *load_film(path("again.exr"))));
   }
 }
 
@@ -248,7 +248,7 @@ std::vector<std::string> names_of(const Imf::MultiPartInputFile& file) {
 }
 
 TEST_F(F6_Store, PartsAreThereByPurpose) {
-  save_frame(*rendered(all_passes(20, 10, 2)), path());
+  save_film(*rendered(all_passes(20, 10, 2)), path());
   EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())),
             (std::vector<std::string>{"samples", "counts", "gradients", "pairs", "Emission", "Environment", "Diffuse_Direct",
                                       "Diffuse_Indirect", "Glossy_Direct", "Glossy_Indirect", "Transmission_Direct",
@@ -256,14 +256,14 @@ TEST_F(F6_Store, PartsAreThereByPurpose) {
   GradusSettings settings = small_settings(20, 10, 2);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;  // reads no features
-  save_frame(*rendered(settings), path());
+  save_film(*rendered(settings), path());
   EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples", "counts"}));
-  EXPECT_NO_THROW(load_frame(path()));
+  EXPECT_NO_THROW(load_film(path()));
 }
 
 // Readers that throw the parts together lose none.
 TEST_F(F6_Store, NoChannelIsThereTwice) {
-  save_frame(*rendered(all_passes(20, 10, 2)), path());
+  save_film(*rendered(all_passes(20, 10, 2)), path());
   const Imf::MultiPartInputFile file(path().c_str());
   std::set<std::string> names;
   for (int i = 0; i < file.parts(); ++i) {
@@ -274,8 +274,8 @@ TEST_F(F6_Store, NoChannelIsThereTwice) {
 
 // The first row of the file is the top of the picture (contract 7.2).
 TEST_F(F6_Store, RowsRunDownwards) {
-  const auto frame = rendered(small_settings(20, 10, 2));
-  save_frame(*frame, path());
+  const auto film = rendered(small_settings(20, 10, 2));
+  save_film(*film, path());
   Imf::MultiPartInputFile file(path().c_str());
   std::vector<uint32_t> row(20);
   Imf::FrameBuffer buffer;
@@ -286,7 +286,7 @@ TEST_F(F6_Store, RowsRunDownwards) {
   for (size_t x = 0; x < row.size(); ++x) {
     float value = 0.0f;
     std::memcpy(&value, &row[x], sizeof(value));
-    EXPECT_EQ(value, frame->components[0].primal[0][9 * 20 + x].y);
+    EXPECT_EQ(value, film->components[0].primal[0][9 * 20 + x].y);
   }
 }
 
@@ -308,10 +308,10 @@ void set_format(int format, Imf::Header* header) {
 
 // Replays took the seed of their own frame, and did not tell.
 TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
-  Frame frame = *rendered(small_settings(20, 10, 2));
-  frame.settings.seed = 5;
-  frame.replayed = {3, {std::vector<int32_t>(200)}, 0, 4};
-  save_frame(frame, path());
+  Film film = *rendered(small_settings(20, 10, 2));
+  film.settings.seed = 5;
+  film.replayed = {3, {std::vector<int32_t>(200)}, 0, 4};
+  save_film(film, path());
   EXPECT_EQ(load_header(path()).replayed_seed, 4u);
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
     nlohmann::json j = description_of(headers->front());
@@ -323,14 +323,14 @@ TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
 
 // The samples of such a film are good: it is read with a warning, and its picture is that of the automatic choice.
 TEST_F(F6_Store, AFilmWhoseReconstructionWasRemovedIsReadWithAWarning) {
-  save_frame(*rendered(small_settings(20, 10, 2)), path());
+  save_film(*rendered(small_settings(20, 10, 2)), path());
   EXPECT_TRUE(load_header(path()).warnings.empty());
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
     nlohmann::json j = description_of(headers->front());
     j["settings"]["reconstruction"] = "weighted";
     headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
   });
-  EXPECT_EQ(load_frame(path("earlier.exr"))->settings.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
+  EXPECT_EQ(load_film(path("earlier.exr"))->settings.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
   const std::vector<std::string> warnings = load_header(path("earlier.exr")).warnings;
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("reconstruction weighted was removed"), std::string::npos) << warnings[0];
@@ -338,41 +338,41 @@ TEST_F(F6_Store, AFilmWhoseReconstructionWasRemovedIsReadWithAWarning) {
 
 // Nothing of what components show was kept but the first rough vertices.
 TEST_F(F6_Store, FramesOfEarlierVersionsHaveNoDetailsOfComponents) {
-  save_frame(*rendered(small_settings(20, 10, 2)), path());
+  save_film(*rendered(small_settings(20, 10, 2)), path());
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
     nlohmann::json j = description_of(headers->front());
     ASSERT_EQ(j.erase("details"), 1u);
     headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
   });
   EXPECT_FALSE(load_header(path("earlier.exr")).of_components.details);
-  EXPECT_TRUE(load_frame(path("earlier.exr"))->components[0].details.empty());
+  EXPECT_TRUE(load_film(path("earlier.exr"))->components[0].details.empty());
 }
 
 TEST_F(F6_StoredComponents, HaveTheirDetails) {
-  Frame stored = frame();
-  keep_of_components({.details = true}, &stored);
+  Film stored = film();
+  allocate_component_content({.details = true}, &stored);
   float value = 0.0f;
   for (ComponentPlanes& planes : stored.components) {
-    for (RoughDetails& details : planes.details) {
+    for (NonSpecularDetails& details : planes.details) {
       ++value;
       details = {Vec3(value, 2, 3), Rgb(4, value, 6), 7 * value, 8 * value, value, uint32_t(value)};
     }
   }
   stored.components[1].details[4] = {};
-  save_frame(stored, path());
-  const auto same = [](const std::vector<RoughDetails>& a, const std::vector<RoughDetails>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(RoughDetails)) == 0;
+  save_film(stored, path());
+  const auto same = [](const std::vector<NonSpecularDetails>& a, const std::vector<NonSpecularDetails>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(NonSpecularDetails)) == 0;
   };
-  const auto back = load_frame(path());
+  const auto back = load_film(path());
   for (size_t c = 0; c < 3; ++c) {
     EXPECT_TRUE(same(back->components[c].details, stored.components[c].details));
     EXPECT_TRUE(same(load(kNames[c])->components[0].details, stored.components[c].details));
   }
-  for (const RoughDetails& details : load("Glass")->components[0].details) ASSERT_EQ(details.sample, kNoSample);
+  for (const NonSpecularDetails& details : load("Glass")->components[0].details) ASSERT_EQ(details.sample, kNoSample);
 }
 
 TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
-  save_frame(*rendered(all_passes(32, 32, 1)), path());
+  save_film(*rendered(all_passes(32, 32, 1)), path());
   const Refusal refusals[] = {
       {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { set_format(3, &h->front()); }},
       {"it is no frame of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().erase("gradus"); }},
@@ -384,7 +384,7 @@ TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
   for (const Refusal& refusal : refusals) {
     rewrite(path(), path("foreign.exr"), refusal.change);
     try {
-      load_frame(path("foreign.exr"));
+      load_film(path("foreign.exr"));
       ADD_FAILURE() << refusal.what;
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), refusal.code);
@@ -396,18 +396,18 @@ TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
 
 // Versions before multi-part files wrote one part without a name.
 TEST_F(F6_Store, FramesOfOnePartAreOfAnotherVersion) {
-  save_frame(*rendered(small_settings(32, 32, 1)), path());
+  save_film(*rendered(small_settings(32, 32, 1)), path());
   Imf::Header header(32, 32);
   header.insert("gradus", Imf::MultiPartInputFile(path().c_str()).header(0)["gradus"]);
   set_format(3, &header);
   header.channels().insert("component0.A.primal.R", Imf::Channel(Imf::FLOAT));
   { Imf::OutputFile(path("old.exr").c_str(), header); }
-  const std::string refusal = refusal_of([&] { load_frame(path("old.exr")); });
+  const std::string refusal = refusal_of([&] { load_film(path("old.exr")); });
   EXPECT_NE(refusal.find("it was written by another version of Gradus"), std::string::npos) << refusal;
 }
 
 TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
-  save_frame(*rendered(small_settings(32, 32, 1)), path());
+  save_film(*rendered(small_settings(32, 32, 1)), path());
   const Imf::MultiPartInputFile file(path().c_str());
   std::vector<Imf::Header> headers;
   for (int i = 0; i < file.parts(); ++i) {
@@ -417,7 +417,7 @@ TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
   }
   { Imf::MultiPartOutputFile(path("large.exr").c_str(), headers.data(), int(headers.size())); }
   try {
-    load_frame(path("large.exr"));
+    load_film(path("large.exr"));
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), GRADUS_ERROR_OUT_OF_MEMORY) << e.what();
@@ -425,15 +425,15 @@ TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
 }
 
 TEST_F(F6_Store, FailuresNameThePath) {
-  const auto frame = rendered(small_settings(8, 8, 1));
-  const std::string refusal = refusal_of([&] { save_frame(*frame, path("missing/folder/frame.exr")); });
+  const auto film = rendered(small_settings(8, 8, 1));
+  const std::string refusal = refusal_of([&] { save_film(*film, path("missing/folder/frame.exr")); });
   EXPECT_NE(refusal.find("missing/folder/frame.exr"), std::string::npos) << refusal;
-  EXPECT_THROW(load_frame(path("absent.exr")), Error);
-  EXPECT_THROW(load_frame(folder.string()), Error);
+  EXPECT_THROW(load_film(path("absent.exr")), Error);
+  EXPECT_THROW(load_film(folder.string()), Error);
 }
 
 TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
-  save_frame(*rendered(small_settings(48, 40, 2)), path());
+  save_film(*rendered(small_settings(48, 40, 2)), path());
   std::ifstream file(path(), std::ios::binary);
   const std::vector<char> good{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   std::mt19937 random(3);
@@ -447,7 +447,7 @@ TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
     }
     std::ofstream(path("bad.exr"), std::ios::binary).write(bad.data(), std::streamsize(bad.size()));
     try {
-      load_frame(path("bad.exr"));
+      load_film(path("bad.exr"));
     } catch (const Error&) {
       ++refused;
     }
@@ -458,21 +458,21 @@ TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
 // They were delivered as they were, and a number of an object that is none was cast to an integer.
 TEST_F(F6_Store, NumbersThatNoComponentHasAreRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const auto sound = std::make_shared<Frame>(*rendered(small_settings(48, 40, 2)));
-  keep_of_components({true, true, true, true}, sound.get());
+  const auto sound = std::make_shared<Film>(*rendered(small_settings(48, 40, 2)));
+  allocate_component_content({true, true, true, true}, sound.get());
   const auto refusal_with = [&](const std::function<void(ComponentPlanes*)>& damage) {
-    Frame frame = *sound;
-    damage(&frame.components[0]);
-    save_frame(frame, path());
-    return refusal_of([&] { load_frame(path()); });
+    Film film = *sound;
+    damage(&film.components[0]);
+    save_film(film, path());
+    return refusal_of([&] { load_film(path()); });
   };
-  const auto load_it = [&] { load_frame(path()); };
-  save_frame(*sound, path());
+  const auto load_it = [&] { load_film(path()); };
+  save_film(*sound, path());
   EXPECT_NO_THROW(load_it());
   const std::pair<const char*, std::function<void(ComponentPlanes*)>> damages[] = {
       {"motion", [&](ComponentPlanes* planes) { planes->motion[7].z = nan; }},
       {"lost motion", [&](ComponentPlanes* planes) { planes->tracked[1900] = nan; }},
-      {"rough vertices", [&](ComponentPlanes* planes) { planes->rough[1][3].normal.y = nan; }},
+      {"rough vertices", [&](ComponentPlanes* planes) { planes->non_specular[1][3].normal.y = nan; }},
       {"details", [&](ComponentPlanes* planes) { planes->details[9].uv.x = nan; }},
       {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].object = nan; }},
       {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].object = 1e20f; }},
@@ -487,7 +487,7 @@ TEST_F(F6_Store, NumbersThatNoComponentHasAreRefused) {
 
 // OpenEXR allows a block of sixteen rows where the picture has three.
 TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
-  save_frame(*rendered(small_settings(48, 3, 2)), path());
+  save_film(*rendered(small_settings(48, 3, 2)), path());
   std::ifstream file(path(), std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const auto size_at = [&](size_t i) {
@@ -502,12 +502,12 @@ TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
   std::memcpy(bytes.data() + place, &claimed, sizeof(claimed));
   bytes.resize(bytes.size() + size_t(claimed));
   std::ofstream(path("bad.exr"), std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
-  EXPECT_THROW(load_frame(path("bad.exr")), Error);
+  EXPECT_THROW(load_film(path("bad.exr")), Error);
 }
 
 TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
-  const auto frame = rendered(all_passes(96, 64, 2));
-  save_frame(*frame, path("reference.exr"));
+  const auto film = rendered(all_passes(96, 64, 2));
+  save_film(*film, path("reference.exr"));
   std::mt19937 random(5);
   int whole = 0;
   for (int round = 0; round < 20; ++round) {
@@ -515,7 +515,7 @@ TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
     fs::remove(target);
     const pid_t child = fork();
     if (child == 0) {
-      for (;;) save_frame(*frame, target);
+      for (;;) save_film(*film, target);
     }
     // Every other time after the first whole file, so that both cases are met however slow the machine is.
     while (round % 2 == 0 && !fs::exists(target)) usleep(1000);
@@ -524,16 +524,16 @@ TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
     waitpid(child, nullptr, 0);
     if (!fs::exists(target)) continue;
     ++whole;
-    EXPECT_TRUE(same_samples(*frame, *load_frame(target)));
+    EXPECT_TRUE(same_samples(*film, *load_film(target)));
   }
   EXPECT_GE(whole, 10);
 }
 
 // One of them wins, whoever reads meanwhile sees a whole frame of one or the other.
 TEST_F(F6_Store, WritersOfOneFrameDoNotMeet) {
-  const std::shared_ptr<const Frame> frames[] = {rendered(all_passes(64, 48, 1)), rendered(all_passes(64, 48, 2))};
+  const std::shared_ptr<const Film> frames[] = {rendered(all_passes(64, 48, 1)), rendered(all_passes(64, 48, 2))};
   const auto write = [&](int n) {
-    for (int i = 0; i < 20; ++i) save_frame(*frames[n], path());
+    for (int i = 0; i < 20; ++i) save_film(*frames[n], path());
   };
   write(0);
   pid_t processes[2];
@@ -553,7 +553,7 @@ TEST_F(F6_Store, WritersOfOneFrameDoNotMeet) {
     });
   }
   while (writing > 0) {
-    const auto seen = load_frame(path());
+    const auto seen = load_film(path());
     EXPECT_TRUE(same_samples(*seen, *frames[0]) || same_samples(*seen, *frames[1]));
   }
   for (std::thread& thread : threads) thread.join();
@@ -572,18 +572,18 @@ bool limit_files_to(rlim_t bytes) {
 }
 
 TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
-  const auto frame = rendered(all_passes(96, 64, 2));
-  save_frame(*frame, path("old.exr"));
-  const auto what = failure_of([] { return limit_files_to(100000); }, [&] { save_frame(*frame, path()); });
+  const auto film = rendered(all_passes(96, 64, 2));
+  save_film(*film, path("old.exr"));
+  const auto what = failure_of([] { return limit_files_to(100000); }, [&] { save_film(*film, path()); });
   ASSERT_TRUE(what);
   EXPECT_NE(what->find("cannot write " + path() + ": File too large"), std::string::npos) << *what;
   EXPECT_EQ(files(), 1u);
-  EXPECT_NE(failure_of([] { return limit_files_to(100000); }, [&] { save_frame(*frame, path("old.exr")); }), "");
-  EXPECT_TRUE(same_samples(*frame, *load_frame(path("old.exr")))) << "the frame that was there remains";
+  EXPECT_NE(failure_of([] { return limit_files_to(100000); }, [&] { save_film(*film, path("old.exr")); }), "");
+  EXPECT_TRUE(same_samples(*film, *load_film(path("old.exr")))) << "the frame that was there remains";
 }
 
 // True when it has been asked that often. By several threads.
-CancelTest after(int times) {
+CancelCheck after(int times) {
   return [left = std::make_shared<std::atomic<int>>(times)] { return --*left < 0; };
 }
 
@@ -603,26 +603,26 @@ int cancels_of(const Work& work) {
 
 // Files took their whole time, whoever cancelled meanwhile.
 TEST_F(F6_Store, K2_ACancelledWriteLeavesWhatWasThere) {
-  const auto frame = rendered(all_passes(96, 64, 2)), other = rendered(all_passes(96, 64, 1));
+  const auto film = rendered(all_passes(96, 64, 2)), other = rendered(all_passes(96, 64, 1));
   const auto left_by = [&](size_t kept) {
-    return cancels_of([&](const CancelTest& cancel) {
+    return cancels_of([&](const CancelCheck& cancel) {
       EXPECT_EQ(files(), kept);
-      EXPECT_TRUE(kept == 0 || same_samples(*load_frame(path()), *other));
-      save_frame(*frame, path(), {.cancel = cancel});
+      EXPECT_TRUE(kept == 0 || same_samples(*load_film(path()), *other));
+      save_film(*film, path(), {.cancel = cancel});
     });
   };
   EXPECT_GT(left_by(0), 3) << "of four blocks at least";
-  save_frame(*other, path());
+  save_film(*other, path());
   EXPECT_GT(left_by(1), 3);
-  EXPECT_TRUE(same_samples(*load_frame(path()), *frame));
+  EXPECT_TRUE(same_samples(*load_film(path()), *film));
 }
 
 TEST_F(F6_Store, K2_ACancelIsHeardWhileAFileIsRead) {
-  const auto frame = rendered(all_passes(96, 64, 2));
-  save_frame(*frame, path());
-  std::shared_ptr<const Frame> read;
-  EXPECT_GT(cancels_of([&](const CancelTest& cancel) { read = load_frame(path(), StoredContent::kAll, cancel); }), 3);
-  EXPECT_TRUE(same_samples(*read, *frame));
+  const auto film = rendered(all_passes(96, 64, 2));
+  save_film(*film, path());
+  std::shared_ptr<const Film> read;
+  EXPECT_GT(cancels_of([&](const CancelCheck& cancel) { read = load_film(path(), StoredContent::kAll, cancel); }), 3);
+  EXPECT_TRUE(same_samples(*read, *film));
 }
 
 // All of it was synced at the end of a file: half a frame of 4K for many seconds, in which no cancel is heard.
@@ -638,11 +638,11 @@ TEST_F(F6_Store, K2_ALongFileIsSyncedWhileItIsWritten) {
 
 // A disk of 100 kB: for those who may mount one in a name space of their own.
 TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
-  const auto frame = rendered(all_passes(96, 64, 2));
+  const auto film = rendered(all_passes(96, 64, 2));
   const auto what = failure_of([&] { return mount_disk(folder, "100k"); },
                                [&] {
                                  try {
-                                   save_frame(*frame, path());
+                                   save_film(*film, path());
                                  } catch (...) {
                                    if (files() > 0) throw std::runtime_error("something is left");
                                    throw;
@@ -653,10 +653,10 @@ TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
 }
 
 TEST_F(F6_Store, AFolderThatIsReadOnlyIsNamed) {
-  const auto frame = rendered(small_settings(8, 8, 1));
+  const auto film = rendered(small_settings(8, 8, 1));
   fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
   const auto become_nobody = [] { return geteuid() != 0 || setuid(65534) == 0; };  // permissions do not hold for root
-  const auto what = failure_of(become_nobody, [&] { save_frame(*frame, path()); });
+  const auto what = failure_of(become_nobody, [&] { save_film(*film, path()); });
   fs::permissions(folder, fs::perms::owner_all);
   ASSERT_TRUE(what);
   EXPECT_NE(what->find("cannot create " + path() + ": Permission denied"), std::string::npos) << *what;
@@ -674,11 +674,11 @@ TEST_F(F6_Store, ASecondNameTakesThePlaceOfWhatHadIt) {
   std::ofstream(path("a")) << "new";
   std::ofstream(path("b")) << "old";
   for (int time = 0; time < 2; ++time) {
-    EXPECT_TRUE(link_file(path("a"), path("b")));
+    EXPECT_TRUE(hard_link_file(path("a"), path("b")));
     EXPECT_TRUE(fs::equivalent(path("a"), path("b")));
     EXPECT_EQ(files(), 2u);
   }
-  EXPECT_FALSE(link_file(path("missing"), path("b")));
+  EXPECT_FALSE(hard_link_file(path("missing"), path("b")));
   EXPECT_EQ(files(), 2u);
 }
 

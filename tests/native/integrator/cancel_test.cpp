@@ -17,20 +17,20 @@ TEST(K2_Cancel, IntegratorsStopBetweenSamples) {
   const IntegratorContext context = scene.context(test::test_settings(16, 16));
   for (const bool gradient : {false, true}) {
     const auto integrator = gradient ? make_gradient_integrator(context) : make_path_integrator(context);
-    Frame frame = test::make_test_frame(context.settings, gradient);
+    Film film = test::make_test_film(context.settings, gradient);
     std::atomic<bool> stop{false};
     std::atomic<Clock::rep> ended{0};
     std::thread worker([&] {
-      integrator->sample(WorkUnit{frame.region, 0, 20000, nullptr}, &frame, &frame.counters, stop);
+      integrator->sample(WorkUnit{film.region, 0, 20000, nullptr}, &film, &film.counters, stop);
       ended = Clock::now().time_since_epoch().count();
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    const Clock::time_point asked = Clock::now();
+    const Clock::time_point requested = Clock::now();
     stop = true;
     worker.join();
-    EXPECT_LT(Clock::duration(ended) - asked.time_since_epoch(), std::chrono::milliseconds(250));
-    EXPECT_GT(frame.count[0][0], 0u);
-    EXPECT_LT(frame.count[0][0], 10000u);
+    EXPECT_LT(Clock::duration(ended) - requested.time_since_epoch(), std::chrono::milliseconds(250));
+    EXPECT_GT(film.count[0][0], 0u);
+    EXPECT_LT(film.count[0][0], 10000u);
   }
 }
 

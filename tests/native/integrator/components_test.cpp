@@ -17,11 +17,11 @@ constexpr uint32_t kSide = 24;
 // By bounces, so that paths change their component at every vertex.
 const char* const kByBounces = "Seen=EL;Once=E.L;Twice=E..L;Thrice=E...L";
 
-Frame sampled(const IntegratorContext& context, bool gradients, uint32_t samples = 6) {
-  Frame frame = test::make_test_frame(context.settings, gradients, context.components.count());
+Film sampled(const IntegratorContext& context, bool gradients, uint32_t samples = 6) {
+  Film film = test::make_test_film(context.settings, gradients, context.components.count());
   const auto integrator = gradients ? make_gradient_integrator(context) : make_path_integrator(context);
-  test::sample_frame(*integrator, 0, samples, &frame);
-  return frame;
+  test::sample_film(*integrator, 0, samples, &film);
+  return film;
 }
 
 struct Sums {
@@ -29,9 +29,9 @@ struct Sums {
 };
 
 template <class PlaneOf>
-Sums sums_at(const Frame& frame, size_t pixel, const PlaneOf& plane_of) {
+Sums sums_at(const Film& film, size_t pixel, const PlaneOf& plane_of) {
   Sums s;
-  for (const ComponentPlanes& planes : frame.components) {
+  for (const ComponentPlanes& planes : film.components) {
     const Radiance value = plane_of(planes)[pixel];
     s.sum += value;
     s.magnitude += glm::abs(value);
@@ -41,7 +41,7 @@ Sums sums_at(const Frame& frame, size_t pixel, const PlaneOf& plane_of) {
 
 // Up to the order of additions. `scale`: of the largest terms.
 template <class PlaneOf>
-void expect_same_sums(const Frame& one, const Frame& many, float scale, const PlaneOf& plane_of) {
+void expect_same_sums(const Film& one, const Film& many, float scale, const PlaneOf& plane_of) {
   size_t pixels = 0;
   float worst = 0.0f;
   for (size_t i = 0; i < size_t(one.region.area()); ++i) {
@@ -55,9 +55,9 @@ void expect_same_sums(const Frame& one, const Frame& many, float scale, const Pl
 }
 
 float largest(const std::vector<Radiance>& plane) {
-  float most = 0.0f;
-  for (const Radiance& r : plane) most = std::max({most, std::fabs(r.x), std::fabs(r.y), std::fabs(r.z)});
-  return most;
+  float maximum = 0.0f;
+  for (const Radiance& r : plane) maximum = std::max({maximum, std::fabs(r.x), std::fabs(r.y), std::fabs(r.z)});
+  return maximum;
 }
 
 class Scenarios : public testing::TestWithParam<int> {
@@ -77,9 +77,9 @@ class Scenarios : public testing::TestWithParam<int> {
 };
 
 TEST_P(Scenarios, SumsOfComponentsAreThoseOfOnePlane) {
-  const Frame one = sampled(context(nullptr), true);
+  const Film one = sampled(context(nullptr), true);
   for (const char* set : {"", kByBounces}) {
-    const Frame many = sampled(context(set), true);
+    const Film many = sampled(context(set), true);
     EXPECT_EQ(one.count, many.count);
     EXPECT_EQ(one.pair_count, many.pair_count);
     EXPECT_EQ(one.counters.rays_shift, many.counters.rays_shift);
@@ -97,7 +97,7 @@ TEST_P(Scenarios, SumsOfComponentsAreThoseOfOnePlane) {
 
 TEST_P(Scenarios, PlainPathsHaveTheSameComponents) {
   const IntegratorContext c = context("");
-  const Frame plain = sampled(c, false), with_gradients = sampled(c, true);
+  const Film plain = sampled(c, false), with_gradients = sampled(c, true);
   for (size_t i = 0; i < plain.components.size(); ++i) {
     for (int half = 0; half < kHalves; ++half) {
       EXPECT_EQ(plain.components[i].primal[half], with_gradients.components[i].primal[half]) << c.components[int(i)].name;
@@ -108,8 +108,8 @@ TEST_P(Scenarios, PlainPathsHaveTheSameComponents) {
 // What replays do where a component goes its own way.
 TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
   const IntegratorContext c = context("");
-  const Frame whole = sampled(c, true);
-  Frame apart = test::make_test_frame(c.settings, true, c.components.count());
+  const Film whole = sampled(c, true);
+  Film apart = test::make_test_film(c.settings, true, c.components.count());
   const auto integrator = make_gradient_integrator(c);
   const uint32_t own = 1u << c.components.find("Diffuse") | 1u << c.components.find("Reflection");
   // Own ways in every other pixel.
@@ -121,7 +121,7 @@ TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
   unit.component_map = &shared;
   integrator->sample(unit, &apart, &apart.counters, std::atomic<bool>{false});
   unit.component_map = nullptr;
-  unit.again = true;
+  unit.adds_components = true;
   unit.pixel_map = &map;
   for (const char* name : {"Diffuse", "Reflection"}) {
     unit.components = 1u << c.components.find(name);
@@ -139,7 +139,7 @@ TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
 
 TEST_P(Scenarios, PathsThatLeadToNoWantedComponentEnd) {
   const IntegratorContext c = context("");
-  Frame whole = sampled(c, false), seen = test::make_test_frame(c.settings, false, c.components.count());
+  Film whole = sampled(c, false), seen = test::make_test_film(c.settings, false, c.components.count());
   const auto integrator = make_path_integrator(c);
   WorkUnit unit{seen.region, 0, 6};
   unit.components = 1u << c.components.find("Emission");
@@ -152,9 +152,9 @@ TEST_P(Scenarios, PathsThatLeadToNoWantedComponentEnd) {
 INSTANTIATE_TEST_SUITE_P(Components, Scenarios, testing::Range(0, int(Scenario::Count)),
                          [](const auto& info) { return test::name_of(Scenario(info.param)); });
 
-double light_of(const Frame& frame, int component) {
+double light_of(const Film& film, int component) {
   double sum = 0.0;
-  for (const auto& half : frame.components[size_t(component)].primal) {
+  for (const auto& half : film.components[size_t(component)].primal) {
     for (const Radiance& r : half) sum += double(r.x) + r.y + r.z;
   }
   return sum;
@@ -167,19 +167,19 @@ TEST(Components, AlphaBelongsToWhatTheCameraSees) {
   settings.film_transparent = 1;
   IntegratorContext context = scene.context(settings);
   context.components = ComponentSet::parse("");
-  const Frame frame = sampled(context, true);
+  const Film film = sampled(context, true);
   const int seen = context.components.find("Emission");
-  float most = 0.0f;
+  float maximum = 0.0f;
   for (int c = 0; c < context.components.count(); ++c) {
-    for (const Radiance& r : frame.components[size_t(c)].primal[0]) {
+    for (const Radiance& r : film.components[size_t(c)].primal[0]) {
       if (c == seen) {
-        most = std::max(most, r.w);
+        maximum = std::max(maximum, r.w);
       } else {
         ASSERT_EQ(r.w, 0.0f) << context.components[c].name;
       }
     }
   }
-  EXPECT_EQ(most, 3.0f);
+  EXPECT_EQ(maximum, 3.0f);
 }
 
 TEST(Components, AMirrorShowsReflectionsAndNoEmission) {
@@ -192,9 +192,9 @@ TEST(Components, AMirrorShowsReflectionsAndNoEmission) {
   scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
   IntegratorContext context = scene.context(test::test_settings(kSide, kSide));
   context.components = ComponentSet::parse("");
-  const Frame frame = sampled(context, true);
+  const Film film = sampled(context, true);
   for (int c = 0; c < context.components.count(); ++c) {
-    EXPECT_EQ(light_of(frame, c) > 0.0, context.components[c].name == "Reflection") << context.components[c].name;
+    EXPECT_EQ(light_of(film, c) > 0.0, context.components[c].name == "Reflection") << context.components[c].name;
   }
 }
 

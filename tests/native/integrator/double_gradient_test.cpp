@@ -23,9 +23,9 @@ struct DoubleImages {
 };
 
 GradientImages sampled(const IntegratorContext& context, uint32_t first, uint32_t count) {
-  Frame frame = test::make_test_frame(context.settings, true);
-  test::sample_frame(*make_gradient_integrator(context), first, count, &frame);
-  return read_images(frame, 0);
+  Film film = test::make_test_film(context.settings, true);
+  test::sample_film(*make_gradient_integrator(context), first, count, &film);
+  return read_images(film, 0);
 }
 
 // Samples one by one, summed up in double.

@@ -64,14 +64,14 @@ TEST_P(B8_Strategies, WeightsSumToOne) {
     LightSample light;
     if (!camera_vertex(path, sampler, film, &x) || !camera_vertex(path, sampler, film + Vec2(1, 0), &y)) continue;
     if (!sample_light(path, sampler.vertex(0), x, 0, &light) || light.point.dirac) continue;
-    const EmitterView view = view_emitter(path.scene, light.point, receiver_of(y));
+    const LightEvaluation view = evaluate_light(path.scene, light.point, receiver_of(y));
     const LitClass lit_x = light_class(path, x, ScatterClass::Diffuse, light, kAnyRay);
     const LitClass lit_y = light_class(path, y, ScatterClass::Diffuse, LightSample{light.point, view}, kAnyRay);
     if (!(lit_x.pdf_bsdf > 0.0f) || !(lit_y.pdf_bsdf > 0.0f) || !(view.pdf > 0.0f)) continue;
     ++done;
     const float there = copy_jacobian(light.point, light.view, view), back = copy_jacobian(light.point, view, light.view);
-    const Strategies drawn_x{light.view.pdf, lit_x.pdf_bsdf}, met_x{emitter_pdf(path.scene, light.point, receiver_of(x)), lit_x.pdf_bsdf};
-    const Strategies drawn_y{view.pdf, lit_y.pdf_bsdf}, met_y{emitter_pdf(path.scene, light.point, receiver_of(y)), lit_y.pdf_bsdf};
+    const Strategies drawn_x{light.view.pdf, lit_x.pdf_bsdf}, met_x{light_point_pdf(path.scene, light.point, receiver_of(x)), lit_x.pdf_bsdf};
+    const Strategies drawn_y{view.pdf, lit_y.pdf_bsdf}, met_y{light_point_pdf(path.scene, light.point, receiver_of(y)), lit_y.pdf_bsdf};
     // Weight of a strategy: its density over that of all, in the measure of its own end.
     const auto weight = [](double density, const Strategies& own, double jacobian, const Strategies& other) {
       return density / (own.total() + jacobian * other.total());
@@ -88,13 +88,13 @@ TEST_P(B8_Strategies, WeightsSumToOne) {
 
 const auto kScenarios =
     ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::GlossyFloor, Scenario::RoughMetal,
-                      Scenario::Glass, Scenario::RoughGlass, Scenario::Transparent, Scenario::LampsSeen);
+                      Scenario::Glass, Scenario::RoughGlass, Scenario::Transparent, Scenario::LightsSeen);
 const auto kName = [](const ::testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); };
 
 INSTANTIATE_TEST_SUITE_P(All, B8_Double, kScenarios, kName);
 INSTANTIATE_TEST_SUITE_P(All, B8_Strategies,
                          ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::GlossyFloor,
-                                           Scenario::LampsSeen),
+                                           Scenario::LightsSeen),
                          kName);
 
 }  // namespace

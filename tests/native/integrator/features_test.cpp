@@ -21,12 +21,12 @@ struct View {
   // A square of 4 m that faces the camera or looks the same way as it.
   void wall(float z, const test::Surface& surface) { scene.quad(Vec3(-2, -2, z), Vec3(4, 0, 0), Vec3(0, 4, 0), scene.material(surface)); }
 
-  Frame render(bool gradient, uint32_t samples) {
+  Film render(bool gradient, uint32_t samples) {
     const IntegratorContext context = scene.context(settings);
-    Frame frame = test::make_test_frame(settings, gradient);
-    frame.passes = make_pass_planes(feature_passes(), frame.count[0].size());
-    test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &frame);
-    return frame;
+    Film film = test::make_test_film(settings, gradient);
+    film.passes = make_pass_planes(feature_passes(), film.count[0].size());
+    test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &film);
+    return film;
   }
 };
 
@@ -73,23 +73,23 @@ TEST_P(SeenFeatures, OfASkyThatTheFilmHidesAreNone) {
 }
 
 TEST_P(SeenFeatures, OfWhatShinesAreItsLightWithItsShape) {
-  test::Surface lamp;
-  lamp.emission = Rgb(0.5f, 0.2f, 7.0f);
+  test::Surface light;
+  light.emission = Rgb(0.5f, 0.2f, 7.0f);
   View view;
-  view.wall(-1.0f, lamp);
+  view.wall(-1.0f, light);
   const Features features = read_features(view.render(GetParam(), 8));
   expect_near(features.albedo, 5, {0.5f, 0.2f, 1.0f}, 1e-6f);
   expect_near(features.normal, 5, {0.0f, 0.0f, 1.0f}, 1e-5f);
   expect_near(features.depth, 5, {1.0f}, 1e-3f);
 }
 
-// Lamps do not stop rays: what lies behind gives the shape.
+// Lights do not stop rays: what lies behind gives the shape.
 TEST_P(SeenFeatures, OfALampAreItsLightBeforeTheWall) {
   View view;
   view.wall(-2.0f, test::matte(Rgb(0.25f)));
-  GradusLight lamp = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 0, -1)), Rgb(100.0f));
-  lamp.radius = 0.1f;
-  view.scene.light(lamp);
+  GradusLight light = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 0, -1)), Rgb(100.0f));
+  light.radius = 0.1f;
+  view.scene.light(light);
   const Features features = read_features(view.render(GetParam(), 8));
   expect_near(features.albedo, 5, {1.0f, 1.0f, 1.0f}, 1e-6f);
   expect_near(features.depth, 5, {2.0f}, 1e-3f);
@@ -121,8 +121,8 @@ TEST_P(SeenFeatures, GoToTheHalfOfTheirSample) {
   View view;
   view.wall(-1.0f, test::matte(Rgb(0.5f)));
   for (const uint32_t samples : {1u, 2u}) {
-    const Frame frame = view.render(GetParam(), samples);
-    for (const PassPlane& plane : frame.passes) {
+    const Film film = view.render(GetParam(), samples);
+    for (const PassPlane& plane : film.passes) {
       const std::vector<float> none(plane.values[0].size());
       EXPECT_NE(plane.values[0], none) << pass_info(plane.pass).name;
       EXPECT_EQ(plane.values[1] == none, samples == 1) << pass_info(plane.pass).name;
@@ -136,14 +136,14 @@ TEST_P(SeenFeatures, CostNoRaysAndChangeNoBit) {
   test::build(test::Scenario::World, &view.scene);
   view.settings = test::test_settings(24, 20);
   view.settings.max_bounces = 3;
-  const Frame frame = view.render(GetParam(), 4);
-  Frame plain = test::make_test_frame(view.settings, GetParam());
+  const Film film = view.render(GetParam(), 4);
+  Film plain = test::make_test_film(view.settings, GetParam());
   const IntegratorContext context = view.scene.context(view.settings);
-  ASSERT_TRUE(context.snapshot->features.only_lights_shine);
-  test::sample_frame(GetParam() ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 4, &plain);
-  EXPECT_EQ(frame.counters.rays_bounce, plain.counters.rays_bounce);
-  EXPECT_EQ(frame.components[0].primal, plain.components[0].primal);
-  EXPECT_EQ(frame.components[0].gradient, plain.components[0].gradient);
+  ASSERT_TRUE(context.snapshot->features.only_lights_emit);
+  test::sample_film(GetParam() ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 4, &plain);
+  EXPECT_EQ(film.counters.rays_bounce, plain.counters.rays_bounce);
+  EXPECT_EQ(film.components[0].primal, plain.components[0].primal);
+  EXPECT_EQ(film.components[0].gradient, plain.components[0].gradient);
 }
 
 INSTANTIATE_TEST_SUITE_P(By, SeenFeatures, ::testing::Bool(),

@@ -1,4 +1,4 @@
-// Light is looked for at the moment of the path: a bar that passes between a floor and a lamp, by closed form.
+// Light is looked for at the moment of the path: a bar that passes between a floor and a light, by closed form.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -12,13 +12,13 @@ constexpr uint32_t kWidth = 24, kHeight = 4;
 constexpr float kMetres = 2.88f;  // of the picture's width
 
 // The bar, which the camera does not see, lies over [-1, 0] when the shutter opens and over [0, 1] when it closes.
-IntegratorContext passing_bar(PathScene* scene, const GradusLight& lamp) {
+IntegratorContext passing_bar(PathScene* scene, const GradusLight& light) {
   const uint64_t grey = scene->material(matte(Rgb(0.5f)));
   scene->quad(Vec3(-3, -3, 0), Vec3(6, 0, 0), Vec3(0, 6, 0), grey);
   scene->scene.way = {Mat4(1.0f), translation(Vec3(1, 0, 0))};
   scene->quad(Vec3(-1, -3, 1), Vec3(1, 0, 0), Vec3(0, 6, 0), grey, GRADUS_VISIBLE_SHADOW);
   scene->scene.way.clear();
-  scene->light(lamp);
+  scene->light(light);
   scene->camera(Vec3(0, 0, 3.2f), Vec3(0), kMetres / 3.2f);
   scene->open_shutter();
   GradusSettings settings = test_settings(kWidth, kHeight);
@@ -26,24 +26,24 @@ IntegratorContext passing_bar(PathScene* scene, const GradusLight& lamp) {
   return scene->context(settings);
 }
 
-// Lamps that are far above the bar, so that its shadow is as wide as it is.
-std::vector<GradusLight> lamps() {
+// Lights that are far above the bar, so that its shadow is as wide as it is.
+std::vector<GradusLight> lights() {
   return {make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(1.0f)), make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 200)), Rgb(4e5f))};
 }
 
 TEST(MovingShadow, LightIsLookedForAtTheMomentOfThePath) {
-  for (const GradusLight& lamp : lamps()) {
+  for (const GradusLight& light : lights()) {
     PathScene scene;
-    const IntegratorContext context = passing_bar(&scene, lamp);
+    const IntegratorContext context = passing_bar(&scene, light);
     for (const bool gradients : {false, true}) {
-      Frame frame = make_test_frame(context.settings, gradients);
-      sample_frame(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 1024, &frame);
-      const std::vector<float> image = read_images(frame, 0).primal;
+      Film film = make_test_film(context.settings, gradients);
+      sample_film(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 1024, &film);
+      const std::vector<float> image = read_images(film, 0).primal;
       const float lit = image[3 * (kWidth + 1)];  // beyond the bar's reach
       ASSERT_GT(lit, 0.01f);
       for (uint32_t x = 0; x < kWidth; ++x) {
         const float place = std::fabs((float(x) + 0.5f) / kWidth - 0.5f) * kMetres;
-        EXPECT_NEAR(image[3 * (kWidth + x)] / lit, std::min(place, 1.0f), 0.06f) << lamp.type << ' ' << x;
+        EXPECT_NEAR(image[3 * (kWidth + x)] / lit, std::min(place, 1.0f), 0.06f) << light.type << ' ' << x;
       }
     }
   }

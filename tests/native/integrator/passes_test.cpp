@@ -18,24 +18,24 @@ using test::Scenario;
 
 constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
 
-std::vector<float> read(const Frame& frame, uint32_t pass) {
-  std::vector<float> pixels(static_cast<size_t>(frame.region.area()) * pass_info(pass).channels);
-  read_frame_pass(frame, pass, frame.region, pixels.data());
+std::vector<float> read(const Film& film, uint32_t pass) {
+  std::vector<float> pixels(static_cast<size_t>(film.region.area()) * pass_info(pass).channels);
+  read_film_pass(film, pass, film.region, pixels.data());
   return pixels;
 }
 
-Frame render_passes(test::PathScene* scene, bool gradient) {
+Film render_passes(test::PathScene* scene, bool gradient) {
   GradusSettings settings = test::test_settings(24, 20);
   settings.passes = kAllPasses;
   const IntegratorContext context = scene->context(settings);
-  Frame frame = test::make_test_frame(settings, gradient);
-  frame.settings = settings;
-  frame.passes = make_pass_planes(settings.passes, static_cast<size_t>(frame.region.area()));
-  test::sample_frame(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 8, &frame);
-  return frame;
+  Film film = test::make_test_film(settings, gradient);
+  film.settings = settings;
+  film.passes = make_pass_planes(settings.passes, static_cast<size_t>(film.region.area()));
+  test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 8, &film);
+  return film;
 }
 
-Frame render_passes(Scenario scenario, bool gradient) {
+Film render_passes(Scenario scenario, bool gradient) {
   test::PathScene scene;
   test::build(scenario, &scene);
   return render_passes(&scene, gradient);
@@ -43,9 +43,9 @@ Frame render_passes(Scenario scenario, bool gradient) {
 
 class Passes : public testing::TestWithParam<Scenario> {};
 
-void expect_light_to_add_up(const Frame& frame) {
-  test::expect_light_to_add_up([&](uint32_t pass) { return read(frame, pass); }, read(frame, GRADUS_PASS_NOISY_IMAGE));
-  EXPECT_EQ(frame.counters.nonfinite_feature, 0u);
+void expect_light_to_add_up(const Film& film) {
+  test::expect_light_to_add_up([&](uint32_t pass) { return read(film, pass); }, read(film, GRADUS_PASS_NOISY_IMAGE));
+  EXPECT_EQ(film.counters.nonfinite_feature, 0u);
 }
 
 TEST_P(Passes, LightAddsUpToTheNoisyImage) { expect_light_to_add_up(render_passes(GetParam(), true)); }
@@ -60,8 +60,8 @@ TEST(LightPasses, LightBelowZeroAddsUpToo) {
 }
 
 TEST_P(Passes, PlainAndGradientTracingGiveTheSame) {
-  const Frame plain = render_passes(GetParam(), false);
-  const Frame gradient = render_passes(GetParam(), true);
+  const Film plain = render_passes(GetParam(), false);
+  const Film gradient = render_passes(GetParam(), true);
   for (size_t i = 0; i < plain.passes.size(); ++i) {
     EXPECT_EQ(plain.passes[i].values, gradient.passes[i].values) << pass_info(plain.passes[i].pass).name;
   }
@@ -69,27 +69,27 @@ TEST_P(Passes, PlainAndGradientTracingGiveTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(All, Passes,
                          testing::Values(Scenario::DiffuseArea, Scenario::World, Scenario::GlossyFloor, Scenario::Glass,
-                                         Scenario::RoughGlass, Scenario::Transparent, Scenario::LampsSeen),
+                                         Scenario::RoughGlass, Scenario::Transparent, Scenario::LightsSeen),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 TEST(DataPasses, DepthIsPlanarAndBackgroundFar) {
-  const Frame frame = render_passes(Scenario::World, false);
-  const std::vector<float> depth = read(frame, GRADUS_PASS_DEPTH);
+  const Film film = render_passes(Scenario::World, false);
+  const std::vector<float> depth = read(film, GRADUS_PASS_DEPTH);
   // The back wall, 4.2 m from the camera along its axis, is the same everywhere on it.
-  EXPECT_NEAR(depth[frame.index(12, 12)], 4.2f, 1e-4f);
-  EXPECT_NEAR(depth[frame.index(10, 13)], 4.2f, 1e-4f);
-  EXPECT_EQ(depth[frame.index(0, 0)], 1e10f);
+  EXPECT_NEAR(depth[film.index(12, 12)], 4.2f, 1e-4f);
+  EXPECT_NEAR(depth[film.index(10, 13)], 4.2f, 1e-4f);
+  EXPECT_EQ(depth[film.index(0, 0)], 1e10f);
 }
 
 TEST(DataPasses, NothingMovesAtRest) {
-  const Frame frame = render_passes(Scenario::World, false);
-  for (float v : read(frame, GRADUS_PASS_VECTOR)) EXPECT_EQ(v, 0.0f);
+  const Film film = render_passes(Scenario::World, false);
+  for (float v : read(film, GRADUS_PASS_VECTOR)) EXPECT_EQ(v, 0.0f);
 }
 
 TEST(DataPasses, NormalsFaceTheViewer) {
-  const Frame frame = render_passes(Scenario::DiffuseArea, false);
-  const std::vector<float> normal = read(frame, GRADUS_PASS_NORMAL);
-  const size_t i = 3 * frame.index(12, 12);
+  const Film film = render_passes(Scenario::DiffuseArea, false);
+  const std::vector<float> normal = read(film, GRADUS_PASS_NORMAL);
+  const size_t i = 3 * film.index(12, 12);
   EXPECT_NEAR(normal[i], 0.0f, 1e-5f);
   EXPECT_NEAR(normal[i + 1], 0.0f, 1e-5f);
   EXPECT_NEAR(normal[i + 2], 1.0f, 1e-5f);

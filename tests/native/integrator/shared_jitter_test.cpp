@@ -26,10 +26,10 @@ std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
   scene.camera_desc.aperture_radius = aperture;
   const IntegratorContext context = scene.context(test::test_settings(size, size));
   const PathContext path(*context.snapshot, context.camera, context.settings);
-  const Frame frame = test::make_test_frame(context.settings, false);
+  const Film film = test::make_test_film(context.settings, false);
   const auto vertices = std::make_unique<CameraVertices>(path);
   std::vector<Jitter> found;
-  for_each_sample(path, WorkUnit{frame.region, 0, samples, nullptr}, frame, vertices.get(), std::atomic<bool>{false},
+  for_each_sample(path, WorkUnit{film.region, 0, samples, nullptr}, film, vertices.get(), std::atomic<bool>{false},
                   [&](const PixelSample& s) {
                     found.push_back({s.x, s.y, s.number, s.film - pixel_centre(s.x, s.y)});
                   });
@@ -38,15 +38,15 @@ std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
 }
 
 TEST(SharedJitter, IsThatOfItsCellAndSampleNumber) {
-  std::map<std::tuple<int, int, uint32_t>, Vec2> of_cell;
+  std::map<std::tuple<int, int, uint32_t>, Vec2> of_block;
   for (const Jitter& j : jitters(0.0f, 40, 3)) {
-    const auto key = std::make_tuple(lattice_cell(j.x), lattice_cell(j.y), j.number);
-    const Vec2 first = of_cell.emplace(key, j.offset).first->second;
+    const auto key = std::make_tuple(pixel_block_of(j.x), pixel_block_of(j.y), j.number);
+    const Vec2 first = of_block.emplace(key, j.offset).first->second;
     EXPECT_NEAR(glm::length(first - j.offset), 0.0f, 1e-5f);
   }
-  ASSERT_EQ(of_cell.size(), 27u);
-  for (auto a = of_cell.begin(); a != of_cell.end(); ++a) {
-    for (auto b = std::next(a); b != of_cell.end(); ++b) EXPECT_GT(glm::length(a->second - b->second), 1e-4f);
+  ASSERT_EQ(of_block.size(), 27u);
+  for (auto a = of_block.begin(); a != of_block.end(); ++a) {
+    for (auto b = std::next(a); b != of_block.end(); ++b) EXPECT_GT(glm::length(a->second - b->second), 1e-4f);
   }
 }
 
@@ -75,9 +75,9 @@ uint64_t shift_rays(float aperture, uint32_t size) {
   GradusSettings settings = test::test_settings(size, size);
   settings.max_bounces = 0;  // no edges that are replayed
   const IntegratorContext context = scene.context(settings);
-  Frame frame = test::make_test_frame(context.settings, true);
-  test::sample_frame(*make_gradient_integrator(context), 0, 1, &frame);
-  return frame.counters.rays_shift;
+  Film film = test::make_test_film(context.settings, true);
+  test::sample_film(*make_gradient_integrator(context), 0, 1, &film);
+  return film.counters.rays_shift;
 }
 
 // An offset of an opaque, diffuse scene without emitters to meet, at which base and offset would part, needs no ray of its own but where

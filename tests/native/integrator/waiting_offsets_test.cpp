@@ -6,23 +6,23 @@
 namespace gradus {
 namespace {
 
-// A box with a point lamp that lights paths of so many bounces.
-Counters counters_of(uint32_t bounces_of_lamp) {
+// A box with a point light that lights paths of so many bounces.
+Counters counters_of(uint32_t bounces_of_light) {
   test::PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
   Mat4 place(1.0f);
   place[3] = Vec4(0.1f, 0.5f, 0.2f, 1.0f);
-  GradusLight lamp = test::make_light(GRADUS_LIGHT_POINT, place, Rgb(5.0f));
-  lamp.max_bounces = bounces_of_lamp;
-  scene.light(lamp);
+  GradusLight light = test::make_light(GRADUS_LIGHT_POINT, place, Rgb(5.0f));
+  light.max_bounces = bounces_of_light;
+  scene.light(light);
   const IntegratorContext context = scene.context(test::test_settings(16, 16));
-  Frame frame = test::make_test_frame(context.settings, true);
-  test::sample_frame(*make_gradient_integrator(context), 0, 4, &frame);
-  return frame.counters;
+  Film film = test::make_test_film(context.settings, true);
+  test::sample_film(*make_gradient_integrator(context), 0, 4, &film);
+  return film.counters;
 }
 
 // But in corners, where one of the four is replayed and the others cannot wait: base_state_ and the like are for all of them.
-TEST(WaitingOffsets, TraceNoConnectionBehindWhichNothingShines) {
+TEST(DeferredOffsets, TraceNoConnectionBehindWhichNothingShines) {
   const Counters direct = counters_of(0), later = counters_of(2);
   EXPECT_GT(direct.rays_bounce, direct.rays_primary);  // paths go on
   EXPECT_EQ(direct.shifts_attempted, later.shifts_attempted);

@@ -131,12 +131,12 @@ TEST_F(ComponentMotionTest, OverACutIsNone) {
   const MotionFrame* middle = frame("Diffuse");
   auto snapshot = std::make_shared<Snapshot>(*middle->context.snapshot);
   EXPECT_TRUE(std::isfinite(snapshot->camera.matrix_next[0]));
-  EXPECT_FALSE(snapshot->cut_before);
-  EXPECT_TRUE(snapshot->cut_after);
+  EXPECT_FALSE(snapshot->shot_change_before);
+  EXPECT_TRUE(snapshot->shot_change_after);
   const ComponentMotion found = find(middle->context, "Diffuse");
   for (size_t i = 0; i < found.tracked.size(); ++i) {
     if (found.tracked[i] == kNothingToTrack) continue;
-    ASSERT_EQ(found.tracked[i], float(Tracking::Cut)) << i;
+    ASSERT_EQ(found.tracked[i], float(Tracking::ShotChange)) << i;
   }
 }
 

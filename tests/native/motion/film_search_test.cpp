@@ -17,7 +17,7 @@ class FilmSearchTest : public MotionTest {
     Target target;
     EXPECT_TRUE(true_target(before, after, *chain, &target));
     const Target own{chain->shown, false};
-    const FilmSearch::Problem problem{before, after, chain->way, own, target, Vec2(0.0f)};
+    const FilmSearch::Problem problem{before, after, chain->signature, own, target, Vec2(0.0f)};
     FilmPlace place, start{Vec2(float(x) + 0.5f, float(y) + 0.5f), *chain, chain_jacobian(from.chains, own, x, y)};
     return FilmSearch(problem, counts).leap(start, start.film, &place);
   }

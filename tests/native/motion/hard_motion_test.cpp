@@ -128,7 +128,7 @@ TEST_F(HardMotion, C8_ACutIsNoMotion) {
   const MotionFrame* a = frame("Reflection");
   scene_.camera(Vec3(4, 0.5f, 0), Vec3(0, 0, 0), 0.5f);
   const ChainMotion m = checked(a, frame("Reflection"));
-  EXPECT_EQ(count(m, Tracking::Cut), m.tracking.size());
+  EXPECT_EQ(count(m, Tracking::ShotChange), m.tracking.size());
 }
 
 TEST_F(HardMotion, WhatGoesFurtherThanTheFilmIsOutside) {
@@ -169,14 +169,14 @@ class PanoramaMotion : public HardMotion {
  protected:
   static constexpr int kWidth = 64, kSeam = 2;  // pixels; those at either end of the film
 
-  std::vector<const MotionFrame*> ball_goes(const Vec3& way, int steps) {
+  std::vector<const MotionFrame*> ball_goes(const Vec3& path, int steps) {
     scene_.world(Rgb(1.0f));
     scene_.ball(Vec3(0, 0, 2.5f), 1.8f, mirror(), 32, true);
     scene_.camera(Vec3(0, 0, 0), Vec3(0, 0, -1), 2.0f * kPi, GRADUS_CAMERA_PANORAMA);
     scene_.camera_desc.panorama = GRADUS_PANORAMA_EQUIRECTANGULAR;
     std::vector<const MotionFrame*> frames;
     for (int k = 0; k <= steps; ++k) {
-      scene_.scene.move(0, translation(float(k) / float(steps) * way));
+      scene_.scene.move(0, translation(float(k) / float(steps) * path));
       frames_.push_back(motion_frame(scene_.context(test_settings(kWidth, kWidth / 2)), components_, "Reflection"));
       frames.push_back(frames_.back().get());
     }
@@ -190,8 +190,8 @@ TEST_F(PanoramaMotion, ItsSeamIsNoEdge) {
   const MotionFrame &first = *frames.front(), &last = *frames.back();
   std::vector<ChainTracer> tracers;
   for (const MotionFrame* frame : frames) tracers.push_back(frame->chains.tracer());
-  std::vector<const ChainTracer*> way;
-  for (const ChainTracer& tracer : tracers) way.push_back(&tracer);
+  std::vector<const ChainTracer*> path;
+  for (const ChainTracer& tracer : tracers) path.push_back(&tracer);
   const ChainMotion m = motion(&first, &last);
   size_t at_seam = 0, crossed = 0;
   for (size_t i = 0; i < m.film.size(); ++i) {
@@ -199,11 +199,11 @@ TEST_F(PanoramaMotion, ItsSeamIsNoEdge) {
     if (first.chains.places[i] < 0 || std::min(x, kWidth - 1 - x) >= kSeam) continue;
     const Vec2 centre(float(x) + 0.5f, float(i / kWidth) + 0.5f);
     glm::dvec2 truth;
-    ASSERT_TRUE(true_place(way, first.chains.chains[size_t(first.chains.places[i])], centre, &truth)) << x;
+    ASSERT_TRUE(true_place(path, first.chains.chains[size_t(first.chains.places[i])], centre, &truth)) << x;
     ASSERT_EQ(m.tracking[i], Tracking::Tracked) << x;
     EXPECT_TRUE(m.film[i].x >= 0.0f && m.film[i].x < float(kWidth)) << x << ' ' << m.film[i].x;
-    EXPECT_LT(glm::length(last.centres.camera.way(Vec2(truth), m.film[i])), 0.1f) << x;
-    EXPECT_LT(glm::length(last.centres.camera.way(centre, m.film[i])), 4.0f) << x;
+    EXPECT_LT(glm::length(last.centres.camera.film_displacement(Vec2(truth), m.film[i])), 0.1f) << x;
+    EXPECT_LT(glm::length(last.centres.camera.film_displacement(centre, m.film[i])), 4.0f) << x;
     ++at_seam;
     crossed += std::fabs(m.film[i].x - centre.x) > 0.5f * float(kWidth);
   }

@@ -107,12 +107,12 @@ TEST(IrradianceMotion, BothWaysAreEachOthersReverse) {
 }
 
 TEST(IrradianceMotion, NoiseOfAFinishedFrameDoesNotMatter) {
-  for (const auto& [noise, median, most] : {std::array{0.01f, 0.05f, 0.1f}, std::array{0.04f, 0.1f, 0.2f}}) {
+  for (const auto& [noise, median, maximum] : {std::array{0.01f, 0.05f, 0.1f}, std::array{0.04f, 0.1f, 0.2f}}) {
     const FlowScene scene = turning_light(noise);
     const auto motion = motion_of(scene);
     const auto off = errors(scene, motion[0], turn);
     EXPECT_LT(quantile(off, 0.5f), median);
-    EXPECT_LT(quantile(off, 0.95f), most);
+    EXPECT_LT(quantile(off, 0.95f), maximum);
     EXPECT_GT(tracked_share(scene, motion[0]), 0.85f);
   }
 }

@@ -125,15 +125,15 @@ void MotionTest::expect_bounded(const ChainMotion& motion) {
 
 ChainMotion MotionTest::expect_motion(const char* component, const std::function<void(float)>& at) {
   constexpr int kBetween = 32;
-  std::vector<const MotionFrame*> way;
+  std::vector<const MotionFrame*> path;
   for (int k = 0; k <= kBetween; ++k) {
     at(float(k) / float(kBetween));
-    way.push_back(frame(component));
+    path.push_back(frame(component));
   }
-  const ChainMotion found = motion(way.front(), way.back());
+  const ChainMotion found = motion(path.front(), path.back());
   expect_bounded(found);
-  const size_t chains = way.front()->chains.chains.size();
-  const MotionErrors e = errors_of(found, way, std::max<size_t>(1, chains / 80));
+  const size_t chains = path.front()->chains.chains.size();
+  const MotionErrors e = errors_of(found, path, std::max<size_t>(1, chains / 80));
   std::ostringstream causes;
   for (const uint64_t count : found.counts.pixels) causes << ' ' << count;
   EXPECT_GT(e.pixels, 40u);

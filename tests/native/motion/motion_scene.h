@@ -52,7 +52,7 @@ struct MotionErrors {
 inline bool shows_in(const MotionFrame& to, const MotionFrame& from, const SpecularChain& chain, const Vec2& film) {
   const ChainTracer here = from.chains.tracer(), there = to.chains.tracer();
   Target target;
-  return true_target(here, there, chain, &target) && shows(there, chain.way, target, glm::dvec2(film), 3e-4);
+  return true_target(here, there, chain, &target) && shows(there, chain.signature, target, glm::dvec2(film), 3e-4);
 }
 
 // Against the truth, at every `stride`th pixel with a chain.
@@ -61,8 +61,8 @@ inline MotionErrors errors_of(const ChainMotion& motion, const std::vector<const
   const ChainView& view = frames[0]->chains;
   std::vector<ChainTracer> tracers;
   for (const MotionFrame* frame : frames) tracers.push_back(frame->chains.tracer());
-  std::vector<const ChainTracer*> way;
-  for (const ChainTracer& tracer : tracers) way.push_back(&tracer);
+  std::vector<const ChainTracer*> path;
+  for (const ChainTracer& tracer : tracers) path.push_back(&tracer);
   const auto width = size_t(view.region().width());
   size_t number = 0;
   for (size_t i = 0; i < motion.film.size(); ++i) {
@@ -72,7 +72,7 @@ inline MotionErrors errors_of(const ChainMotion& motion, const std::vector<const
     const Vec2 centre(float(i % width) + 0.5f, float(i / width) + 0.5f);
     const bool tracked = motion.tracking[i] == Tracking::Tracked;
     glm::dvec2 truth;
-    const bool exists = true_place(way, view.chains[size_t(index)], centre, &truth);
+    const bool exists = true_place(path, view.chains[size_t(index)], centre, &truth);
     const double error = glm::length(truth - glm::dvec2(motion.film[i]));
     errors.pixels += exists;
     errors.tracked += exists && tracked;

@@ -10,17 +10,17 @@
 namespace gradus {
 namespace {
 
-// All words of up to `most` scatterings.
-std::vector<std::string> words(size_t most) {
+// All words of up to `maximum` scatterings.
+std::vector<std::string> paths(size_t maximum) {
   std::vector<std::string> all{"E"};
-  for (size_t begin = 0, length = 0; length < most; ++length) {
+  for (size_t begin = 0, length = 0; length < maximum; ++length) {
     const size_t end = all.size();
     for (size_t i = begin; i < end; ++i) {
       for (const char c : {'D', 'R', 'T'}) all.push_back(all[i] + c);
     }
     begin = end;
   }
-  for (std::string& word : all) word += 'L';
+  for (std::string& path : all) path += 'L';
   return all;
 }
 
@@ -38,12 +38,12 @@ std::regex oracle(const std::string& expression) {
 
 void expect_like_regex(const std::string& text) {
   const ComponentSet set = ComponentSet::parse(text);
-  for (const std::string& word : words(6)) {
+  for (const std::string& path : paths(6)) {
     int expected = set.count() - 1;
     for (int i = 0; i < set.count() - 1; ++i) {
-      if (std::regex_match(word, oracle(set[i].expression))) expected = i;
+      if (std::regex_match(path, oracle(set[i].expression))) expected = i;
     }
-    ASSERT_EQ(set.classify(word), expected) << text << ", " << word;
+    ASSERT_EQ(set.classify(path), expected) << text << ", " << path;
   }
 }
 
@@ -74,7 +74,7 @@ TEST(Components, MatchesWordsAsRegularExpressionsDo) {
 TEST(Components, DefaultSetTellsTheFiveApart) {
   const ComponentSet set = ComponentSet::parse("");
   ASSERT_EQ(set.count(), 5);
-  const auto name = [&](const char* word) { return set[set.classify(word)].name; };
+  const auto name = [&](const char* path) { return set[set.classify(path)].name; };
   EXPECT_EQ(name("EL"), "Emission");
   EXPECT_EQ(name("EDL"), "Diffuse");
   EXPECT_EQ(name("EDRTL"), "Diffuse");
@@ -89,7 +89,7 @@ TEST(Components, DefaultSetTellsTheFiveApart) {
 TEST(Components, OneComponentWithoutDecomposition) {
   const ComponentSet set;
   EXPECT_EQ(set.count(), 1);
-  for (const std::string& word : words(3)) EXPECT_EQ(set.classify(word), 0);
+  for (const std::string& path : paths(3)) EXPECT_EQ(set.classify(path), 0);
 }
 
 TEST(Components, RefusesOverlapWithAWordOfBoth) {
@@ -126,8 +126,8 @@ TEST(Components, RefusesAnAutomatonThatExplodes) { EXPECT_NE(refusal("A=E.*D....
 
 TEST(Components, TakesAsManyAsThereIsRoomFor) {
   std::string text, longer = "D";
-  for (int i = 1; i < kMostComponents; ++i) text += "C" + std::to_string(i) + "=E" + longer.substr(0, size_t(i) - 1) + "L;", longer += 'D';
-  EXPECT_EQ(ComponentSet::parse(text).count(), kMostComponents);
+  for (int i = 1; i < kMaxComponents; ++i) text += "C" + std::to_string(i) + "=E" + longer.substr(0, size_t(i) - 1) + "L;", longer += 'D';
+  EXPECT_EQ(ComponentSet::parse(text).count(), kMaxComponents);
   EXPECT_NE(refusal(text + "X=ERL").find("more than 15"), std::string::npos);
 }
 
@@ -137,18 +137,18 @@ TEST(Components, GiveTheirPathsToResidualWhereTheyAreMerged) {
   const ComponentSet some = all.merged(small);
   ASSERT_EQ(some.count(), 3);
   EXPECT_EQ(some[2].name, "Residual");
-  for (const std::string& word : words(5)) {
-    const std::string before = all[all.classify(word)].name;
+  for (const std::string& path : paths(5)) {
+    const std::string before = all[all.classify(path)].name;
     const bool stays = before == "Diffuse" || before == "Transmission";
-    EXPECT_EQ(some[some.classify(word)].name, stays ? before : "Residual") << word;
+    EXPECT_EQ(some[some.classify(path)].name, stays ? before : "Residual") << path;
   }
   EXPECT_EQ(some.ahead(some.next(0, ScatterClass::Reflection)), 1u << 2);
 }
 
 TEST(Components, KnowsWhatLiesAheadOfAWord) {
   const ComponentSet set = ComponentSet::parse("");
-  const auto has = [&](PathWord at, const char* name) { return (set.ahead(at) >> set.find(name) & 1) != 0; };
-  const PathWord r = set.next(0, ScatterClass::Reflection), rr = set.next(r, ScatterClass::Reflection);
+  const auto has = [&](LpeState at, const char* name) { return (set.ahead(at) >> set.find(name) & 1) != 0; };
+  const LpeState r = set.next(0, ScatterClass::Reflection), rr = set.next(r, ScatterClass::Reflection);
   EXPECT_TRUE(has(0, "Emission") && has(0, "Transmission") && has(0, "Residual"));
   EXPECT_TRUE(has(r, "Reflection"));
   EXPECT_FALSE(has(r, "Diffuse"));
@@ -165,7 +165,7 @@ TEST(Components, ExamplesAreShortestWordsOfTheirComponent) {
 
 TEST(Components, RefusesWordsThatAreNoPath) {
   const ComponentSet set = ComponentSet::parse("");
-  for (const char* word : {"", "E", "L", "LE", "EXL", "DL", "ED", "EELL"}) EXPECT_THROW(set.classify(word), Error) << word;
+  for (const char* path : {"", "E", "L", "LE", "EXL", "DL", "ED", "EELL"}) EXPECT_THROW(set.classify(path), Error) << path;
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 using test::PathScene;
 
-GradusLight lamp_at(const Vec3& position, float radius) {
+GradusLight light_at(const Vec3& position, float radius) {
   GradusLight light = test::make_light(GRADUS_LIGHT_POINT, test::translation(position), Rgb(1.0f));
   light.radius = radius;
   return light;
@@ -36,23 +36,23 @@ Segment trace(const PathContext& context, uint32_t sample, PathRay* ray) {
   return segment;
 }
 
-// Segments held eight lamps at most.
+// Segments held eight lights at most.
 TEST(Segment, TheNinthLampOnARayIsSeenToo) {
   PathScene scene;
-  for (int i = 0; i < 20; ++i) scene.light(lamp_at(Vec3(2.0f + 1.5f * float(i), 0.1f, 0.0f), 0.4f));
+  for (int i = 0; i < 20; ++i) scene.light(light_at(Vec3(2.0f + 1.5f * float(i), 0.1f, 0.0f), 0.4f));
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
   const IntegratorContext c = scene.context(test::test_settings(4, 4));
   const PathContext context(*c.snapshot, c.camera, c.settings);
   PathRay ray;
   const Segment segment = trace(context, 0, &ray);
-  ASSERT_EQ(segment.lamps.size(), 20u);
-  for (size_t i = 1; i < 20; ++i) EXPECT_GT(segment.lamps[i].distance, segment.lamps[i - 1].distance);
+  ASSERT_EQ(segment.light_crossings.size(), 20u);
+  for (size_t i = 1; i < 20; ++i) EXPECT_GT(segment.light_crossings[i].distance, segment.light_crossings[i - 1].distance);
 }
 
-// Lamps that turn towards their receiver were met as seen from the last transparent surface, and weighed as seen from the vertex.
+// Lights that turn towards their receiver were met as seen from the last transparent surface, and weighed as seen from the vertex.
 TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
   PathScene scene;
-  GradusLight light = lamp_at(Vec3(3.0f, 0.5f, 0.2f), 0.8f);
+  GradusLight light = light_at(Vec3(3.0f, 0.5f, 0.2f), 0.8f);
   light.flags |= GRADUS_LIGHT_DISK_FACING;
   scene.light(light);
   scene.quad(Vec3(2, -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), pane(&scene));
@@ -63,31 +63,31 @@ TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
   for (uint32_t sample = 0; sample < 64; ++sample) {
     PathRay ray;
     const Segment segment = trace(context, sample, &ray);
-    for (const LampSighting& lamp : segment.lamps) {
-      const EmitterView view = view_emitter(context.scene, lamp.point, Receiver{ray.ray.origin, Vec3(0.0f), true});
+    for (const LightCrossing& light_crossing : segment.light_crossings) {
+      const LightEvaluation view = evaluate_light(context.scene, light_crossing.point, Receiver{ray.ray.origin, Vec3(0.0f), true});
       EXPECT_LT(glm::length(view.direction - ray.ray.direction), 1e-5f);
-      EXPECT_NEAR(view.distance, lamp.distance, 1e-4f);
+      EXPECT_NEAR(view.distance, light_crossing.distance, 1e-4f);
       ++seen;
     }
   }
   EXPECT_GT(seen, 5);
 }
 
-// The last ray of a path asks for no surface where none shines, and must find the same: lamps before and behind walls, and the world.
+// The last ray of a path asks for no surface where none shines, and must find the same: lights before and behind walls, and the world.
 TEST(Segment, LastRaysFindTheSameLightsWithoutSurfaces) {
   PathScene scene;
   test::Surface grey;
   grey.diffuse = Rgb(0.5f);
   const uint64_t wall = scene.material(grey);
   scene.quad(Vec3(2, -1, -1), Vec3(0, 2, 0), Vec3(0, 0, 2), wall);
-  scene.light(lamp_at(Vec3(1.5f, 0, 0), 0.2f));
-  scene.light(lamp_at(Vec3(4, 0.5f, 0), 1.5f));
+  scene.light(light_at(Vec3(1.5f, 0, 0), 0.2f));
+  scene.light(light_at(Vec3(4, 0.5f, 0), 1.5f));
   scene.world(Rgb(0.5f));
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
   const IntegratorContext c = scene.context(test::test_settings(4, 4));
   const PathContext context(*c.snapshot, c.camera, c.settings);
-  ASSERT_TRUE(context.scene.features.only_lights_shine);
-  int lamps = 0, escaped = 0;
+  ASSERT_TRUE(context.scene.features.only_lights_emit);
+  int light_crossings = 0, escaped = 0;
   for (uint32_t i = 0; i < 10000; ++i) {
     SampleKey key;
     key.index = i;
@@ -98,13 +98,13 @@ TEST(Segment, LastRaysFindTheSameLightsWithoutSurfaces) {
     Vertex vertex;
     trace_to_lights(context, ray, &lights);
     trace_segment(context, Sampler(key), 0, nullptr, &ray, &vertex, &all);
-    ASSERT_EQ(lights.lamps.size(), all.lamps.size());
-    for (size_t k = 0; k < all.lamps.size(); ++k) EXPECT_EQ(lights.lamps[k].distance, all.lamps[k].distance);
+    ASSERT_EQ(lights.light_crossings.size(), all.light_crossings.size());
+    for (size_t k = 0; k < all.light_crossings.size(); ++k) EXPECT_EQ(lights.light_crossings[k].distance, all.light_crossings[k].distance);
     EXPECT_EQ(lights.end == SegmentEnd::Escaped, all.end == SegmentEnd::Escaped);
-    lamps += int(all.lamps.size());
+    light_crossings += int(all.light_crossings.size());
     escaped += all.end == SegmentEnd::Escaped;
   }
-  EXPECT_GT(lamps, 100);
+  EXPECT_GT(light_crossings, 100);
   EXPECT_GT(escaped, 500);
 }
 

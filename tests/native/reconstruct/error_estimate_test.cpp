@@ -19,44 +19,44 @@ namespace {
 
 using test::mean;
 
-const CancelTest kNever = [] { return false; };
+const CancelCheck kNever = [] { return false; };
 
 // Values that do not differ between the halves, which are then moved apart by what a test likes.
-Frame make_frame(int width, int height, uint32_t samples_a, uint32_t samples_b, bool gradients) {
-  Frame frame(uint32_t(width), uint32_t(height), {0, 0, width, height}, 3, 1, gradients);
+Film make_frame(int width, int height, uint32_t samples_a, uint32_t samples_b, bool gradients) {
+  Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, 3, 1, gradients);
   const size_t pixels = size_t(width) * size_t(height);
   const uint32_t samples[kHalves] = {samples_a, samples_b};
   for (int half = 0; half < kHalves; ++half) {
-    frame.count[half].assign(pixels, samples[half]);
-    frame.components[0].primal[half].assign(pixels, Radiance(0.5f, 1.0f, 2.0f, 0.0f) * float(samples[half]));
-    for (auto& count : frame.pair_count[half]) count.assign(gradients ? pixels : 0, float(samples[half]));
+    film.count[half].assign(pixels, samples[half]);
+    film.components[0].primal[half].assign(pixels, Radiance(0.5f, 1.0f, 2.0f, 0.0f) * float(samples[half]));
+    for (auto& count : film.pair_count[half]) count.assign(gradients ? pixels : 0, float(samples[half]));
   }
-  return frame;
+  return film;
 }
 
-void add_noise(float sigma, unsigned seed, Frame* frame) {
+void add_noise(float sigma, unsigned seed, Film* film) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(0.0f, sigma);
   for (int half = 0; half < kHalves; ++half) {
-    for (Radiance& sum : frame->components[0].primal[half]) {
+    for (Radiance& sum : film->components[0].primal[half]) {
       const float x = normal(random), y = normal(random), z = normal(random);
       sum += Radiance(x, y, z, 0.0f);
     }
   }
 }
 
-std::vector<float> error_of(const Frame& frame, uint32_t reconstruction) {
+std::vector<float> error_of(const Film& film, uint32_t reconstruction) {
   SolveReport report;
-  return reconstruct_frame(frame, reconstruction, 0.0f, {.error = true}, kNever, &report).error;
+  return reconstruct_film(film, reconstruction, 0.0f, {.error = true}, kNever, &report).error;
 }
 
 constexpr uint32_t kAll[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1};
 
 // One sample in each half, of variance σ²: the mean's is σ²/2.
 TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
-  Frame frame = make_frame(64, 48, 1, 1, false);
-  add_noise(0.3f, 5, &frame);
-  const std::vector<float> error = error_of(frame, GRADUS_RECONSTRUCTION_NONE);
+  Film film = make_frame(64, 48, 1, 1, false);
+  add_noise(0.3f, 5, &film);
+  const std::vector<float> error = error_of(film, GRADUS_RECONSTRUCTION_NONE);
   ASSERT_EQ(error.size(), 64u * 48u);
   EXPECT_NEAR(mean(error), 0.5 * 0.09, 0.05 * 0.045);
   for (const float e : error) {
@@ -67,19 +67,19 @@ TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
 
 // Noise that no reconstruction takes away, in halves of different size.
 TEST(ErrorEstimate, OfHalvesApartIsTheSquareOfHalfTheirDistance) {
-  Frame frame = make_frame(40, 30, 3, 2, true);
-  for (Radiance& sum : frame.components[0].primal[0]) sum += Radiance(3.0f * 0.7f);
-  for (Radiance& sum : frame.components[0].primal[1]) sum += Radiance(2.0f * -0.7f);
+  Film film = make_frame(40, 30, 3, 2, true);
+  for (Radiance& sum : film.components[0].primal[0]) sum += Radiance(3.0f * 0.7f);
+  for (Radiance& sum : film.components[0].primal[1]) sum += Radiance(2.0f * -0.7f);
   for (const uint32_t reconstruction : kAll) {
-    for (const float e : error_of(frame, reconstruction)) ASSERT_NEAR(e, 0.49f, 0.005f) << reconstruction;
+    for (const float e : error_of(film, reconstruction)) ASSERT_NEAR(e, 0.49f, 0.005f) << reconstruction;
   }
 }
 
 TEST(ErrorEstimate, IsThereOnlyIfAskedFor) {
-  const Frame frame = make_frame(8, 8, 2, 2, true);
+  const Film film = make_frame(8, 8, 2, 2, true);
   SolveReport report;
   for (const uint32_t reconstruction : kAll) {
-    EXPECT_TRUE(reconstruct_frame(frame, reconstruction, 0.0f, {}, kNever, &report).error.empty());
+    EXPECT_TRUE(reconstruct_film(film, reconstruction, 0.0f, {}, kNever, &report).error.empty());
   }
 }
 
@@ -116,9 +116,9 @@ TEST(ErrorEstimate, OfABetterImageIsLessThanThatOfL2ByTheirDistance) {
 // Half of a lone sample counted as the difference of two: a picture of one sample looked twice as good as its square.
 TEST(ErrorEstimate, WhereAHalfIsEmptyIsTheSquareOfThePicture) {
   for (const bool first : {true, false}) {
-    const Frame frame = make_frame(24, 17, first ? 1 : 0, first ? 0 : 1, true);
+    const Film film = make_frame(24, 17, first ? 1 : 0, first ? 0 : 1, true);
     for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
-      for (const float e : error_of(frame, reconstruction)) EXPECT_NEAR(e, (0.25f + 1.0f + 4.0f) / 3.0f, 1e-3f) << reconstruction;
+      for (const float e : error_of(film, reconstruction)) EXPECT_NEAR(e, (0.25f + 1.0f + 4.0f) / 3.0f, 1e-3f) << reconstruction;
     }
   }
 }
@@ -128,10 +128,10 @@ TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
   for (const auto& [width, height] : sizes) {
     for (const auto& [a, b] : {std::pair(0u, 0u), std::pair(1u, 0u), std::pair(3u, 2u)}) {
       for (const float scale : {1.0f, 1e30f}) {
-        Frame frame = make_frame(width, height, a, b, true);
-        if (a + b > 0) add_noise(scale, 3, &frame);
+        Film film = make_frame(width, height, a, b, true);
+        if (a + b > 0) add_noise(scale, 3, &film);
         for (const uint32_t reconstruction : kAll) {
-          const std::vector<float> error = error_of(frame, reconstruction);
+          const std::vector<float> error = error_of(film, reconstruction);
           ASSERT_EQ(error.size(), size_t(width * height));
           for (const float e : error) ASSERT_TRUE(std::isfinite(e) && e >= 0.0f) << width << "x" << height << ", " << reconstruction;
         }
@@ -142,11 +142,11 @@ TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
 
 // A frame of what may have been rendered with other settings.
 TEST(ErrorEstimate, AndReconstructionRefuseFramesWithoutWhatTheyRead) {
-  Frame frame = make_frame(8, 8, 2, 2, false);
-  const auto message = [&](uint32_t reconstruction) { return test::refusal_of([&] { error_of(frame, reconstruction); }); };
+  Film film = make_frame(8, 8, 2, 2, false);
+  const auto message = [&](uint32_t reconstruction) { return test::refusal_of([&] { error_of(film, reconstruction); }); };
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_L2).find("no gradients"), std::string::npos);
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
-  frame.passes = make_pass_planes(feature_passes(), 64);
+  film.passes = make_pass_planes(feature_passes(), 64);
   EXPECT_EQ(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
 }
 

@@ -10,7 +10,7 @@
 
 namespace gradus::test {
 
-struct FeatureFrame {
+struct FeatureFilm {
   int width, height;
   std::vector<float> truth;  // three channels
   // Standard deviation of a half's pixel.
@@ -22,11 +22,11 @@ struct FeatureFrame {
   unsigned seed = 1;
 };
 
-inline void fill_features(const FeatureFrame& description, Frame* frame) {
-  frame->passes = make_pass_planes(feature_passes(), size_t(frame->region.area()));
+inline void fill_features(const FeatureFilm& description, Film* film) {
+  film->passes = make_pass_planes(feature_passes(), size_t(film->region.area()));
   int first = 0;
   for (const uint32_t pass : {GRADUS_PASS_DENOISING_NORMAL, GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_DENOISING_DEPTH}) {
-    for (PassPlane& plane : frame->passes) {
+    for (PassPlane& plane : film->passes) {
       if (plane.pass != pass) continue;
       for (int half = 0; half < kHalves; ++half) {
         for (size_t i = 0; i < plane.values[half].size(); ++i) {
@@ -40,7 +40,7 @@ inline void fill_features(const FeatureFrame& description, Frame* frame) {
 }
 
 // One sample of each pixel and half. Alpha's are an eighth of red's, as alpha is.
-inline void fill_differences(const FeatureFrame& description, Frame* frame) {
+inline void fill_differences(const FeatureFilm& description, Film* film) {
   const int w = description.width, h = description.height;
   std::mt19937 random(100 + description.seed);
   std::normal_distribution<float> normal(0.0f, 1.0f);
@@ -51,38 +51,38 @@ inline void fill_differences(const FeatureFrame& description, Frame* frame) {
           const int nx = x + kOffsetX[o], ny = y + kOffsetY[o];
           if (nx < 0 || nx >= w || ny < 0 || ny >= h) continue;
           const size_t i = size_t(y) * size_t(w) + size_t(x), n = size_t(ny) * size_t(w) + size_t(nx);
-          frame->pair_count[half][o][i] = 1.0f;
-          Radiance& difference = frame->components[0].gradient[half][o][i];
+          film->pair_count[half][o][i] = 1.0f;
+          Radiance& difference = film->components[0].gradient[half][o][i];
           for (int c = 0; c < 3; ++c) {
             // Each end of a pair has half of it.
             const float truth = 0.5f * (description.truth[3 * n + size_t(c)] - description.truth[3 * i + size_t(c)]);
             difference[c] = truth + description.difference_sigma * normal(random);
           }
-          if (frame->channels == 4) difference[3] = difference[0] / 8.0f;
+          if (film->channels == 4) difference[3] = difference[0] / 8.0f;
         }
       }
     }
   }
 }
 
-inline Frame make_feature_frame(const FeatureFrame& description, int channels = 3) {
+inline Film make_feature_film(const FeatureFilm& description, int channels = 3) {
   const int w = description.width, h = description.height;
-  Frame frame(uint32_t(w), uint32_t(h), {0, 0, w, h}, channels, 1, description.gradients);
-  frame.settings.width = uint32_t(w);
-  frame.settings.height = uint32_t(h);
+  Film film(uint32_t(w), uint32_t(h), {0, 0, w, h}, channels, 1, description.gradients);
+  film.settings.width = uint32_t(w);
+  film.settings.height = uint32_t(h);
   std::mt19937 random(description.seed);
   std::normal_distribution<float> normal(0.0f, 1.0f);
   for (int half = 0; half < kHalves; ++half) {
     for (size_t i = 0; i < size_t(w) * size_t(h); ++i) {
-      frame.count[half][i] = 1;
-      Radiance& pixel = frame.components[0].primal[half][i];
+      film.count[half][i] = 1;
+      Radiance& pixel = film.components[0].primal[half][i];
       for (int c = 0; c < 3; ++c) pixel[c] = description.truth[3 * i + size_t(c)] + description.sigma(i) * normal(random);
       if (channels == 4) pixel[3] = pixel[0] / 8.0f;
     }
   }
-  fill_features(description, &frame);
-  if (description.gradients) fill_differences(description, &frame);
-  return frame;
+  fill_features(description, &film);
+  if (description.gradients) fill_differences(description, &film);
+  return film;
 }
 
 // Three planes with normals, a chequered albedo, a depth of their own.
@@ -92,12 +92,12 @@ inline float room_feature(int x, int y, int channel, int /*half*/) {
   return 3.0f + 0.05f * float(x);
 }
 
-inline FeatureFrame room(int w, int h) {
-  FeatureFrame frame{w, h, {}, [](size_t) { return 0.4f; }, room_feature};
-  frame.truth = make_image(w, h, 3, [](int x, int y, int c) {
+inline FeatureFilm room(int w, int h) {
+  FeatureFilm film{w, h, {}, [](size_t) { return 0.4f; }, room_feature};
+  film.truth = make_image(w, h, 3, [](int x, int y, int c) {
     return (1.0f + 0.01f * float(x) + (y < 15 ? 0.5f : 0.0f)) * room_feature(x, y, 3 + c, 0) + (x < 20 ? 0.3f : 0.0f);
   });
-  return frame;
+  return film;
 }
 
 }  // namespace gradus::test

@@ -18,39 +18,39 @@ Field constant(float value) {
 float kept(const Field& sampled, float regressed) {
   Field image = constant(1.0f);
   image.row(kCentre)[kCentre] = regressed;
-  blend_own(keep_own_light(sampled, image), sampled, &image);
+  blend_sampled(restore_sampled_light(sampled, image), sampled, &image);
   return image.row(kCentre)[kCentre];
 }
 
-TEST(B2_KeepOwnLight, NoLessThanAQuarterOfWhatWasSampled) {
+TEST(B2_RestoreSampledLight, NoLessThanAQuarterOfWhatWasSampled) {
   EXPECT_NEAR(kept(constant(1.0f), -3.0f), 0.25f, 1e-6f);
   EXPECT_NEAR(kept(constant(1.0f), 0.1f), 0.25f, 1e-6f);
 }
 
-TEST(B2_KeepOwnLight, WhatIsBrighterStaysAsItIs) {
+TEST(B2_RestoreSampledLight, WhatIsBrighterStaysAsItIs) {
   for (const float regressed : {0.25f, 0.5f, 2.0f}) EXPECT_EQ(kept(constant(1.0f), regressed), regressed);
 }
 
-TEST(B2_KeepOwnLight, AFireflyCountsAsItsNeighbours) {
+TEST(B2_RestoreSampledLight, AFireflyCountsAsItsNeighbours) {
   Field sampled = constant(1.0f);
   sampled.row(kCentre)[kCentre] = 1000.0f;
   EXPECT_NEAR(kept(sampled, -1.0f), 0.25f, 1e-3f);
 }
 
-TEST(B2_KeepOwnLight, ADarkPixelStaysDark) {
+TEST(B2_RestoreSampledLight, ADarkPixelStaysDark) {
   Field sampled = constant(1.0f);
   sampled.row(kCentre)[kCentre] = 0.0f;
   EXPECT_EQ(kept(sampled, 0.01f), 0.01f);
   EXPECT_NEAR(kept(sampled, -1.0f), 0.0f, 1e-6f);
 }
 
-TEST(B2_KeepOwnLight, AllChannelsTakeTheShareOfTheDarkest) {
+TEST(B2_RestoreSampledLight, AllChannelsTakeTheShareOfTheDarkest) {
   Field sampled(kSize, kSize, 3), regressed(kSize, kSize, 3);
   for_values(&sampled, [](float& value, int, int, int) { value = 1.0f; });
   for_values(&regressed, [](float& value, int, int, int c) { value = c == 1 ? -1.0f : 0.5f; });
-  const Field share = keep_own_light(sampled, regressed);
+  const Field share = restore_sampled_light(sampled, regressed);
   EXPECT_NEAR(share.row(0)[0], 0.625f, 1e-6f);
-  blend_own(share, sampled, &regressed);
+  blend_sampled(share, sampled, &regressed);
   EXPECT_NEAR(regressed.row(0, 1)[0], 0.25f, 1e-6f);
   EXPECT_NEAR(regressed.row(0, 0)[0], 0.8125f, 1e-6f);
 }

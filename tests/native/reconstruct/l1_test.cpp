@@ -35,7 +35,7 @@ double energy(const GradientImages& images, const std::vector<float>& x, double 
 
 TEST(B2_Solver, L1ReportsItsResidual) {
   for (const auto& [w, h] : kSizes) {
-    GradientImages images = with_own_gradients(w, h, 3, smooth_image(w, h, 3));
+    GradientImages images = with_exact_gradients(w, h, 3, smooth_image(w, h, 3));
     add_noise(&images.primal, 0.3f, 1);
     add_noise(&images.dx, 0.05f, 2);
     add_noise(&images.dy, 0.05f, 3);
@@ -54,7 +54,7 @@ std::vector<float> minimise(const GradientImages& images) {
 }
 
 TEST(B2_Solver, L1LowersItsObjective) {
-  GradientImages images = with_own_gradients(64, 48, 3, smooth_image(64, 48, 3));
+  GradientImages images = with_exact_gradients(64, 48, 3, smooth_image(64, 48, 3));
   add_noise(&images.primal, 0.3f, 1);
   add_noise(&images.dx, 0.02f, 2);
   for (size_t i = 5; i < images.dx.size(); i += 301) images.dx[i] += 3.0f;
@@ -72,7 +72,7 @@ TEST(B2_Solver, L1LowersItsObjective) {
 
 TEST(B2_Solver, L1IgnoresOutliersInGradientsAndPixels) {
   const std::vector<float> truth = smooth_image(64, 48, 3);
-  GradientImages images = with_own_gradients(64, 48, 3, truth);
+  GradientImages images = with_exact_gradients(64, 48, 3, truth);
   add_noise(&images.primal, 0.05f, 1);
   for (const size_t pixel : {700u, 1501u, 2222u}) {
     for (int c = 0; c < 3; ++c) {
@@ -90,7 +90,7 @@ TEST(B2_Solver, L1IgnoresOutliersInGradientsAndPixels) {
 // Skewed noise: mean 1, median 0.1 of it. The minimiser alone estimates a median and loses 14 % here; so did the result, up to the
 // floor that its data rows had.
 TEST(B3_L1, KeepsTheMeanOfSkewedNoise) {
-  GradientImages images = with_own_gradients(128, 96, 3, std::vector<float>(128 * 96 * 3, 1.0f));
+  GradientImages images = with_exact_gradients(128, 96, 3, std::vector<float>(128 * 96 * 3, 1.0f));
   add_noise(&images.dx, 0.3f, 2);
   add_noise(&images.dy, 0.3f, 3);
   std::mt19937 random(1);
@@ -124,7 +124,7 @@ TEST(B2_Solver, OutlierBoundGrowsWithTheSquareRootOfTheCount) {
 }
 
 TEST(K2_Cancel, L1EndsAtOnce) {
-  const GradientImages images = with_own_gradients(64, 64, 3, smooth_image(64, 64, 3));
+  const GradientImages images = with_exact_gradients(64, 64, 3, smooth_image(64, 64, 3));
   SolveReport report;
   reconstruct(
       images, GRADUS_RECONSTRUCTION_L1, 0.2f, [] { return true; }, &report);

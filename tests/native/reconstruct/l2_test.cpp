@@ -59,19 +59,19 @@ std::vector<float> solve(const GradientImages& images, float alpha = 0.2f) {
 TEST(B1_FixedPoint, L2KeepsAnImageWithItsOwnGradients) {
   for (const Size s : kSizes) {
     const std::vector<float> image = smooth_image(s.width, s.height, 3);
-    const std::vector<float> result = solve(with_own_gradients(s.width, s.height, 3, image));
+    const std::vector<float> result = solve(with_exact_gradients(s.width, s.height, 3, image));
     EXPECT_LT(max_difference(result, image), 1e-5) << s.width << "x" << s.height;
   }
 }
 
 TEST(B1_FixedPoint, L2KeepsAConstant) {
   const std::vector<float> image(33 * 17 * 3, 0.75f);
-  EXPECT_LT(max_difference(solve(with_own_gradients(33, 17, 3, image)), image), 1e-6);
+  EXPECT_LT(max_difference(solve(with_exact_gradients(33, 17, 3, image)), image), 1e-6);
 }
 
 // Without a weight of the user's: not the zero that it is written as, under which the image's brightness is undefined.
 TEST(B2_Solver, AutomaticWeightIsThatOfTheSolver) {
-  GradientImages images = with_own_gradients(33, 17, 3, smooth_image(33, 17, 3));
+  GradientImages images = with_exact_gradients(33, 17, 3, smooth_image(33, 17, 3));
   add_noise(&images.dx, 0.05f, 2);
   EXPECT_EQ(solve(images, 0.0f), solve(images, 0.4f));
   SolveReport report;
@@ -89,7 +89,7 @@ TEST(B2_Solver, TooSmallAWeightIsRefused) {
 TEST(B2_Solver, L2SolvesTheNormalEquations) {
   for (const Size s : kSizes) {
     for (const float alpha : {0.02f, 0.2f, 1.0f}) {
-      GradientImages images = with_own_gradients(s.width, s.height, 1, smooth_image(s.width, s.height, 1));
+      GradientImages images = with_exact_gradients(s.width, s.height, 1, smooth_image(s.width, s.height, 1));
       add_noise(&images.primal, 0.3f, 1);
       add_noise(&images.dx, 0.05f, 2);
       add_noise(&images.dy, 0.05f, 3);
@@ -104,13 +104,13 @@ TEST(B2_Solver, L2SolvesTheNormalEquations) {
 // Sums over a row or column of large values left the range of a float.
 TEST(B2_Solver, L2OfHugeValuesIsFinite) {
   const std::vector<float> image = make_image(256, 256, 1, [](int x, int, int) { return x < 128 ? 2e37f : 1e37f; });
-  const std::vector<float> x = solve(with_own_gradients(256, 256, 1, image), 0.4f);
+  const std::vector<float> x = solve(with_exact_gradients(256, 256, 1, image), 0.4f);
   for (size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i] / image[i], 1.0f, 1e-4f);
 }
 
 TEST(B2_Solver, L2OfASpikeKeepsItsMean) {
   for (const Size s : kSizes) {
-    GradientImages images = with_own_gradients(s.width, s.height, 1, std::vector<float>(size_t(s.width) * s.height, 0.5f));
+    GradientImages images = with_exact_gradients(s.width, s.height, 1, std::vector<float>(size_t(s.width) * s.height, 0.5f));
     images.primal[images.primal.size() / 2] = 1e6f;
     const std::vector<float> x = solve(images);
     EXPECT_LT(residual(images, x, 0.2), 1e-4);
@@ -120,27 +120,27 @@ TEST(B2_Solver, L2OfASpikeKeepsItsMean) {
 
 TEST(B2_Solver, L2OfAStepAndAPlane) {
   const auto step = make_image(64, 48, 1, [](int x, int, int) { return x < 30 ? 0.0f : 1000.0f; });
-  EXPECT_LT(max_difference(solve(with_own_gradients(64, 48, 1, step)), step), 1e-2);
+  EXPECT_LT(max_difference(solve(with_exact_gradients(64, 48, 1, step)), step), 1e-2);
   const auto plane = make_image(64, 48, 1, [](int x, int y, int) { return 0.5f * float(x) - 0.25f * float(y); });
-  EXPECT_LT(max_difference(solve(with_own_gradients(64, 48, 1, plane)), plane), 1e-4);
+  EXPECT_LT(max_difference(solve(with_exact_gradients(64, 48, 1, plane)), plane), 1e-4);
 }
 
 TEST(B2_Solver, L2LeavesOutWhatIsNotFinite) {
-  GradientImages images = with_own_gradients(33, 17, 1, std::vector<float>(33 * 17, 1.0f));
+  GradientImages images = with_exact_gradients(33, 17, 1, std::vector<float>(33 * 17, 1.0f));
   images.primal[40] = std::numeric_limits<float>::quiet_NaN();
   images.dx[90] = std::numeric_limits<float>::infinity();
   for (const float v : solve(images)) EXPECT_TRUE(std::isfinite(v));
 }
 
 TEST(L1_Threads, L2HasTheSameBitsForAnyNumberOfThreads) {
-  GradientImages images = with_own_gradients(133, 71, 3, smooth_image(133, 71, 3));
+  GradientImages images = with_exact_gradients(133, 71, 3, smooth_image(133, 71, 3));
   add_noise(&images.primal, 0.3f, 1);
   test::expect_same_bits_for_any_number_of_threads([&] { return solve(images); });
 }
 
 // A linear operator: applied to a sum, it gives the sum (contract 3.4).
 TEST(B2_Solver, L2IsLinear) {
-  GradientImages a = with_own_gradients(33, 17, 1, smooth_image(33, 17, 1)), b = a;
+  GradientImages a = with_exact_gradients(33, 17, 1, smooth_image(33, 17, 1)), b = a;
   add_noise(&a.primal, 0.3f, 1);
   add_noise(&b.dx, 0.3f, 2);
   GradientImages sum = a;
@@ -158,7 +158,7 @@ TEST(B2_Solver, L2IsLinear) {
 // Pairs without samples are no rows: across a column of them, two pictures lie side by side that know nothing of each other.
 TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
   const int w = 40, h = 24, left = 17;
-  GradientImages images = with_own_gradients(w, h, 3, smooth_image(w, h, 3));
+  GradientImages images = with_exact_gradients(w, h, 3, smooth_image(w, h, 3));
   add_noise(&images.primal, 0.3f, 1);
   add_noise(&images.dx, 0.1f, 2);
   const auto part = [&](int begin, int width) {
@@ -186,8 +186,8 @@ TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
 }
 
 // Sums of noise; some pixels without samples.
-Frame noisy_frame(int width, int height, int channels) {
-  Frame frame(uint32_t(width), uint32_t(height), {0, 0, width, height}, channels, 1, true);
+Film noisy_film(int width, int height, int channels) {
+  Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, channels, 1, true);
   std::mt19937 random(1);
   std::normal_distribution<float> normal;
   std::uniform_int_distribution<uint32_t> samples(0, 3), pairs(1, 3);
@@ -195,14 +195,14 @@ Frame noisy_frame(int width, int height, int channels) {
     for (Radiance& value : *plane) value = {normal(random), normal(random), normal(random), normal(random)};
   };
   for (int h = 0; h < kHalves; ++h) {
-    fill(&frame.components[0].primal[h]);
-    for (uint32_t& count : frame.count[h]) count = samples(random);
+    fill(&film.components[0].primal[h]);
+    for (uint32_t& count : film.count[h]) count = samples(random);
     for (int offset = 0; offset < kOffsets; ++offset) {
-      fill(&frame.components[0].gradient[h][offset]);
-      for (float& count : frame.pair_count[h][offset]) count = static_cast<float>(pairs(random));
+      fill(&film.components[0].gradient[h][offset]);
+      for (float& count : film.pair_count[h][offset]) count = static_cast<float>(pairs(random));
     }
   }
-  return frame;
+  return film;
 }
 
 // A frame's rows are read while they are needed, and its channels solved side by side.
@@ -210,8 +210,8 @@ TEST(B2_Solver, L2OfAFrameHasTheBitsOfItsImagesChannelByChannel) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   for (const Size s : kSizes) {
     for (const int channels : {3, 4}) {
-      const Frame frame = noisy_frame(s.width, s.height, channels);
-      const GradientImages images = read_images(frame, 0);
+      const Film film = noisy_film(s.width, s.height, channels);
+      const GradientImages images = read_images(film, 0);
       std::vector<float> expected(images.primal.size());
       for (int c = 0; c < channels; ++c) {
         const PoissonPlanes planes{images.primal.data() + c, images.dx.data() + c, images.dy.data() + c, size_t(channels)};
@@ -221,7 +221,7 @@ TEST(B2_Solver, L2OfAFrameHasTheBitsOfItsImagesChannelByChannel) {
       for (const int threads : {1, 3}) {
         SolveReport report;
         std::vector<float> x;
-        tbb::task_arena(threads).execute([&] { x = reconstruct(frame, 0, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report); });
+        tbb::task_arena(threads).execute([&] { x = reconstruct(film, 0, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report); });
         EXPECT_EQ(x, expected) << s.width << "x" << s.height << ", " << threads << " threads";
       }
     }

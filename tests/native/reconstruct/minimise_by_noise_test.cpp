@@ -60,7 +60,7 @@ TEST(B2_ByNoise, IgnoresOutliersOfOneHalf) {
   EXPECT_GT(rms_difference(reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, never, &report), truth), 20 * by_noise);
 }
 
-// Beside a lamp of 30,000 the residual was small at once, and the solver stopped with dark holes left of its start.
+// Beside a light of 30,000 the residual was small at once, and the solver stopped with dark holes left of its start.
 TEST(B2_ByNoise, IsNotStoppedByALampInView) {
   const int w = 96, h = 64;
   const auto lit = [&](size_t pixel) { return pixel % w >= 60 && pixel % w < 70 && pixel / w >= 20 && pixel / w < 30; };

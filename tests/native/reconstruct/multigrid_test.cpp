@@ -148,7 +148,7 @@ TEST(B2_Multigrid, CycleIsSymmetricAndPositive) {
   }
 }
 
-CgReport solve_without_order(int most_steps) {
+CgReport solve_without_order(int max_steps) {
   constexpr int w = 320, h = 180;
   Multigrid multigrid(w, h, 1);
   fill(&multigrid.matrix());
@@ -156,7 +156,7 @@ CgReport solve_without_order(int most_steps) {
   const Field b = random_field(w, h, 1, 2);
   Field x(w, h, 1);
   CgFields fields(w, h, 1);
-  return conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, most_steps, never);
+  return conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, max_steps, never);
 }
 
 // With cells of 2×2 whose weights are those of the fine differences in series, which is weaker than the fine matrix where weights jump, it

@@ -28,7 +28,7 @@ TEST(A8_RegressionError, NoiseCountsForMoreThanTheWeightsShow) {
   EXPECT_NEAR(error.row(20)[30], kHidden * 0.01, 1e-6);
 }
 
-// In absolute squares the wall would have a thousand times its error within three pixels of the lamp.
+// In absolute squares the wall would have a thousand times its error within three pixels of the light.
 TEST(A8_RegressionError, NoiseOfALampIsNotThatOfTheWallBesideIt) {
   const Field light = filled(3, [](int x) { return x < 30 ? 100.0f : 1.0f; });
   const Field noise = filled(3, [](int x) { return x < 30 ? 10.0f : 0.1f; });

@@ -15,23 +15,23 @@ using namespace test;
 
 constexpr int kWidth = 72, kHeight = 50;
 
-Reconstructed solve_with_error(const Frame& frame) {
+Reconstructed solve_with_error(const Film& film) {
   SolveReport report;
-  return regularize(frame, false, never, &report);
+  return regularize(film, false, never, &report);
 }
 
-std::vector<float> solve(const Frame& frame) { return solve_with_error(frame).image; }
-std::vector<float> noisy(const Frame& frame) { return read_images(frame, 0).primal; }
+std::vector<float> solve(const Film& film) { return solve_with_error(film).image; }
+std::vector<float> noisy(const Film& film) { return read_images(film, 0).primal; }
 
 // Halves that lie `apart` above and below the truth everywhere: of such noise no window takes anything away, so its share in all that is
 // estimated is known.
-Frame with_common_noise(FeatureFrame description, float apart) {
+Film with_common_noise(FeatureFilm description, float apart) {
   description.sigma = [](size_t) { return 0.0f; };
-  Frame frame = make_feature_frame(description);
+  Film film = make_feature_film(description);
   for (int half = 0; half < kHalves; ++half) {
-    for (Radiance& pixel : frame.components[0].primal[half]) pixel += Radiance(half == 0 ? apart : -apart);
+    for (Radiance& pixel : film.components[0].primal[half]) pixel += Radiance(half == 0 ? apart : -apart);
   }
-  return frame;
+  return film;
 }
 
 // In [0, 1), without any order.
@@ -41,10 +41,10 @@ float hashed(int x, int y, int channel, int half) {
 }
 
 // A chequer that no feature knows: for windows it is bias.
-FeatureFrame chequered(float level, float amplitude) {
-  FeatureFrame frame{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
-  frame.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return level + amplitude * chequer(x, y); });
-  return frame;
+FeatureFilm chequered(float level, float amplitude) {
+  FeatureFilm film{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
+  film.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return level + amplitude * chequer(x, y); });
+  return film;
 }
 
 // Of the chequer, how much there is left far from the border.
@@ -57,40 +57,40 @@ double amplitude_of(const std::vector<float>& image) {
   return sum / count;
 }
 
-void expect_finite_and_bounded(const Frame& frame, float bound) {
-  const Reconstructed result = solve_with_error(frame);
+void expect_finite_and_bounded(const Film& film, float bound) {
+  const Reconstructed result = solve_with_error(film);
   for (const float v : result.image) ASSERT_LE(std::fabs(v), bound);
   for (const float v : result.error) ASSERT_TRUE(v >= 0.0f && v <= std::numeric_limits<float>::max()) << v;
 }
 
 TEST(B2_Regularized, TakesMostOfTheNoise) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   for (const bool gradients : {false, true}) {
     description.gradients = gradients;
-    const Frame frame = make_feature_frame(description);
-    EXPECT_LT(rms_difference(solve(frame), description.truth), (gradients ? 0.2 : 0.3) * rms_difference(noisy(frame), description.truth));
+    const Film film = make_feature_film(description);
+    EXPECT_LT(rms_difference(solve(film), description.truth), (gradients ? 0.2 : 0.3) * rms_difference(noisy(film), description.truth));
   }
 }
 
 // Shadows, caustics and reflections are in no feature: there the differences have to tell.
 TEST(B2_Regularized, DifferencesTellWhatNoFeatureKnows) {
-  FeatureFrame description = room(96, 64);
+  FeatureFilm description = room(96, 64);
   const std::vector<float> shadow =
       make_image(96, 64, 3, [](int x, int y, int) { return (x - 50) * (x - 50) + (y - 30) * (y - 30) < 150 ? 0.3f : 1.0f; });
   for (size_t i = 0; i < shadow.size(); ++i) description.truth[i] *= shadow[i];
-  const double without = rms_difference(solve(make_feature_frame(description)), description.truth);
+  const double without = rms_difference(solve(make_feature_film(description)), description.truth);
   description.gradients = true;
-  EXPECT_LT(rms_difference(solve(make_feature_frame(description)), description.truth), 0.6 * without);
+  EXPECT_LT(rms_difference(solve(make_feature_film(description)), description.truth), 0.6 * without);
 }
 
 // Consistent: a hundred times the samples leave less than a fifth of the error, whatever the features say.
 TEST(B2_Regularized, ErrorFallsWithTheNoise) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   description.feature = [](int x, int, int, int) { return float(x % 3) / 3.0f; };  // nothing to do with the picture
   double before = std::numeric_limits<double>::infinity();
   for (const float sigma : {0.4f, 0.04f, 0.004f}) {
     description.sigma = [sigma](size_t) { return sigma; };
-    const double error = rms_difference(solve(make_feature_frame(description)), description.truth);
+    const double error = rms_difference(solve(make_feature_film(description)), description.truth);
     EXPECT_LT(error, 0.2 * before) << sigma;
     before = error;
   }
@@ -98,25 +98,25 @@ TEST(B2_Regularized, ErrorFallsWithTheNoise) {
 
 // Texture that is in no feature, hair, fine shadows: where there is no noise, nothing is changed; with a little, a little.
 TEST(B2_Regularized, KeepsDetailThatHasNoNoise) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0.0f, 2.0f);
   for (float& v : description.truth) v = uniform(random);
   for (const float sigma : {0.0f, 1e-3f, 1e-2f}) {
     description.sigma = [sigma](size_t) { return sigma; };
-    const Frame frame = make_feature_frame(description);
-    EXPECT_LE(rms_difference(solve(frame), description.truth), 1.2 * rms_difference(noisy(frame), description.truth) + 1e-4) << sigma;
+    const Film film = make_feature_film(description);
+    EXPECT_LE(rms_difference(solve(film), description.truth), 1.2 * rms_difference(noisy(film), description.truth) + 1e-4) << sigma;
   }
 }
 
 TEST(B2_Regularized, ScalesWithTheImage) {
   for (const bool gradients : {false, true}) {
-    FeatureFrame description = room(kWidth, kHeight);
+    FeatureFilm description = room(kWidth, kHeight);
     description.gradients = gradients;
-    Reconstructed small = solve_with_error(make_feature_frame(description));
+    Reconstructed small = solve_with_error(make_feature_film(description));
     for (float& v : description.truth) v *= 1024.0f;
     description.sigma = [](size_t) { return 1024.0f * 0.4f; };
-    const Reconstructed large = solve_with_error(make_feature_frame(description));
+    const Reconstructed large = solve_with_error(make_feature_film(description));
     for (float& v : small.image) v *= 1024.0f;
     EXPECT_LT(max_difference(small.image, large.image), 1e-2 * 1024.0);
     EXPECT_NEAR(mean(large.error) / mean(small.error), 1024.0 * 1024.0, 0.01 * 1024.0 * 1024.0);
@@ -126,33 +126,33 @@ TEST(B2_Regularized, ScalesWithTheImage) {
 // Alpha, which is an eighth of red in these frames, goes through the weights of the colours, those of outliers, too. With differences it
 // was the regression's alone: coverage and colour of an edge were smoothed in two ways.
 TEST(B2_Regularized, AlphaGoesThroughTheSameWeights) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   description.difference_sigma = 0.1f;
   for (const bool gradients : {false, true}) {
     description.gradients = gradients;
     for (const float firefly : {0.0f, 800.0f}) {
-      Frame frame = make_feature_frame(description, 4);
-      frame.components[0].primal[0][size_t(20 * kWidth + 30)] += Radiance(firefly, firefly, firefly, firefly / 8.0f);
-      const std::vector<float> rgba = solve(frame);
+      Film film = make_feature_film(description, 4);
+      film.components[0].primal[0][size_t(20 * kWidth + 30)] += Radiance(firefly, firefly, firefly, firefly / 8.0f);
+      const std::vector<float> rgba = solve(film);
       for (size_t i = 0; i < rgba.size(); i += 4) ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 2e-3f) << i / 4 << ", " << gradients;
     }
   }
 }
 
 TEST(B2_Regularized, HasTheSameBitsForAnyNumberOfThreads) {
-  FeatureFrame description = room(170, 140);
+  FeatureFilm description = room(170, 140);
   description.gradients = true;
-  const Frame frame = make_feature_frame(description);
-  expect_same_bits_for_any_number_of_threads([&] { return solve(frame); });
+  const Film film = make_feature_film(description);
+  expect_same_bits_for_any_number_of_threads([&] { return solve(film); });
 }
 
 // What weights hide of the noise is that of light, whose rare samples are far brighter than the others. That of these frames has none
 // such, and nothing to hide: the estimate is kHidden times too large.
 TEST(B2_Regularized, EstimatesItsError) {
-  FeatureFrame description = room(160, 120);
+  FeatureFilm description = room(160, 120);
   double estimated = 0.0, actual = 0.0;
   for (description.seed = 1; description.seed <= 4; ++description.seed) {
-    const Reconstructed result = solve_with_error(make_feature_frame(description));
+    const Reconstructed result = solve_with_error(make_feature_film(description));
     for (const float v : result.error) estimated += v / double(result.error.size());
     actual += std::pow(rms_difference(result.image, description.truth), 2.0);
   }
@@ -173,7 +173,7 @@ TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
 
 // Normals, albedos and depths of these frames jump from pixel to pixel: those of any other pixel explain nothing.
 TEST(B2_Regularized, KeepsWhatTheFeaturesExplain) {
-  FeatureFrame description{kWidth, kHeight, {}, {}, [](int x, int y, int channel, int) {
+  FeatureFilm description{kWidth, kHeight, {}, {}, [](int x, int y, int channel, int) {
                              const float wave = std::sin(0.9f * float(x * (channel + 1)) + 0.37f * float(y * y * (channel + 2)));
                              return channel < 6 ? wave : wave > 0.0f ? 3.0f : 1.0f;
                            }};
@@ -195,10 +195,10 @@ TEST(B2_Regularized, BelievesPixelsByTheirVariance) {
 // light, with 128 samples more than twice the error of the samples alone.
 TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
   const auto is_gap = [](int x, int y) { return x % 3 == 0 && y % 3 == 0; };
-  FeatureFrame description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
+  FeatureFilm description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
   description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_gap(x, y) ? 0.05f : 1.0f; });
   description.sigma = [&](size_t i) { return is_gap(int(i % kWidth), int(i / kWidth)) ? 0.02f : 0.25f; };
-  const std::vector<float> image = solve(make_feature_frame(description));
+  const std::vector<float> image = solve(make_feature_film(description));
   double gaps = 0.0;
   int count = 0;
   for (int y = 0; y < kHeight; y += 3) {
@@ -212,17 +212,17 @@ TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
 // most of it back, by the albedo. As one half alone has such samples, all of it may be chance, and the error knows.
 TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
   const auto albedo = [](int x) { return (x / 6) % 2 ? 0.8f : 0.2f; };
-  FeatureFrame description{kWidth,
+  FeatureFilm description{kWidth,
                            kHeight,
                            {},
                            [](size_t) { return 0.0f; },
                            [&](int x, int, int channel, int) { return channel < 3 || channel > 5 ? 1.0f : albedo(x); }};
   description.truth.assign(size_t{3} * kWidth * kHeight, 0.0f);
-  Frame frame = make_feature_frame(description);
+  Film film = make_feature_film(description);
   for (int y = 0; y < kHeight; y += 4) {
-    for (int x = y / 4 % 4; x < kWidth; x += 4) frame.components[0].primal[0][size_t(y * kWidth + x)] = Radiance(32.0f * albedo(x));
+    for (int x = y / 4 % 4; x < kWidth; x += 4) film.components[0].primal[0][size_t(y * kWidth + x)] = Radiance(32.0f * albedo(x));
   }
-  const Reconstructed solved = solve_with_error(frame);
+  const Reconstructed solved = solve_with_error(film);
   const std::vector<float>&image = solved.image, &error = solved.error;
   EXPECT_TRUE(solved.components.empty());
   double light = 0.0, beside_edges = 0.0, squares = 0.0;
@@ -242,42 +242,42 @@ TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
 }
 
 TEST(B2_Regularized, DifferencesThatWereNotSampledAreTheRegressions) {
-  FeatureFrame description = room(kWidth, kHeight);
-  const std::vector<float> without = solve(make_feature_frame(description));
+  FeatureFilm description = room(kWidth, kHeight);
+  const std::vector<float> without = solve(make_feature_film(description));
   description.gradients = true;
-  Frame frame = make_feature_frame(description);
-  for (auto& half : frame.pair_count) {
+  Film film = make_feature_film(description);
+  for (auto& half : film.pair_count) {
     for (auto& count : half) std::fill(count.begin(), count.end(), 0.0f);
   }
-  EXPECT_LT(rms_difference(solve(frame), without), 2e-3);
+  EXPECT_LT(rms_difference(solve(film), without), 2e-3);
 }
 
 // Sampled differences whose variance is that of the regression's own have as much to say: they bring half of the chequer back.
 TEST(B2_Regularized, DifferencesCountByTheirVariance) {
-  FeatureFrame description = chequered(1.0f, 0.5f);
+  FeatureFilm description = chequered(1.0f, 0.5f);
   const double variance = kHidden + 0.25;
   EXPECT_LT(std::abs(amplitude_of(solve(with_common_noise(description, 1.0f)))), 0.05);
   description.gradients = true;
-  Frame frame = with_common_noise(description, 1.0f);
+  Film film = with_common_noise(description, 1.0f);
   for (int half = 0; half < kHalves; ++half) {
     for (const Offset offset : {kRight, kUp}) {
-      for (Radiance& sum : frame.components[0].gradient[half][offset])
+      for (Radiance& sum : film.components[0].gradient[half][offset])
         sum += Radiance(float((half == 0 ? 1.0 : -1.0) * std::sqrt(variance)));
     }
   }
-  EXPECT_NEAR(amplitude_of(solve(frame)), 0.25, 0.06);
+  EXPECT_NEAR(amplitude_of(solve(film)), 0.25, 0.06);
 }
 
 // Beside highlights, of which windows had lost some light and differences had not, pixels became black, or coloured where one channel did.
 // More so where half of a difference is one sample's: by chance both halves agree to a tenth of what they are off by.
 TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
   const auto is_highlight = [](int x, int y) { return x >= 30 && x < 38 && y >= 20 && y < 26; };
-  FeatureFrame description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
+  FeatureFilm description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
   description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_highlight(x, y) ? 100.0f : 0.2f; });
   description.sigma = [&](size_t i) { return is_highlight(int(i % kWidth), int(i / kWidth)) ? 40.0f : 0.05f; };
   description.gradients = true;
   for (description.seed = 1; description.seed <= 8; ++description.seed) {
-    Frame frame = make_feature_frame(description);
+    Film film = make_feature_film(description);
     std::mt19937 random(description.seed);
     std::normal_distribution<float> normal(0.0f, 1.0f);
     for (int y = 1; y + 1 < kHeight; ++y) {
@@ -286,82 +286,82 @@ TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
           if (is_highlight(x, y) == is_highlight(x + kOffsetX[o], y + kOffsetY[o])) continue;
           const float off = 10.0f * normal(random), seen = 1.0f * normal(random);
           for (int half = 0; half < kHalves; ++half) {
-            frame.components[0].gradient[half][o][size_t(y) * kWidth + size_t(x)] += Radiance(off + (half == 0 ? seen : -seen));
+            film.components[0].gradient[half][o][size_t(y) * kWidth + size_t(x)] += Radiance(off + (half == 0 ? seen : -seen));
           }
         }
       }
     }
-    const std::vector<float> image = solve(frame);
-    float least = 1.0f;
-    for (const float v : image) least = std::min(least, v);
-    std::printf("  seed %u: least %.3f\n", description.seed, least);
-    EXPECT_GT(least, 0.02f) << "of 0.2";
+    const std::vector<float> image = solve(film);
+    float minimum = 1.0f;
+    for (const float v : image) minimum = std::min(minimum, v);
+    std::printf("  seed %u: least %.3f\n", description.seed, minimum);
+    EXPECT_GT(minimum, 0.02f) << "of 0.2";
   }
 }
 
-// Without differences, too: the planes of windows with a lamp's reflection go below 0 beside it. On a mirror pixels were black whose
+// Without differences, too: the planes of windows with a light's reflection go below 0 beside it. On a mirror pixels were black whose
 // samples, and those around, were not.
 TEST(B2_Regularized, NoBlackPixelsBesideReflectionsOfLamps) {
-  const auto is_lamp = [](int x, int y) { return (x / 4) % 4 == 0 && (y / 3) % 4 == 0; };
-  FeatureFrame description{kWidth, kHeight, {}, {}, [](int x, int y, int c, int) { return hashed(x, y, c, 0); }};
-  description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_lamp(x, y) ? 50.0f : 0.5f; });
-  description.sigma = [&](size_t i) { return is_lamp(int(i % kWidth), int(i / kWidth)) ? 20.0f : 0.1f; };
-  const std::vector<float> image = solve(make_feature_frame(description));
-  const float least = *std::min_element(image.begin(), image.end());
-  std::printf("  least %.3f of 0.5\n", least);
-  EXPECT_GT(least, 0.05f);
+  const auto is_analytic = [](int x, int y) { return (x / 4) % 4 == 0 && (y / 3) % 4 == 0; };
+  FeatureFilm description{kWidth, kHeight, {}, {}, [](int x, int y, int c, int) { return hashed(x, y, c, 0); }};
+  description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_analytic(x, y) ? 50.0f : 0.5f; });
+  description.sigma = [&](size_t i) { return is_analytic(int(i % kWidth), int(i / kWidth)) ? 20.0f : 0.1f; };
+  const std::vector<float> image = solve(make_feature_film(description));
+  const float minimum = *std::min_element(image.begin(), image.end());
+  std::printf("  least %.3f of 0.5\n", minimum);
+  EXPECT_GT(minimum, 0.05f);
 }
 
 TEST(BadInput_Regularized, ConstantFeatures) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   for (const float value : {0.0f, 1.0f, -5e3f}) {
     description.feature = [value](int, int, int, int) { return value; };
-    const Frame frame = make_feature_frame(description);
-    EXPECT_LT(rms_difference(solve(frame), description.truth), 0.8 * rms_difference(noisy(frame), description.truth)) << value;
+    const Film film = make_feature_film(description);
+    EXPECT_LT(rms_difference(solve(film), description.truth), 0.8 * rms_difference(noisy(film), description.truth)) << value;
   }
 }
 
 TEST(BadInput_Regularized, FeaturesOfNoiseAlone) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   description.feature = [&](int, int, int, int) { return uniform(random); };
-  const Frame frame = make_feature_frame(description);
-  EXPECT_LT(rms_difference(solve(frame), description.truth), rms_difference(noisy(frame), description.truth));
+  const Film film = make_feature_film(description);
+  EXPECT_LT(rms_difference(solve(film), description.truth), rms_difference(noisy(film), description.truth));
 }
 
 TEST(BadInput_Regularized, FeaturesThatAreNotFinite) {
-  const FeatureFrame description = room(kWidth, kHeight);
-  Frame frame = make_feature_frame(description);
-  for (PassPlane& plane : frame.passes) {
+  const FeatureFilm description = room(kWidth, kHeight);
+  Film film = make_feature_film(description);
+  for (PassPlane& plane : film.passes) {
     plane.values[0][17 * plane.channels] = std::numeric_limits<float>::quiet_NaN();
     plane.values[1][400 * plane.channels] = std::numeric_limits<float>::infinity();
     plane.values[1][401 * plane.channels] = 1e37f;
   }
-  expect_finite_and_bounded(frame, 10.0f);
-  EXPECT_LT(rms_difference(solve(frame), description.truth), 0.5 * rms_difference(noisy(frame), description.truth));
+  expect_finite_and_bounded(film, 10.0f);
+  EXPECT_LT(rms_difference(solve(film), description.truth), 0.5 * rms_difference(noisy(film), description.truth));
 }
 
 // No surface anywhere, as in a volume: no normal, no albedo, no depth.
 TEST(BadInput_Regularized, MissingFeatures) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   description.feature = [](int, int, int channel, int) { return channel < 3 ? 0.5f : 0.0f; };
-  expect_finite_and_bounded(make_feature_frame(description), 10.0f);
-  Frame frame = make_feature_frame(description);
-  frame.passes.clear();
+  expect_finite_and_bounded(make_feature_film(description), 10.0f);
+  Film film = make_feature_film(description);
+  film.passes.clear();
   SolveReport report;
-  EXPECT_THROW(regularize(frame, false, never, &report), Error);
+  EXPECT_THROW(regularize(film, false, never, &report), Error);
 }
 
 TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
   for (const auto& [w, h] : kSizes) {
     if (w > 200) continue;
-    FeatureFrame description = room(w, h);
+    FeatureFilm description = room(w, h);
     for (const bool gradients : {false, true}) {
       description.gradients = gradients;
-      const Frame frame = make_feature_frame(description);
-      expect_finite_and_bounded(frame, 10.0f);
-      EXPECT_LT(rms_difference(solve(frame), description.truth), 1.1 * rms_difference(noisy(frame), description.truth) + 1e-6)
+      const Film film = make_feature_film(description);
+      expect_finite_and_bounded(film, 10.0f);
+      EXPECT_LT(rms_difference(solve(film), description.truth), 1.1 * rms_difference(noisy(film), description.truth) + 1e-6)
           << w << "x" << h;
     }
   }
@@ -369,12 +369,12 @@ TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
 
 // What is huge does not reach far.
 TEST(BadInput_Regularized, HugeValues) {
-  const FeatureFrame description = room(kWidth, kHeight);
+  const FeatureFilm description = room(kWidth, kHeight);
   for (const float value : {1e6f, 1e20f, 1e36f}) {
-    Frame frame = make_feature_frame(description);
-    frame.components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(value);
-    expect_finite_and_bounded(frame, value);
-    const std::vector<float> image = solve(frame);
+    Film film = make_feature_film(description);
+    film.components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(value);
+    expect_finite_and_bounded(film, value);
+    const std::vector<float> image = solve(film);
     double far = 0.0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 60; x < kWidth; ++x) {
@@ -387,60 +387,60 @@ TEST(BadInput_Regularized, HugeValues) {
 }
 
 TEST(BadInput_Regularized, ASingleSample) {
-  Frame frame = make_feature_frame(room(kWidth, kHeight));
-  std::fill(frame.count[1].begin(), frame.count[1].end(), 0u);
-  std::fill(frame.components[0].primal[1].begin(), frame.components[0].primal[1].end(), Radiance(0.0f));
-  for (PassPlane& plane : frame.passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  Film film = make_feature_film(room(kWidth, kHeight));
+  std::fill(film.count[1].begin(), film.count[1].end(), 0u);
+  std::fill(film.components[0].primal[1].begin(), film.components[0].primal[1].end(), Radiance(0.0f));
+  for (PassPlane& plane : film.passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
   const std::vector<float> truth = room(kWidth, kHeight).truth;
-  expect_finite_and_bounded(frame, 20.0f);
-  EXPECT_LT(rms_difference(solve(frame), truth), 0.7 * rms_difference(noisy(frame), truth));
+  expect_finite_and_bounded(film, 20.0f);
+  EXPECT_LT(rms_difference(solve(film), truth), 0.7 * rms_difference(noisy(film), truth));
 }
 
 // Halves that say different things: half the picture is one of them alone.
 TEST(BadInput_Regularized, ContradictoryHalves) {
-  const FeatureFrame description = room(kWidth, kHeight);
-  Frame frame = make_feature_frame(description);
-  for (size_t i = 0; i < size_t(kWidth) * 25; ++i) frame.components[0].primal[1][i] = Radiance(0.0f);
-  expect_finite_and_bounded(frame, 10.0f);
+  const FeatureFilm description = room(kWidth, kHeight);
+  Film film = make_feature_film(description);
+  for (size_t i = 0; i < size_t(kWidth) * 25; ++i) film.components[0].primal[1][i] = Radiance(0.0f);
+  expect_finite_and_bounded(film, 10.0f);
 }
 
 // What a frame with differences may suffer from, which L2 does not look at or suffers from as well.
 struct Spoiled {
   const char* name;
   std::function<float(int x, int y, int channel, int half)> feature;  // in place of the room's
-  std::function<void(Frame*)> spoil = [](Frame*) {};
+  std::function<void(Film*)> spoil = [](Film*) {};
   // Of L2's error, root mean square. Where features say nothing, and uniform differences as much as the pixels, L2 has the right weights
   // without knowing, and windows are smaller than its reach: 1.09 and 1.10.
-  double most = 1.12;
+  double maximum = 1.12;
 };
 
-Spoiled spoiled(const char* name, const std::function<void(Frame*)>& spoil) { return {name, test::room_feature, spoil, 1.01}; }
+Spoiled spoiled(const char* name, const std::function<void(Film*)>& spoil) { return {name, test::room_feature, spoil, 1.01}; }
 
-void empty_second_half(Frame* frame) {
-  std::fill(frame->count[1].begin(), frame->count[1].end(), 0u);
-  std::fill(frame->components[0].primal[1].begin(), frame->components[0].primal[1].end(), Radiance(0.0f));
-  for (PassPlane& plane : frame->passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+void empty_second_half(Film* film) {
+  std::fill(film->count[1].begin(), film->count[1].end(), 0u);
+  std::fill(film->components[0].primal[1].begin(), film->components[0].primal[1].end(), Radiance(0.0f));
+  for (PassPlane& plane : film->passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
   for (int o = 0; o < kOffsets; ++o) {
-    std::fill(frame->pair_count[1][o].begin(), frame->pair_count[1][o].end(), 0.0f);
-    std::fill(frame->components[0].gradient[1][o].begin(), frame->components[0].gradient[1][o].end(), Radiance(0.0f));
+    std::fill(film->pair_count[1][o].begin(), film->pair_count[1][o].end(), 0.0f);
+    std::fill(film->components[0].gradient[1][o].begin(), film->components[0].gradient[1][o].end(), Radiance(0.0f));
   }
 }
 
 class BadInput_BesideL2 : public ::testing::TestWithParam<Spoiled> {};
 
 TEST_P(BadInput_BesideL2, IsNoWorse) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   description.feature = GetParam().feature;
   description.gradients = true;
   for (const float difference_sigma : {0.0f, 0.1f, 0.5f}) {
     description.difference_sigma = difference_sigma;
-    Frame frame = make_feature_frame(description);
-    GetParam().spoil(&frame);
+    Film film = make_feature_film(description);
+    GetParam().spoil(&film);
     SolveReport report;
-    const std::vector<float> l2 = reconstruct(frame, 0, GRADUS_RECONSTRUCTION_L2, 0.0f, never, &report);
-    const double error = rms_difference(solve(frame), description.truth), of_l2 = rms_difference(l2, description.truth);
+    const std::vector<float> l2 = reconstruct(film, 0, GRADUS_RECONSTRUCTION_L2, 0.0f, never, &report);
+    const double error = rms_difference(solve(film), description.truth), of_l2 = rms_difference(l2, description.truth);
     std::printf("  %.1f: %.3f of L2\n", difference_sigma, error / of_l2);
-    EXPECT_LE(error, GetParam().most * of_l2) << difference_sigma;
+    EXPECT_LE(error, GetParam().maximum * of_l2) << difference_sigma;
   }
 }
 
@@ -451,37 +451,37 @@ INSTANTIATE_TEST_SUITE_P(
                       Spoiled{"MissingFeatures", [](int, int, int, int) { return 0.0f; }},
                       Spoiled{"FeaturesOfNoise", [](int x, int y, int c, int half) { return 2.0f * hashed(x, y, c, half) - 1.0f; }},
                       spoiled("FeaturesThatAreNotFinite",
-                              [](Frame* frame) {
-                                for (PassPlane& plane : frame->passes) {
+                              [](Film* film) {
+                                for (PassPlane& plane : film->passes) {
                                   for (size_t i = 0; i < plane.values[0].size(); i += 11)
                                     plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
                                 }
                               }),
                       spoiled("ContradictoryHalves",
-                              [](Frame* frame) {
-                                for (size_t i = 0; i < size_t(kWidth) * 25; ++i) frame->components[0].primal[1][i] = Radiance(0.0f);
+                              [](Film* film) {
+                                for (size_t i = 0; i < size_t(kWidth) * 25; ++i) film->components[0].primal[1][i] = Radiance(0.0f);
                               }),
                       spoiled("HugeValues",
-                              [](Frame* frame) { frame->components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(1e20f); }),
+                              [](Film* film) { film->components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(1e20f); }),
                       spoiled("ASingleSample", empty_second_half)),
     [](const auto& info) { return info.param.name; });
 
 TEST(BadInput_Regularized, ABlackImageIsBlack) {
-  FeatureFrame description = room(kWidth, kHeight);
+  FeatureFilm description = room(kWidth, kHeight);
   description.truth.assign(description.truth.size(), 0.0f);
   description.sigma = [](size_t) { return 0.0f; };
-  EXPECT_EQ(solve(make_feature_frame(description)), description.truth);
+  EXPECT_EQ(solve(make_feature_film(description)), description.truth);
 }
 
 // The frame's light in three components: shares of it that differ from pixel to pixel, none of the last one in half of the picture, and
 // of one of them more than there is in some pixels.
-Frame taken_apart(const Frame& frame) {
+Film taken_apart(const Film& film) {
   const auto share_of = [](size_t component, int x) {
     if (component == 1) return x < kWidth / 2 ? 0.0f : 0.25f;
     return component == 2 ? -0.5f * float(x % 2) : 1.0f - (x < kWidth / 2 ? 0.0f : 0.25f) + 0.5f * float(x % 2);
   };
-  Frame apart = frame;
-  apart.components.assign(3, frame.components[0]);
+  Film apart = film;
+  apart.components.assign(3, film.components[0]);
   for (size_t k = 0; k < apart.components.size(); ++k) {
     for (int half = 0; half < kHalves; ++half) {
       for (size_t i = 0; i < apart.components[k].primal[half].size(); ++i) {
@@ -500,11 +500,11 @@ Frame taken_apart(const Frame& frame) {
 TEST(B2_Regularized, ComponentsAreWhatThePictureWithoutThemIsMadeOf) {
   for (const bool gradients : {false, true}) {
     for (const int channels : {3, 4}) {
-      FeatureFrame description = room(kWidth, kHeight);
+      FeatureFilm description = room(kWidth, kHeight);
       description.gradients = gradients;
-      const Frame frame = make_feature_frame(description, channels);
+      const Film film = make_feature_film(description, channels);
       SolveReport report;
-      const Reconstructed whole = regularize(frame, false, never, &report), parts = regularize(taken_apart(frame), true, never, &report);
+      const Reconstructed whole = regularize(film, false, never, &report), parts = regularize(taken_apart(film), true, never, &report);
       ASSERT_EQ(parts.components.size(), 3u);
       for (size_t i = 0; i < whole.image.size(); ++i) {
         const float sum = parts.components[0][i] + parts.components[1][i] + parts.components[2][i];
@@ -519,20 +519,20 @@ TEST(B2_Regularized, ComponentsAreWhatThePictureWithoutThemIsMadeOf) {
 // One operator for all: of twice the light it makes twice as much, of light that is the same share of the picture everywhere that share.
 TEST(B2_Regularized, ComponentsGoThroughOneLinearOperator) {
   for (const bool gradients : {false, true}) {
-    FeatureFrame description = room(kWidth, kHeight);
+    FeatureFilm description = room(kWidth, kHeight);
     description.gradients = gradients;
-    Frame frame = make_feature_frame(description);
-    frame.components.assign(3, frame.components[0]);
+    Film film = make_feature_film(description);
+    film.components.assign(3, film.components[0]);
     for (const auto& [component, share] : {std::pair{0, 0.2f}, {1, 0.7f}, {2, 0.1f}}) {
       for (int half = 0; half < kHalves; ++half) {
-        for (Radiance& pixel : frame.components[size_t(component)].primal[half]) pixel *= share;
-        for (auto& gradient : frame.components[size_t(component)].gradient[half]) {
+        for (Radiance& pixel : film.components[size_t(component)].primal[half]) pixel *= share;
+        for (auto& gradient : film.components[size_t(component)].gradient[half]) {
           for (Radiance& difference : gradient) difference *= share;
         }
       }
     }
     SolveReport report;
-    const Reconstructed result = regularize(frame, true, never, &report);
+    const Reconstructed result = regularize(film, true, never, &report);
     for (size_t i = 0; i < result.image.size(); ++i) {
       ASSERT_NEAR(result.components[0][i], 0.2f * result.image[i], gradients ? 2e-3f : 1e-5f);
       ASSERT_NEAR(result.components[2][i], 0.1f * result.image[i], gradients ? 2e-3f : 1e-5f);
@@ -542,11 +542,11 @@ TEST(B2_Regularized, ComponentsGoThroughOneLinearOperator) {
 
 // What no path has found anything of is black, and not what the others' light around it leaves there.
 TEST(B2_Regularized, AComponentWithoutLightIsBlack) {
-  Frame frame = make_feature_frame(room(kWidth, kHeight));
-  frame.components.push_back(frame.components[0]);
-  for (auto& half : frame.components[1].primal) std::fill(half.begin(), half.end(), Radiance(0.0f));
+  Film film = make_feature_film(room(kWidth, kHeight));
+  film.components.push_back(film.components[0]);
+  for (auto& half : film.components[1].primal) std::fill(half.begin(), half.end(), Radiance(0.0f));
   SolveReport report;
-  const Reconstructed result = regularize(frame, true, never, &report);
+  const Reconstructed result = regularize(film, true, never, &report);
   for (const float value : result.components[1]) ASSERT_EQ(value, 0.0f);
   EXPECT_EQ(result.components[0], result.image);
 }

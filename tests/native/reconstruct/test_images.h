@@ -12,7 +12,7 @@
 namespace gradus::test {
 
 // Forward differences of an image, as a frame would hold them: last column and row 0.
-inline GradientImages with_own_gradients(int width, int height, int channels, const std::vector<float>& primal) {
+inline GradientImages with_exact_gradients(int width, int height, int channels, const std::vector<float>& primal) {
   GradientImages images;
   images.width = width;
   images.height = height;
@@ -76,7 +76,7 @@ void average_noisy_halves(std::vector<float>* mean, std::vector<float>* deviatio
 template <class PixelSigma, class DifferenceSigma>
 GradientImages noisy_images(int w, int h, int channels, const std::vector<float>& truth, const PixelSigma& pixels,
                             const DifferenceSigma& differences) {
-  GradientImages images = with_own_gradients(w, h, channels, truth);
+  GradientImages images = with_exact_gradients(w, h, channels, truth);
   average_noisy_halves(&images.primal, &images.primal_deviation, channels, pixels, 1);
   average_noisy_halves(&images.dx, &images.dx_deviation, channels, differences, 2);
   average_noisy_halves(&images.dy, &images.dy_deviation, channels, differences, 3);

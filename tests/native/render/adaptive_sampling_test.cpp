@@ -12,31 +12,31 @@ constexpr int kCells = 7, kMiddle = 3;
 constexpr uint32_t kMean = 16;
 
 // Counts of a row of cells, that of the middle noisy, in the batch after the first.
-class RowOfCells : public testing::Test {
+class RowOfBlocks : public testing::Test {
  protected:
-  RowOfCells() : frame_(kCells * kLattice, kLattice, {0, 0, kCells * kLattice, kLattice}, 3, 1, false), sampling_(frame_, 1e-6f, kMean) {}
+  RowOfBlocks() : film_(kCells * kPixelBlockSide, kPixelBlockSide, {0, 0, kCells * kPixelBlockSide, kPixelBlockSide}, 3, 1, false), sampling_(film_, 1e-6f, kMean) {}
 
   std::vector<uint32_t> counts() {
     sampling_.start_batch(kMean);
     std::vector<uint32_t> counts;
-    for (int i = 0; i < kCells; ++i) counts.push_back(sampling_.batch().count[size_t(i) * kLattice + 5]);
+    for (int i = 0; i < kCells; ++i) counts.push_back(sampling_.batch().count[size_t(i) * kPixelBlockSide + 5]);
     return counts;
   }
   void judge(double middle, double others) {
-    std::vector<CellNoise> noise(kCells, {1.0, others});
+    std::vector<BlockNoise> noise(kCells, {1.0, others});
     noise[kMiddle].spread = middle;
     sampling_.judge(noise);
   }
 
-  Frame frame_;
+  Film film_;
   AdaptiveSampling sampling_;
 };
 
 // Nothing is known yet of where the noise is.
-TEST_F(RowOfCells, TheFirstBatchIsUniform) { EXPECT_EQ(counts(), std::vector<uint32_t>(kCells, kMean)); }
+TEST_F(RowOfBlocks, TheFirstBatchIsUniform) { EXPECT_EQ(counts(), std::vector<uint32_t>(kCells, kMean)); }
 
 // Its noise is an estimate, and what makes it may lie a little further in the next frame, too.
-TEST_F(RowOfCells, NeighboursOfANoisyCellTakeMoreThanThoseFurtherOff) {
+TEST_F(RowOfBlocks, NeighboursOfANoisyCellTakeMoreThanThoseFurtherOff) {
   counts();
   judge(1.0, 0.1);
   const std::vector<uint32_t> found = counts();

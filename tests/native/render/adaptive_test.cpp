@@ -24,16 +24,16 @@ IntegratorFactory quiet_at_the_left() {
   return fake_factory([](FakeIntegrator* fake) { fake->quiet_until = kQuiet; });
 }
 
-std::shared_ptr<const Frame> render_frame(const GradusSettings& settings, std::shared_ptr<const Frame> resumed = nullptr) {
+std::shared_ptr<const Film> render_film(const GradusSettings& settings, std::shared_ptr<const Film> resumed = nullptr) {
   const auto render = start(settings, quiet_at_the_left(), std::move(resumed));
   render->wait(-1.0);
-  return render->frame();
+  return render->film();
 }
 
-double mean_count(const Frame& frame, int x0, int x1) {
+double mean_count(const Film& film, int x0, int x1) {
   double sum = 0.0;
   for (int y = 0; y < kHeight; ++y) {
-    for (int x = x0; x < x1; ++x) sum += samples_at(frame, frame.index(x, y));
+    for (int x = x0; x < x1; ++x) sum += samples_at(film, film.index(x, y));
   }
   return sum / double(kHeight * (x1 - x0));
 }
@@ -55,10 +55,10 @@ double squared_error(const GradusSettings& settings) {
 TEST(Adaptive, NoisyCellsTakeMoreOfTheSameNumberOfSamples) {
   GradusSettings settings = adaptive_settings(64);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  const auto frame = render_frame(settings);
-  EXPECT_NEAR(mean_count(*frame, 0, kWidth), 64.0, 0.2);
-  EXPECT_LT(mean_count(*frame, 0, kQuiet - 16), 40.0);
-  EXPECT_GT(mean_count(*frame, kQuiet + 16, kWidth), 75.0);
+  const auto film = render_film(settings);
+  EXPECT_NEAR(mean_count(*film, 0, kWidth), 64.0, 0.2);
+  EXPECT_LT(mean_count(*film, 0, kQuiet - 16), 40.0);
+  EXPECT_GT(mean_count(*film, kQuiet + 16, kWidth), 75.0);
   const double shared = squared_error(settings);
   settings.noise_threshold = 0.0f;
   EXPECT_LT(shared, 0.8 * squared_error(settings));
@@ -67,68 +67,68 @@ TEST(Adaptive, NoisyCellsTakeMoreOfTheSameNumberOfSamples) {
 TEST(Adaptive, SamplesOfAPixelAreNumberedWithoutGaps) {
   GradusSettings settings = adaptive_settings(48);
   settings.first_sample = 5;
-  const auto frame = render_frame(settings);
+  const auto film = render_film(settings);
   FakeIntegrator fake(IntegratorContext{nullptr, {}, settings}, false);
   fake.quiet_until = kQuiet;
   for (int y = 0; y < kHeight; y += 3) {
     for (int x = 0; x < kWidth; x += 3) {
-      const size_t i = frame->index(x, y);
+      const size_t i = film->index(x, y);
       float sum[kHalves] = {};
-      for (uint32_t s = 5; s < 5 + samples_at(*frame, i); ++s) sum[s % 2] += fake.value_of(x, y, s);
-      ASSERT_EQ(frame->components[0].primal[0][i].x, sum[0]) << x << " " << y;
-      ASSERT_EQ(frame->components[0].primal[1][i].x, sum[1]) << x << " " << y;
+      for (uint32_t s = 5; s < 5 + samples_at(*film, i); ++s) sum[s % 2] += fake.value_of(x, y, s);
+      ASSERT_EQ(film->components[0].primal[0][i].x, sum[0]) << x << " " << y;
+      ASSERT_EQ(film->components[0].primal[1][i].x, sum[1]) << x << " " << y;
     }
   }
-  uint32_t most = 0;
-  for (size_t i = 0; i < frame->count[0].size(); ++i) most = std::max(most, samples_at(*frame, i));
-  EXPECT_EQ(frame->samples.list(), (std::vector<SampleRange>{{5, 5 + most}}));
+  uint32_t maximum = 0;
+  for (size_t i = 0; i < film->count[0].size(); ++i) maximum = std::max(maximum, samples_at(*film, i));
+  EXPECT_EQ(film->samples.list(), (std::vector<SampleRange>{{5, 5 + maximum}}));
 }
 
 TEST(L1_Threads, AdaptiveSamplesHaveTheSameBitsForAnyNumberOfThreads) {
   const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 8);
-  std::shared_ptr<const Frame> first;
+  std::shared_ptr<const Film> first;
   for (const uint32_t threads : {1u, 2u, 3u, 7u}) {
     GradusSettings settings = adaptive_settings(64, 0.02f);
     settings.threads = threads;
-    const auto frame = render_frame(settings);
-    if (!first) first = frame;
-    EXPECT_TRUE(same_samples(*frame, *first)) << threads;
+    const auto film = render_film(settings);
+    if (!first) first = film;
+    EXPECT_TRUE(same_samples(*film, *first)) << threads;
   }
   EXPECT_NE(mean_count(*first, 0, kQuiet), mean_count(*first, kQuiet, kWidth));
 }
 
 // Cells were judged at the end of a batch, which a render that went on from 16 samples had not seen.
 TEST(L3_Resume, AdaptiveRendersGoOnWithTheSameBits) {
-  const auto whole = render_frame(adaptive_settings(64));
-  EXPECT_TRUE(same_samples(*whole, *render_frame(adaptive_settings(64), render_frame(adaptive_settings(16)))));
+  const auto whole = render_film(adaptive_settings(64));
+  EXPECT_TRUE(same_samples(*whole, *render_film(adaptive_settings(64), render_film(adaptive_settings(16)))));
 }
 
 // Quiet cells cost more than others.
-std::shared_ptr<const Frame> render_costly_below(const GradusSettings& settings, std::shared_ptr<const Frame> from) {
+std::shared_ptr<const Film> render_costly_below(const GradusSettings& settings, std::shared_ptr<const Film> from) {
   const auto render = start(settings, fake_factory([](FakeIntegrator* fake) {
                               fake->quiet_until = kQuiet;
                               fake->rays_below = 40;
                             }),
                             std::move(from));
   render->wait(-1.0);
-  return render->frame();
+  return render->film();
 }
 
 // The cost of cells, and which of them had stopped, was forgotten between the two renders.
 TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
   GradusSettings settings = adaptive_settings(80, 0.05f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  const auto part = [&](uint32_t samples, std::shared_ptr<const Frame> from) {
+  const auto part = [&](uint32_t samples, std::shared_ptr<const Film> from) {
     settings.samples = samples;
     return render_costly_below(settings, std::move(from));
   };
   const auto whole = part(80, nullptr);
   const std::string path = testing::TempDir() + "/adaptive.exr";
-  std::shared_ptr<const Frame> last;
+  std::shared_ptr<const Film> last;
   for (const uint32_t samples : {16u, 48u, 64u, 80u}) {
     last = part(samples, last);
-    save_frame(*last, path);
-    last = load_frame(path);
+    save_film(*last, path);
+    last = load_film(path);
     EXPECT_EQ(last->shared.mean, samples);
   }
   std::remove(path.c_str());
@@ -141,15 +141,15 @@ TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
 TEST(L3_Resume, SamplesOfUnknownCostStayUnknown) {
   GradusSettings settings = adaptive_settings(16, 0.0f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  const auto part = [&](uint32_t samples, std::shared_ptr<const Frame> from) {
+  const auto part = [&](uint32_t samples, std::shared_ptr<const Film> from) {
     settings.samples = samples;
     return render_costly_below(settings, std::move(from));
   };
   const auto plain = part(16, nullptr);
   settings.noise_threshold = 0.001f;
   const std::string path = testing::TempDir() + "/adaptive_after_plain.exr";
-  save_frame(*part(48, plain), path);
-  const auto halfway = load_frame(path);
+  save_film(*part(48, plain), path);
+  const auto halfway = load_film(path);
   std::remove(path.c_str());
   EXPECT_EQ(halfway->shared.uncounted, 16u);
   EXPECT_TRUE(same_samples(*part(80, plain), *part(80, halfway)));
@@ -162,30 +162,30 @@ TEST(L3_Resume, ALowerThresholdGoesOnWhereAHigherOneHadStopped) {
     s.integrator = GRADUS_INTEGRATOR_PATH;
     return s;
   };
-  const auto coarse = render_frame(settings(64, 0.06f));
+  const auto coarse = render_film(settings(64, 0.06f));
   ASSERT_EQ(mean_count(*coarse, 0, 16), 16.0);
   ASSERT_GT(mean_count(*coarse, kWidth - 16, kWidth), 60.0);
-  EXPECT_GT(mean_count(*render_frame(settings(96, 1e-6f), coarse), 0, 16), 16.0);
+  EXPECT_GT(mean_count(*render_film(settings(96, 1e-6f), coarse), 0, 16), 16.0);
   EXPECT_THROW(start(settings(96, 0.0f), quiet_at_the_left(), coarse), Error);
 }
 
 // Sums and counts are all that is needed: a cell with more samples counts for more.
 TEST(L3_Merge, FramesOfUnequalCountsAreAddedPixelByPixel) {
   GradusSettings settings = adaptive_settings(32);
-  const auto first = render_frame(settings);
-  Frame merged = *first;
+  const auto first = render_film(settings);
+  Film merged = *first;
   settings.first_sample = 16;  // the noisy cells have taken these already
-  const auto overlapping = render_frame(settings);
+  const auto overlapping = render_film(settings);
   try {
-    merge_frames(&merged, *overlapping);
+    merge_films(&merged, *overlapping);
     FAIL();
   } catch (const Error& e) {
     const uint32_t end = std::max(first->samples.list().back().end, overlapping->samples.list().back().end);
     EXPECT_EQ(std::string(e.what()), "the frames share samples: render one of them with first_sample " + std::to_string(end));
   }
   settings.first_sample = 256;
-  const auto second = render_frame(settings);
-  merge_frames(&merged, *second);
+  const auto second = render_film(settings);
+  merge_films(&merged, *second);
   for (const int x : {3, kWidth - 5}) {
     const size_t i = merged.index(x, 7);
     for (int half = 0; half < kHalves; ++half) {
@@ -195,15 +195,15 @@ TEST(L3_Merge, FramesOfUnequalCountsAreAddedPixelByPixel) {
     }
   }
   EXPECT_NE(merged.count[0][merged.index(3, 7)], merged.count[0][merged.index(kWidth - 5, 7)]);
-  EXPECT_THROW(start(adaptive_settings(1024), quiet_at_the_left(), std::make_shared<const Frame>(merged)), Error)
+  EXPECT_THROW(start(adaptive_settings(1024), quiet_at_the_left(), std::make_shared<const Film>(merged)), Error)
       << "no one goes on from it";
 }
 
 // All cells share what is left where others are done: no more than the batch would take of them.
 TEST(Adaptive, SamplesThatCellsLeaveAreSaved) {
-  const auto frame = render_frame(adaptive_settings(256, 0.06f));
-  EXPECT_EQ(mean_count(*frame, 0, 16), 16.0);
-  EXPECT_LT(mean_count(*frame, 0, kWidth), 200.0);
+  const auto film = render_film(adaptive_settings(256, 0.06f));
+  EXPECT_EQ(mean_count(*film, 0, 16), 16.0);
+  EXPECT_LT(mean_count(*film, 0, kWidth), 200.0);
 }
 
 }  // namespace

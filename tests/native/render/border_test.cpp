@@ -19,7 +19,7 @@ using test::Scenario;
 constexpr uint32_t kWidth = 144, kHeight = 120;
 constexpr Region kBorder{68, 62, 108, 90};
 
-using FramePointer = std::shared_ptr<const Frame>;
+using FilmPointer = std::shared_ptr<const Film>;
 
 GradusSettings settings_of(uint32_t seed) {
   GradusSettings settings = default_settings();
@@ -34,16 +34,16 @@ GradusSettings settings_of(uint32_t seed) {
   return settings;
 }
 
-FramePointer sampled(const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
+FilmPointer sampled(const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
   Render render(test::test_device(), snapshot, settings);
   EXPECT_TRUE(render.wait(-1.0));
-  return render.frame();
+  return render.film();
 }
 
-std::vector<float> border_of(const FramePointer& frame, uint32_t reconstruction) {
+std::vector<float> border_of(const FilmPointer& film, uint32_t reconstruction) {
   SolveReport report;
   return combine(
-      *frame, reconstruction, 0.0f, kBorder, [] { return false; }, &report);
+      *film, reconstruction, 0.0f, kBorder, [] { return false; }, &report);
 }
 
 double squared_distance(const std::vector<float>& a, const std::vector<float>& b) {
@@ -53,7 +53,7 @@ double squared_distance(const std::vector<float>& a, const std::vector<float>& b
 }
 
 struct Frames {
-  FramePointer full, other_seed, part;
+  FilmPointer full, other_seed, part;
 };
 
 Frames sample_all(Scenario scenario) {
@@ -80,14 +80,14 @@ void check_l2(const Frames& f) {
 
 // Weights that follow the noise, or the outliers, are of all sizes, so that no ring bounds their reach as it does L2's. What is left is to
 // be a small part of the noise that the picture has anyway: a quarter of it adds 3 % to the error. Measured over eight scenes, it is 2 to
-// 19 % of the noise by L1. REGULARIZED goes by medians of the light and of depths, which are the region's: 1 to 16 %, and 56 % where lamps
+// 19 % of the noise by L1. REGULARIZED goes by medians of the light and of depths, which are the region's: 1 to 16 %, and 56 % where lights
 // are points and there is hardly any noise.
-void check_noise(const Frames& f, uint32_t reconstruction, double most = 0.25) {
+void check_noise(const Frames& f, uint32_t reconstruction, double maximum = 0.25) {
   const std::vector<float> a = border_of(f.full, reconstruction), b = border_of(f.part, reconstruction);
   const double noise = 0.5 * squared_distance(a, border_of(f.other_seed, reconstruction)), difference = squared_distance(a, b);
   const std::string name = choice_name(*find_option("reconstruction"), reconstruction);
   EXPECT_GT(noise, 0.0);
-  EXPECT_LE(difference, most * most * noise) << name;
+  EXPECT_LE(difference, maximum * maximum * noise) << name;
   std::printf("  %s: %.3f of the noise\n", name.c_str(), std::sqrt(difference / noise));
 }
 

@@ -63,7 +63,7 @@ double sum_of(const std::vector<float>& values) {
 
 const char* const kDefaultNames[] = {"Emission", "Diffuse", "Reflection", "Transmission", "Residual"};
 
-std::string sampled_components(const Render& render) { return component_names(*render.frame()); }
+std::string sampled_components(const Render& render) { return component_names(*render.film()); }
 
 class Modes : public testing::TestWithParam<uint32_t> {};
 
@@ -170,13 +170,13 @@ TEST(Components, ThatAreSmallAreSoForAnyPartOfTheWork) {
   settings.seed = 0;
   settings.first_sample = 0;
   settings.samples = 8;
-  Render more(test::test_device(), hidden.context(settings).snapshot, settings, early->frame());
+  Render more(test::test_device(), hidden.context(settings).snapshot, settings, early->film());
   ASSERT_TRUE(more.wait(-1.0));
   EXPECT_EQ(combined(more), combined(*whole));
   EXPECT_EQ(component(more, "Residual"), component(*whole, "Residual"));
   const uint32_t part[] = {0, 0, 8, 8};
   std::copy_n(part, 4, settings.region);
-  EXPECT_EQ(component_names(*rendered(&hidden, settings)->frame()), sampled_components(*whole));
+  EXPECT_EQ(component_names(*rendered(&hidden, settings)->film()), sampled_components(*whole));
 }
 
 // All of it is small then, and what is left is Residual alone.
@@ -193,8 +193,8 @@ TEST(Components, CostNothingWhereNobodyAsks) {
   GradusSettings settings = settings_with("");
   settings.use_decomposition = 0;
   const auto render = rendered(Scenario::Glass, settings);
-  EXPECT_EQ(render->frame()->components.size(), 1u);
-  EXPECT_TRUE(render->frame()->components[0].rough[0].empty());
+  EXPECT_EQ(render->film()->components.size(), 1u);
+  EXPECT_TRUE(render->film()->components[0].non_specular[0].empty());
   EXPECT_THROW(component(*render, "Diffuse"), Error);
 }
 
@@ -336,10 +336,10 @@ TEST(Components, HaveTheMapsIndicesAndEmissionOfWhatTheyShow) {
   expect_shown(shown_at(*render, "Emission", left), wall);  // it shines
   expect_shown(shown_at(*render, "Reflection", left), kNothingShown);
   expect_shown(shown_at(*render, "Transmission", left), kNothingShown);
-  EXPECT_TRUE(render->frame()->components[0].rough[0].empty()) << "nobody asked for these";
+  EXPECT_TRUE(render->film()->components[0].non_specular[0].empty()) << "nobody asked for these";
 }
 
-// Of what is seen directly, the emission is the picture: a lamp before another one, and both before the world.
+// Of what is seen directly, the emission is the picture: a light before another one, and both before the world.
 TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
   PathScene scene;
   scene.world(Rgb(0.25f, 0.5f, 0.1f));
@@ -359,7 +359,7 @@ TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
   EXPECT_GT(lit, 2.0f * world);
 }
 
-// Lamps and the sky were as near as the mirror that showed them, or the camera.
+// Lights and the sky were as near as the mirror that showed them, or the camera.
 TEST(Components, WhatShinesIsAsFarAsItIs) {
   PathScene scene;
   scene.world(Rgb(0.25f, 0.5f, 0.1f));
@@ -394,7 +394,7 @@ TEST(Components, ASurfaceThatShinesIsMetOnce) {
   EXPECT_NEAR(component(*render, "All", GRADUS_COMPONENT_DEPTH)[middle], 3.0f, 0.05f);
 }
 
-// What lamps below 0 take away is kept without a reconstruction, and components were cut off at 0.
+// What lights below 0 take away is kept without a reconstruction, and components were cut off at 0.
 TEST(Components, AddUpBelowZero) {
   PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
@@ -434,16 +434,16 @@ TEST(Components, IndicesOfMergedFramesAreThoseOfTheWhole) {
   PathScene scene;
   test::build(Scenario::Glass, &scene);
   GradusSettings settings = details_settings();
-  const auto details = [](const Frame& frame) { return frame.components[size_t(find_component(frame, "Transmission"))].details; };
-  const auto whole = details(*rendered(&scene, settings)->frame());
+  const auto details = [](const Film& film) { return film.components[size_t(find_component(film, "Transmission"))].details; };
+  const auto whole = details(*rendered(&scene, settings)->film());
   settings.samples = 4;
-  const auto early = rendered(&scene, settings)->frame();
+  const auto early = rendered(&scene, settings)->film();
   settings.first_sample = 4;
-  const auto late = rendered(&scene, settings)->frame();
+  const auto late = rendered(&scene, settings)->film();
   size_t others = 0;
   for (const auto& [to, from] : {std::pair{early, late}, {late, early}}) {
-    Frame merged = *to;
-    merge_frames(&merged, *from);
+    Film merged = *to;
+    merge_films(&merged, *from);
     const auto found = details(merged);
     for (size_t i = 0; i < whole.size(); ++i) {
       ASSERT_EQ(found[i].object, whole[i].object);
@@ -464,19 +464,19 @@ TEST(Components, AreKeptInFramesAndGoOnFromThere) {
   settings.samples = 4;
   const auto first = rendered(&scene, settings);
   const std::string path = testing::TempDir() + "gradus_components.exr";
-  save_frame(*first->frame(), path);
-  const std::shared_ptr<const Frame> stored = load_frame(path);
-  EXPECT_EQ(component_names(*stored), component_names(*first->frame()));
+  save_film(*first->film(), path);
+  const std::shared_ptr<const Film> stored = load_film(path);
+  EXPECT_EQ(component_names(*stored), component_names(*first->film()));
   EXPECT_EQ(stored->components[1].expression, "ED.*L");
   for (size_t c = 0; c < stored->components.size(); ++c) {
-    EXPECT_EQ(stored->components[c].primal, first->frame()->components[c].primal);
-    EXPECT_EQ(stored->components[c].gradient, first->frame()->components[c].gradient);
-    const auto &rough = stored->components[c].rough[1], &kept = first->frame()->components[c].rough[1];
-    ASSERT_EQ(rough.size(), kept.size());
-    EXPECT_EQ(std::memcmp(rough.data(), kept.data(), rough.size() * sizeof(RoughVertices)), 0);
-    const auto &details = stored->components[c].details, &kept_details = first->frame()->components[c].details;
+    EXPECT_EQ(stored->components[c].primal, first->film()->components[c].primal);
+    EXPECT_EQ(stored->components[c].gradient, first->film()->components[c].gradient);
+    const auto &non_specular = stored->components[c].non_specular[1], &kept = first->film()->components[c].non_specular[1];
+    ASSERT_EQ(non_specular.size(), kept.size());
+    EXPECT_EQ(std::memcmp(non_specular.data(), kept.data(), non_specular.size() * sizeof(NonSpecularVertices)), 0);
+    const auto &details = stored->components[c].details, &kept_details = first->film()->components[c].details;
     ASSERT_EQ(details.size(), kept_details.size());
-    EXPECT_EQ(std::memcmp(details.data(), kept_details.data(), details.size() * sizeof(RoughDetails)), 0);
+    EXPECT_EQ(std::memcmp(details.data(), kept_details.data(), details.size() * sizeof(NonSpecularDetails)), 0);
   }
   settings.samples = 8;
   Render more(test::test_device(), scene.context(settings).snapshot, settings, stored);
@@ -498,23 +498,23 @@ TEST(Components, DoNotGoOnFromFramesWithoutTheirSurfaces) {
     GradusSettings settings = settings_with("");
     settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
     settings.samples = 4;
-    const auto first = rendered(&scene, settings)->frame();
+    const auto first = rendered(&scene, settings)->film();
     settings.component_passes |= 1u << pass;
     settings.samples = 8;
     EXPECT_THROW(Render(test::test_device(), scene.context(settings).snapshot, settings, first), Error) << pass;
     settings.samples = 4;
     settings.first_sample = 4;
-    Frame merged = *first;
-    EXPECT_THROW(merge_frames(&merged, *rendered(&scene, settings)->frame()), Error) << pass;
+    Film merged = *first;
+    EXPECT_THROW(merge_films(&merged, *rendered(&scene, settings)->film()), Error) << pass;
   }
 }
 
 TEST(Components, OfDifferentSetsAreNotMerged) {
-  Frame a(4, 4, {0, 0, 4, 4}, 3, 2, false), b = a;
+  Film a(4, 4, {0, 0, 4, 4}, 3, 2, false), b = a;
   a.components[0].name = "Diffuse";
   b.components[0].name = "Direct";
   b.samples.add({0, 1});
-  const std::string refusal = test::refusal_of([&] { merge_frames(&a, b); });
+  const std::string refusal = test::refusal_of([&] { merge_films(&a, b); });
   EXPECT_NE(refusal.find("Direct"), std::string::npos) << refusal;
 }
 
@@ -541,7 +541,7 @@ TEST(Components, TellTheirMotion) {
   const auto expected = component_motion(*moved, settings, set, kEveryComponent, region);
   float farthest = 0.0f;
   for (int c = 0; c < set.count(); ++c) {
-    if (find_component(*render.frame(), set[c].name) < 0) continue;
+    if (find_component(*render.film(), set[c].name) < 0) continue;
     const std::vector<float> vectors = component(render, set[c].name, GRADUS_COMPONENT_MOTION);
     const std::vector<float> tracked = component(render, set[c].name, GRADUS_COMPONENT_TRACKED);
     for (size_t i = 0; i < tracked.size(); ++i) {
@@ -564,9 +564,9 @@ TEST(Components, ProgressCountsTheirMotionWhileItIsFound) {
   const auto render = started(&scene, settings);
   while (!render->wait(0.0)) render->progress();
   ASSERT_EQ(render->outcome(nullptr), GRADUS_OK);
-  const auto frame = render->frame();
-  for (const ComponentPlanes& planes : frame->components) EXPECT_EQ(planes.motion.size(), size_t{kSide} * kSide) << planes.name;
-  EXPECT_GE(render->progress().memory_bytes, frame->memory_bytes());
+  const auto film = render->film();
+  for (const ComponentPlanes& planes : film->components) EXPECT_EQ(planes.motion.size(), size_t{kSide} * kSide) << planes.name;
+  EXPECT_GE(render->progress().memory_bytes, film->memory_bytes());
 }
 
 // The last component of a set was taken for Residual where no path is left for that: it had the motion of the mirror, and as tracked.
@@ -580,7 +580,7 @@ TEST(Components, OfSetsWithoutResidualTellTheMotionOfWhatTheyShow) {
     turn_camera(moved.get());
     Render render(test::test_device(), moved, settings);
     render.wait(-1.0);
-    EXPECT_EQ(find_component(*render.frame(), std::string(kResidual)) >= 0, set.empty());
+    EXPECT_EQ(find_component(*render.film(), std::string(kResidual)) >= 0, set.empty());
     return component(render, name, pass);
   };
   const std::string set = "Matte=E(D.*)?L;Shiny=E(R|T).*L";
@@ -604,7 +604,7 @@ TEST(Components, WhatIsNotThereIsNotTracked) {
   GradusSettings settings = settings_with("Nothing=ETTTTTTL");
   settings.component_passes = kMotionPasses;
   const auto render = rendered(Scenario::DiffuseArea, settings);
-  ASSERT_EQ(find_component(*render->frame(), "Nothing"), -1);
+  ASSERT_EQ(find_component(*render->film(), "Nothing"), -1);
   for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_TRACKED)) ASSERT_EQ(value, kNothingToTrack);
   for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_MOTION)) ASSERT_EQ(value, 0.0f);
 }
@@ -620,16 +620,16 @@ TEST(Components, MotionThatWasNotAskedForIsRefused) {
 TEST(Components, MotionIsStoredWithTheFrame) {
   GradusSettings settings = settings_with("");
   settings.component_passes = kMotionPasses;
-  const auto frame = rendered(Scenario::Glass, settings)->frame();
+  const auto film = rendered(Scenario::Glass, settings)->film();
   const std::string path = (std::filesystem::temp_directory_path() / ("gradus_motion_" + std::to_string(getpid()) + ".exr")).string();
-  save_frame(*frame, path);
-  const auto back = load_frame(path);
+  save_film(*film, path);
+  const auto back = load_film(path);
   std::filesystem::remove(path);
-  ASSERT_FALSE(frame->components[0].motion.empty());
-  EXPECT_TRUE(frame->components[0].shown.empty()) << "of animations alone";
-  for (size_t c = 0; c < frame->components.size(); ++c) {
-    EXPECT_EQ(back->components[c].motion, frame->components[c].motion);
-    EXPECT_EQ(back->components[c].tracked, frame->components[c].tracked);
+  ASSERT_FALSE(film->components[0].motion.empty());
+  EXPECT_TRUE(film->components[0].shown.empty()) << "of animations alone";
+  for (size_t c = 0; c < film->components.size(); ++c) {
+    EXPECT_EQ(back->components[c].motion, film->components[c].motion);
+    EXPECT_EQ(back->components[c].tracked, film->components[c].tracked);
   }
 }
 
@@ -637,11 +637,11 @@ TEST(Components, MotionIsStoredWithTheFrame) {
 TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
   GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
-  const auto frame = rendered(Scenario::Glass, settings)->frame();
-  for (const ComponentPlanes& planes : frame->components) EXPECT_TRUE(planes.rough[0].empty() && planes.details.empty());
+  const auto film = rendered(Scenario::Glass, settings)->film();
+  for (const ComponentPlanes& planes : film->components) EXPECT_TRUE(planes.non_specular[0].empty() && planes.details.empty());
   settings.component_passes = 1u << GRADUS_COMPONENT_NORMAL;
   const auto render = rendered(Scenario::Glass, settings);
-  for (const ComponentPlanes& planes : render->frame()->components) EXPECT_TRUE(!planes.rough[0].empty() && planes.details.empty());
+  for (const ComponentPlanes& planes : render->film()->components) EXPECT_TRUE(!planes.non_specular[0].empty() && planes.details.empty());
   EXPECT_THROW(component(*render, "Diffuse", GRADUS_COMPONENT_UV), Error);
 }
 

@@ -56,8 +56,8 @@ class DenoisedRender : public ::testing::Test {
 };
 
 // What the stand-in makes of a picture and the features without their noise.
-std::vector<float> denoised(std::vector<float> rgba, const Frame& frame) {
-  const Features features = filter_features(read_features(frame));
+std::vector<float> denoised(std::vector<float> rgba, const Film& film) {
+  const Features features = filter_features(read_features(film));
   for (size_t i = 0; i < rgba.size(); ++i) {
     const size_t g = i / 4 * 3 + i % 4;
     if (i % 4 < 3) rgba[i] += 1.0f + features.albedo.values[g] + 10.0f * features.normal.values[g];
@@ -73,11 +73,11 @@ void expect_near(const std::vector<float>& a, const std::vector<float>& b) {
 TEST_F(DenoisedRender, CombinedGoesThroughItAndTheRestStays) {
   for (const float noise : {0.0f, 1.0f}) {
     const auto plain = finished(settings_with(GRADUS_DENOISER_NONE), noise), render = finished(settings_with(GRADUS_DENOISER_OIDN), noise);
-    const auto expected = denoised(read(*plain, GRADUS_PASS_COMBINED, kAll), *render->frame());
+    const auto expected = denoised(read(*plain, GRADUS_PASS_COMBINED, kAll), *render->film());
     expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
     EXPECT_EQ(read(*render, GRADUS_PASS_NOISY_IMAGE, kAll), read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll));
-    EXPECT_TRUE(has_features(*render->frame())) << "nobody asked for the passes";
-    EXPECT_FALSE(has_features(*plain->frame()));
+    EXPECT_TRUE(has_features(*render->film())) << "nobody asked for the passes";
+    EXPECT_FALSE(has_features(*plain->film()));
   }
 }
 
@@ -93,7 +93,7 @@ TEST_F(DenoisedRender, IsSaidInStatsPlanAndFrame) {
   EXPECT_EQ(stats["unbiased"], false);
   EXPECT_GT(stats["seconds"]["denoise"], 0.0);
   EXPECT_GE(stats["cpu_seconds"]["denoise"], 0.0);
-  EXPECT_EQ(render->frame()->settings.denoiser, uint32_t{GRADUS_DENOISER_OIDN});
+  EXPECT_EQ(render->film()->settings.denoiser, uint32_t{GRADUS_DENOISER_OIDN});
   settings.denoiser = GRADUS_DENOISER_NONE;
   const json plain = json::parse(finished(settings)->stats_json());
   EXPECT_TRUE(plain["denoiser"].is_null());
@@ -129,7 +129,7 @@ TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples) {
   EXPECT_EQ(stats["plan"]["skipped"]["denoiser"],
             "automatic: 1.0 samples were taken within the time limit: with fewer than 8 samples its time buys more as samples");
   EXPECT_EQ(stats["unbiased"], true);
-  EXPECT_EQ(render.frame()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
+  EXPECT_EQ(render.film()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
   settings.samples = 8;
   settings.time_limit = 1e6f;
   const json quick = json::parse(finished(settings)->stats_json());
@@ -164,7 +164,7 @@ TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
   const auto plain = finished(settings, 1.0f);
   settings.denoiser = GRADUS_DENOISER_OIDN;
   const auto render = finished(settings, 1.0f);
-  std::vector<float> expected = denoised(read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll), *render->frame());
+  std::vector<float> expected = denoised(read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll), *render->film());
   const auto regularized = read(*plain, GRADUS_PASS_COMBINED, kAll);
   std::vector<double> lights;
   for (size_t i = 0; i < regularized.size(); i += 4) lights.push_back(luminance(&regularized[i]));
@@ -231,13 +231,13 @@ TEST_F(DenoisedRender, FailureIsAWarningAndThePictureStays) {
 TEST_F(DenoisedRender, NoMemoryForItIsAWarningToo) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
   settings.passes |= feature_passes();
-  const auto frame = finished(settings)->frame();
+  const auto film = finished(settings)->film();
   std::string why_not, failure;
   OidnLibrary library = *find_oidn({kFake}, &why_not);
   library.api.commit_device = [](OidnApi::Device*) { throw std::bad_alloc(); };
   const std::vector<float> combined(4 * size_t(kAll.area()), 0.5f);
   const auto never = [] { return false; };
-  EXPECT_TRUE(denoise_combined(library, *frame, GRADUS_RECONSTRUCTION_REGULARIZED, kAll, 1, never, combined, &failure).empty());
+  EXPECT_TRUE(denoise_combined(library, *film, GRADUS_RECONSTRUCTION_REGULARIZED, kAll, 1, never, combined, &failure).empty());
   EXPECT_EQ(failure, "the picture was not denoised: out of memory");
 }
 
@@ -270,9 +270,9 @@ TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleWhereThereIsNone) {
   const auto render = finished(settings);
   const json stats = json::parse(render->stats_json());
   EXPECT_NE(stats["plan"]["skipped"]["denoiser"].get<std::string>().find("version 1.7.5"), std::string::npos);
-  EXPECT_EQ(render->frame()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
+  EXPECT_EQ(render->film()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
   EXPECT_TRUE(stats["denoiser"].is_null());
-  EXPECT_FALSE(has_features(*render->frame()));
+  EXPECT_FALSE(has_features(*render->film()));
 }
 
 }  // namespace

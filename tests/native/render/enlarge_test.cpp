@@ -10,7 +10,7 @@ namespace {
 
 // A picture of `small` that shows f at the film positions of `full` where its pixels' centres lie.
 template <class Function>
-std::vector<float> picture(const Region& part, FrameSize full, FrameSize small, Function&& f) {
+std::vector<float> picture(const Region& part, ImageSize full, ImageSize small, Function&& f) {
   std::vector<float> rgba;
   for (int32_t y = part.y0; y < part.y1; ++y) {
     for (int32_t x = part.x0; x < part.x1; ++x) {
@@ -23,10 +23,10 @@ std::vector<float> picture(const Region& part, FrameSize full, FrameSize small, 
 
 double plane(double x, double y, int c) { return 1.0 + 0.25 * c + 0.03 * x - 0.02 * y; }
 
-Region all_of(FrameSize size) { return {0, 0, int32_t(size.width), int32_t(size.height)}; }
+Region all_of(ImageSize size) { return {0, 0, int32_t(size.width), int32_t(size.height)}; }
 
 TEST(Enlarge, APlaneStaysWhereItIs) {
-  const FrameSize full{37, 22}, small{10, 6};  // sides that are no multiples
+  const ImageSize full{37, 22}, small{10, 6};  // sides that are no multiples
   const Region whole = all_of(full);
   const std::vector<float> large = enlarge(picture(covering(whole, full, small), full, small, plane), 4, whole, full, small);
   ASSERT_EQ(large.size(), size_t{4 * 37 * 22});
@@ -40,7 +40,7 @@ TEST(Enlarge, APlaneStaysWhereItIs) {
 }
 
 TEST(Enlarge, ARegionIsTheCropOfTheWhole) {
-  const FrameSize full{64, 48}, small{16, 12};
+  const ImageSize full{64, 48}, small{16, 12};
   const auto wave = [](double x, double y, int c) { return std::sin(0.3 * x + c) * std::cos(0.2 * y); };
   const std::vector<float> whole = enlarge(picture(all_of(small), full, small, wave), 4, all_of(full), full, small);
   for (const Region& region : {Region{0, 0, 5, 7}, Region{21, 13, 22, 14}, Region{30, 20, 64, 48}}) {
@@ -57,8 +57,8 @@ TEST(Enlarge, ARegionIsTheCropOfTheWhole) {
 }
 
 TEST(Enlarge, ConstantsStayInImagesOfAnySize) {
-  for (const FrameSize full : {FrameSize{1, 1}, {2, 1}, {1, 3}, {4, 4}, {5, 1}, {1, 1000}, {4097, 2}}) {
-    const FrameSize small{(full.width + 3) / 4, (full.height + 3) / 4};
+  for (const ImageSize full : {ImageSize{1, 1}, {2, 1}, {1, 3}, {4, 4}, {5, 1}, {1, 1000}, {4097, 2}}) {
+    const ImageSize small{(full.width + 3) / 4, (full.height + 3) / 4};
     const Region from = covering(all_of(full), full, small);
     EXPECT_EQ(from.area(), all_of(small).area());
     for (const float v : enlarge(std::vector<float>(4 * size_t(from.area()), 0.7f), 4, all_of(full), full, small)) ASSERT_EQ(v, 0.7f);

@@ -72,12 +72,12 @@ TEST(ErrorPass, GoesWithTheExposure) {
 
 TEST(ErrorPass, OfAPartHasItsPixels) {
   GradusSettings settings = error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE);
-  const auto frame = rendered(settings);
+  const auto film = rendered(settings);
   SolveReport report;
   std::vector<float> whole, part;
   const auto never = [] { return false; };
-  combine(*frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, kAll, never, &report, &whole);
-  combine(*frame, GRADUS_RECONSTRUCTION_NONE, 0.0f, {7, 11, 30, 29}, never, &report, &part);
+  combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, kAll, never, &report, &whole);
+  combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, {7, 11, 30, 29}, never, &report, &part);
   ASSERT_EQ(part.size(), 23u * 18u);
   for (size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i], whole[(11 + i / 23) * kSide + 7 + i % 23]);
 }

@@ -43,31 +43,31 @@ struct FakeIntegrator final : Integrator {
   uint32_t feature_seed = 0x10000;  // of the noise of features; 0: that of the image, which they explain then
   int32_t pairs_until = INT32_MAX;  // right of this column there are no gradients
 
-  uint32_t count_at(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y) const {
-    return unit.count_map ? (*unit.count_map)[frame.index(x, y)] : unit.count;
+  uint32_t count_at(const WorkUnit& unit, const Film& film, int32_t x, int32_t y) const {
+    return unit.count_map ? (*unit.count_map)[film.index(x, y)] : unit.count;
   }
 
-  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
+  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
     before(unit);
     for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
-      for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) sample_pixel(unit, x, y, frame, counters, stop);
+      for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) sample_pixel(unit, x, y, film, counters, stop);
     }
   }
 
-  void sample_pixel(const WorkUnit& unit, int32_t x, int32_t y, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const {
-    const size_t i = frame->index(x, y);
-    const uint32_t count = count_at(unit, *frame, x, y);
+  void sample_pixel(const WorkUnit& unit, int32_t x, int32_t y, Film* film, Counters* counters, const std::atomic<bool>& stop) const {
+    const size_t i = film->index(x, y);
+    const uint32_t count = count_at(unit, *film, x, y);
     const uint32_t first = unit.first_map ? (*unit.first_map)[i] : unit.first_sample;
     for (uint32_t s = first; s < first + count; ++s) {
       if (stop.load()) return;
       const int half = int(s % 2);
       const float value = value_of(x, y, s);
-      frame->components[0].primal[half][i] +=
-          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, frame->channels == 4 ? 0.75f : 0.0f);
-      ++frame->count[half][i];
+      film->components[0].primal[half][i] +=
+          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->channels == 4 ? 0.75f : 0.0f);
+      ++film->count[half][i];
       counters->rays_primary += y < rays_below ? 5 : 1;
-      for (PassPlane& plane : frame->passes) add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
-      if (gradients && x < pairs_until) add_gradients(unit, x, y, half, frame);
+      for (PassPlane& plane : film->passes) add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
+      if (gradients && x < pairs_until) add_gradients(unit, x, y, half, film);
     }
   }
 
@@ -84,14 +84,14 @@ struct FakeIntegrator final : Integrator {
   }
 
   // Exact differences of the truth, each direction carrying half.
-  void add_gradients(const WorkUnit& unit, int32_t x, int32_t y, int half, Frame* frame) const {
-    const size_t i = frame->index(x, y);
+  void add_gradients(const WorkUnit& unit, int32_t x, int32_t y, int half, Film* film) const {
+    const size_t i = film->index(x, y);
     for (int o = 0; o < kOffsets; ++o) {
       const int32_t nx = x + kOffsetX[o], ny = y + kOffsetY[o];
-      if (!frame->region.contains(nx, ny) || count_at(unit, *frame, nx, ny) == 0) continue;
+      if (!film->region.contains(nx, ny) || count_at(unit, *film, nx, ny) == 0) continue;
       const float d = 0.5f * (fake_truth(nx, ny) - fake_truth(x, y));
-      frame->components[0].gradient[half][o][i] += Radiance(d, 0.5f * d, 2.0f * d, 0.0f);
-      frame->pair_count[half][o][i] += 1.0f;
+      film->components[0].gradient[half][o][i] += Radiance(d, 0.5f * d, 2.0f * d, 0.0f);
+      film->pair_count[half][o][i] += 1.0f;
     }
   }
 };
@@ -126,18 +126,18 @@ inline GradusSettings small_settings(uint32_t width, uint32_t height, uint32_t s
 }
 
 inline std::unique_ptr<Render> start(const GradusSettings& settings, const IntegratorFactory& factory = fake_factory(),
-                                     std::shared_ptr<const Frame> resumed = nullptr) {
+                                     std::shared_ptr<const Film> resumed = nullptr) {
   return std::make_unique<Render>(nullptr, empty_snapshot(), settings, std::move(resumed), factory);
 }
 
-inline std::unique_ptr<Render> start_and_wait(const GradusSettings& settings, std::shared_ptr<const Frame> resumed = nullptr) {
+inline std::unique_ptr<Render> start_and_wait(const GradusSettings& settings, std::shared_ptr<const Film> resumed = nullptr) {
   auto render = start(settings, fake_factory(), std::move(resumed));
   render->wait(-1.0);
   return render;
 }
 
-inline std::shared_ptr<const Frame> rendered(const GradusSettings& settings, std::shared_ptr<const Frame> resumed = nullptr) {
-  return start_and_wait(settings, std::move(resumed))->frame();
+inline std::shared_ptr<const Film> rendered(const GradusSettings& settings, std::shared_ptr<const Film> resumed = nullptr) {
+  return start_and_wait(settings, std::move(resumed))->film();
 }
 
 inline std::vector<float> read(const Render& render, uint32_t pass, const Region& region) {
@@ -146,7 +146,7 @@ inline std::vector<float> read(const Render& render, uint32_t pass, const Region
   return pixels;
 }
 
-inline bool same_samples(const Frame& a, const Frame& b) {
+inline bool same_samples(const Film& a, const Film& b) {
   for (int half = 0; half < kHalves; ++half) {
     if (a.components[0].primal[half] != b.components[0].primal[half] || a.count[half] != b.count[half]) return false;
     if (a.components[0].gradient[half] != b.components[0].gradient[half] || a.pair_count[half] != b.pair_count[half]) return false;

@@ -44,7 +44,7 @@ void expect_to_add_up(const Render& render) {
 class LightPassesBy : public testing::TestWithParam<uint32_t> {};
 
 TEST_P(LightPassesBy, AddUpToCombined) {
-  for (const Scenario scenario : {Scenario::Glass, Scenario::GlossyFloor, Scenario::LampsSeen}) {
+  for (const Scenario scenario : {Scenario::Glass, Scenario::GlossyFloor, Scenario::LightsSeen}) {
     GradusSettings settings = settings_for(GetParam());
     settings.film_exposure = 1.7f;
     expect_to_add_up(*rendered(scenario, settings));
@@ -99,7 +99,7 @@ std::vector<float> light_of(const Render& render, uint32_t pass) {
   return light;
 }
 
-// Not of squares, which the few pixels at the edges of a lamp decide.
+// Not of squares, which the few pixels at the edges of a light decide.
 double distance(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0.0;
   for (size_t i = 0; i < a.size(); ++i) sum += std::fabs(double(a[i]) - b[i]);
@@ -158,9 +158,9 @@ TEST(LightPasses, OneAloneIsCleanToo) {
 
 TEST(LightPasses, ThatNobodyAskedForTakeNoRoom) {
   const auto none = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, 0));
-  EXPECT_FALSE(has_light_passes(*none->frame()));
+  EXPECT_FALSE(has_light_passes(*none->film()));
   const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
-  const auto kept = [](const Render& render) { return render.progress().memory_bytes - render.frame()->memory_bytes(); };
+  const auto kept = [](const Render& render) { return render.progress().memory_bytes - render.film()->memory_bytes(); };
   EXPECT_EQ(kept(*all) - kept(*none), 8 * 3 * sizeof(float) * kSide * kSide);
 }
 
@@ -172,10 +172,10 @@ TEST(LightPasses, OfOneSampleAddUp) {
 }
 
 TEST(LightPasses, OfACancelledRenderAreThoseSampled) {
-  const CancelTest at_once = [] { return true; };
+  const CancelCheck at_once = [] { return true; };
   const auto render = rendered(Scenario::Glass, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
   const std::vector<float> rgba = read(*render, GRADUS_PASS_COMBINED);
-  EXPECT_THROW(LightPasses(*render->frame(), {0, 0, kSide, kSide}, rgba, at_once), Error);
+  EXPECT_THROW(LightPasses(*render->film(), {0, 0, kSide, kSide}, rgba, at_once), Error);
 }
 
 }  // namespace

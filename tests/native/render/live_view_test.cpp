@@ -73,7 +73,7 @@ GradusSettings settings_of(uint32_t width, uint32_t height, uint32_t samples, ui
   return settings;
 }
 
-TEST(LiveView, WithoutAWatcherNothingIsMade) {
+TEST(Preview, WithoutAWatcherNothingIsMade) {
   const GradusSettings settings = settings_of(96, 64, 32, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   std::atomic<int> quarters{0};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) { quarters += is_quarter(*fake, settings) ? 1 : 0; }));
@@ -110,7 +110,7 @@ TEST_P(WatchedRender, HasTheBitsOfAnUnwatchedOne) {
     const auto render = start(settings, slow_factory());
     watch(render.get(), all);
     ASSERT_EQ(render->outcome(nullptr), GRADUS_OK);
-    EXPECT_TRUE(same_samples(*render->frame(), *unwatched->frame())) << threads;
+    EXPECT_TRUE(same_samples(*render->film(), *unwatched->film())) << threads;
     for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_ERROR}) {
       EXPECT_EQ(read(*render, pass, all), read(*unwatched, pass, all)) << threads << " " << pass;
     }
@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(All, WatchedRender,
                                            Kind{"AdaptiveRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, 0.03f}),
                          [](const ::testing::TestParamInfo<Kind>& info) { return info.param.name; });
 
-TEST(LiveView, AResumedRenderIsWatchedFromItsSamples) {
+TEST(Preview, AResumedRenderIsWatchedFromItsSamples) {
   const GradusSettings settings = settings_of(96, 64, 48, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   GradusSettings first = settings;
   first.samples = 16;
@@ -161,7 +161,7 @@ TEST(LiveView, AResumedRenderIsWatchedFromItsSamples) {
 }
 
 // A batch of 16 samples may take minutes. Here its tiles take long, and pictures do not, with sanitizers neither.
-TEST(LiveView, ALongBatchDoesNotKeepTheWatcherWaiting) {
+TEST(Preview, ALongBatchDoesNotKeepTheWatcherWaiting) {
   const GradusSettings settings = settings_of(64, 64, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   const auto render = start(settings, fake_factory([](FakeIntegrator* fake) {
                               fake->before = [](const WorkUnit& unit) {
@@ -178,7 +178,7 @@ TEST(LiveView, ALongBatchDoesNotKeepTheWatcherWaiting) {
 }
 
 // Seconds of sampling are given; those of pictures are what is billed, however long that takes here.
-TEST(LiveView, TakesATwentiethOfTheTime) {
+TEST(Preview, TakesATwentiethOfTheTime) {
   LoopInput input;
   input.settings = settings_of(96, 64, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   const Plan plan = make_plan(input.settings, *empty_snapshot());
@@ -186,15 +186,15 @@ TEST(LiveView, TakesATwentiethOfTheTime) {
   tbb::task_arena arena(2);
   Picture picture(plan.delivered);
   ProgressTracker tracker;
-  LiveView view(input, plan, stop, &arena, &picture, &tracker);
+  Preview view(input, plan, stop, &arena, &picture, &tracker);
   view.watch();
-  const auto frame = rendered(input.settings);
+  const auto film = rendered(input.settings);
   const auto is_due = [&](double sampled) { return view.refresh_is_due(GRADUS_RECONSTRUCTION_L1, sampled, 0.5); };
   EXPECT_TRUE(is_due(0.0)) << "nothing is known of the first one";
   double sampled = 0.0;
   for (uint32_t i = 1; i <= 5; ++i) {
     const double before = view.seconds();
-    view.refresh(*frame, sampled);
+    view.refresh(*film, sampled);
     const double cost = view.seconds() - before;
     EXPECT_GT(cost, 0.0);
     EXPECT_EQ(tracker.version(), i);
@@ -205,7 +205,7 @@ TEST(LiveView, TakesATwentiethOfTheTime) {
 }
 
 // A picture of this size takes tens of milliseconds: once there is one, the next would come too late.
-TEST(LiveView, IsAskedForNoMoreOftenThanItPays) {
+TEST(Preview, IsAskedForNoMoreOftenThanItPays) {
   GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   settings.time_limit = 0.25f;
   std::atomic<bool> is_watched{false};
@@ -224,7 +224,7 @@ TEST(LiveView, IsAskedForNoMoreOftenThanItPays) {
 
 // The limit is one of sampling (contract 4.6). A render ends within half a sample of it, so not before two thirds; and the picture takes so
 // long that no busy machine makes sampling as long.
-TEST(LiveView, TakesNothingFromTheTimeLimit) {
+TEST(Preview, TakesNothingFromTheTimeLimit) {
   GradusSettings settings = settings_of(16, 16, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.time_limit = 0.1f;
   std::atomic<bool> is_watched{false};
@@ -243,7 +243,7 @@ TEST(LiveView, TakesNothingFromTheTimeLimit) {
   EXPECT_LT(seconds["sample"], 2.0);
 }
 
-TEST(LiveView, ACancelEndsTheQuarter) {
+TEST(Preview, ACancelEndsTheQuarter) {
   const GradusSettings settings = settings_of(256, 256, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   std::atomic<int> tiles{0};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
@@ -265,17 +265,17 @@ TEST(LiveView, ACancelEndsTheQuarter) {
 }
 
 // It left raw noise, and holes where no sample had been taken, in place of the picture that was on the screen.
-TEST(LiveView, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
+TEST(Preview, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
   const GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   const Region all = region_of(settings);
-  std::atomic<bool> is_watched{false}, go_on{false};
+  std::atomic<bool> is_watched{false}, released{false};
   std::atomic<int> tiles{0};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
                               while (!is_watched) std::this_thread::yield();  // before sampling begins
                               if (is_quarter(*fake, settings)) return;
                               fake->before = [&](const WorkUnit&) {
                                 if (tiles++ < 4) return;
-                                while (!go_on) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                                while (!released) std::this_thread::sleep_for(std::chrono::milliseconds(1));
                               };
                             }));
   read(*render, GRADUS_PASS_COMBINED, all);
@@ -283,7 +283,7 @@ TEST(LiveView, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
   wait_for([&] { return tiles > 4; });
   const std::vector<float> seen = read(*render, GRADUS_PASS_COMBINED, all);
   render->cancel();
-  go_on = true;
+  released = true;
   ASSERT_TRUE(render->wait(10.0));
   EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, all), seen);
   const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, all), error = read(*render, GRADUS_PASS_ERROR, all);
@@ -301,7 +301,7 @@ TEST(LiveView, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
 }
 
 // What the frame's own samples have made is newer than the quarter, and stays.
-TEST(LiveView, ACancelLeavesTheReconstructionThatWasSeen) {
+TEST(Preview, ACancelLeavesTheReconstructionThatWasSeen) {
   GradusSettings settings = settings_of(96, 64, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   const auto render = start(settings, slow_factory());
   const Region all = region_of(settings);
@@ -325,7 +325,7 @@ TEST(LiveView, ACancelLeavesTheReconstructionThatWasSeen) {
 }
 
 // It delivered what was there of the solution.
-TEST(LiveView, ACancelOfTheReconstructionLeavesTheSamples) {
+TEST(Preview, ACancelOfTheReconstructionLeavesTheSamples) {
   GradusSettings settings = settings_of(1200, 900, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   const auto render = start(settings, fake_factory());
   wait_for([&] { return render->progress().phase >= GRADUS_PHASE_RECONSTRUCTING; });
@@ -336,7 +336,7 @@ TEST(LiveView, ACancelOfTheReconstructionLeavesTheSamples) {
 }
 
 // The network takes too long to be run again and again; but there are features.
-TEST(LiveView, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
+TEST(Preview, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
   GradusDeviceSettings with_denoiser{};
   with_denoiser.struct_size = sizeof(with_denoiser);
   with_denoiser.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
@@ -353,7 +353,7 @@ TEST(LiveView, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
   EXPECT_NEAR(mean, 0.5, 0.1) << "the stand-in makes pictures brighter by more than 1";
 }
 
-TEST(LiveView, ManyCancelsOfWatchedRendersLeaveNothingBehind) {
+TEST(Preview, ManyCancelsOfWatchedRendersLeaveNothingBehind) {
   const GradusSettings settings = settings_of(64, 48, kForever, GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED);
   for (int i = 0; i < 100; ++i) {
     const auto render = start(settings, slow_factory(std::chrono::microseconds(100)));
@@ -395,13 +395,13 @@ class WatchedScene : public ::testing::Test {
     std::unique_ptr<Integrator> inner;
     uint32_t at = 0;
     std::atomic<int>* holds = nullptr;
-    const std::atomic<bool>* go_on = nullptr;
-    void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
+    const std::atomic<bool>* released = nullptr;
+    void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
       if (unit.first_sample >= at) {
         ++*holds;
-        while (!*go_on && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (!*released && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
-      inner->sample(unit, frame, counters, stop);
+      inner->sample(unit, film, counters, stop);
     }
   };
 
@@ -411,13 +411,13 @@ class WatchedScene : public ::testing::Test {
     watched.integrator = GRADUS_INTEGRATOR_AUTO;
     watched.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
     std::atomic<int> holds{0};
-    std::atomic<bool> go_on{false};
+    std::atomic<bool> released{false};
     const auto factory = [&](const IntegratorContext& context, uint32_t integrator) {
       auto held = std::make_unique<Held>();
       held->inner = make_integrator(context, integrator);
       held->at = at;
       held->holds = &holds;
-      held->go_on = &go_on;
+      held->released = &released;
       return held;
     };
     Render render(test_device(), snapshot_, watched, nullptr, factory);
@@ -425,7 +425,7 @@ class WatchedScene : public ::testing::Test {
     wait_for([&] { return holds > 0; });
     std::pair<std::vector<float>, std::vector<float>> images{read(render, GRADUS_PASS_COMBINED, region),
                                                              read(render, GRADUS_PASS_NOISY_IMAGE, region)};
-    go_on = true;
+    released = true;
     return images;
   }
 
@@ -445,7 +445,7 @@ class WatchedScene : public ::testing::Test {
 
 // The best that a quarter of the size can show.
 std::vector<float> coarse(const std::vector<float>& image, const GradusSettings& settings, const Region& region) {
-  const FrameSize full{settings.width, settings.height}, small{full.width / 4, full.height / 4};
+  const ImageSize full{settings.width, settings.height}, small{full.width / 4, full.height / 4};
   std::vector<float> means(4 * size_t{small.width} * small.height);
   for (size_t y = 0; y < full.height; ++y) {
     for (size_t x = 0; x < full.width; ++x) {
@@ -465,19 +465,19 @@ TEST_F(WatchedScene, TheFirstPictureIsWhatAQuarterOfTheSizeCanShow) {
   const Region all = region_of(settings);
   const std::vector<float> truth = converged(all);
   const auto [combined, noisy] = seen(settings, 1, all);
-  const auto below_the_lamp = [&](std::vector<float> image) {
+  const auto below_the_light = [&](std::vector<float> image) {
     image.resize(4 * settings.width * settings.height * 3 / 4);
     return image;
   };
-  const double left = error(below_the_lamp(combined), coarse(truth, settings, all));
-  const double of_one_sample = error(below_the_lamp(noisy), truth);
+  const double left = error(below_the_light(combined), coarse(truth, settings, all));
+  const double of_one_sample = error(below_the_light(noisy), truth);
   std::printf("  error %.5f, of one sample %.5f\n", left, of_one_sample);
   EXPECT_LT(left, 0.25 * of_one_sample);
 }
 
 TEST_F(WatchedScene, ARegionsFirstPictureLiesWhereItBelongs) {
   const std::vector<float> truth = converged(region_of(settings));
-  const uint32_t region[] = {13, 5, 73, 58};  // below the lamp
+  const uint32_t region[] = {13, 5, 73, 58};  // below the light
   std::copy(region, region + 4, settings.region);
   const Region part = region_of(settings);
   const std::vector<float> combined = seen(settings, 1, part).first;

@@ -16,7 +16,7 @@ using namespace test;
 
 constexpr uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 
-std::string failure_of(const GradusSettings& settings, const std::shared_ptr<const Frame>& resumed = nullptr) {
+std::string failure_of(const GradusSettings& settings, const std::shared_ptr<const Film>& resumed = nullptr) {
   return refusal_of([&] { start(settings, fake_factory(), resumed); });
 }
 
@@ -45,7 +45,7 @@ TEST(L1_Threads, SamplesHaveTheSameBitsForAnyNumberOfThreads) {
   const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 8);
   GradusSettings settings = small_settings(150, 90, 20);
   settings.passes |= bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_VECTOR);
-  std::shared_ptr<const Frame> first;
+  std::shared_ptr<const Film> first;
   std::vector<float> combined;
   for (const uint32_t threads : {1u, 2u, 3u, 7u}) {
     settings.threads = threads;
@@ -53,10 +53,10 @@ TEST(L1_Threads, SamplesHaveTheSameBitsForAnyNumberOfThreads) {
     ASSERT_TRUE(render->wait(-1.0));
     const auto image = read(*render, GRADUS_PASS_COMBINED, {0, 0, 150, 90});
     if (!first) {
-      first = render->frame();
+      first = render->film();
       combined = image;
     }
-    EXPECT_TRUE(same_samples(*render->frame(), *first)) << threads;
+    EXPECT_TRUE(same_samples(*render->film(), *first)) << threads;
     EXPECT_EQ(image, combined) << threads;
   }
 }
@@ -70,26 +70,26 @@ TEST(L3_Resume, SixteenAndFortyEightSamplesHaveTheBitsOfSixtyFour) {
 }
 
 TEST(L3_Resume, RefusesWhatDoesNotFit) {
-  const auto frame = rendered(small_settings(40, 30, 8));
+  const auto film = rendered(small_settings(40, 30, 8));
   GradusSettings other = small_settings(40, 30, 16);
   other.seed = 1;
-  EXPECT_NE(failure_of(other, frame), "");
+  EXPECT_NE(failure_of(other, film), "");
   other = small_settings(41, 30, 16);
-  EXPECT_NE(failure_of(other, frame), "");
+  EXPECT_NE(failure_of(other, film), "");
   other = small_settings(40, 30, 4);
-  EXPECT_NE(failure_of(other, frame), "");
+  EXPECT_NE(failure_of(other, film), "");
   other = small_settings(40, 30, 16);
   other.passes |= bit(GRADUS_PASS_MIST);
-  EXPECT_NE(failure_of(other, frame), "");
-  EXPECT_EQ(failure_of(small_settings(40, 30, 16), frame), "");
+  EXPECT_NE(failure_of(other, film), "");
+  EXPECT_EQ(failure_of(small_settings(40, 30, 16), film), "");
 }
 
 TEST(L3_Merge, AddsTheSamplesOfTwoRanges) {
   const auto whole = rendered(small_settings(40, 30, 64));
   GradusSettings late = small_settings(40, 30, 48);
   late.first_sample = 16;
-  Frame merged = *rendered(small_settings(40, 30, 16));
-  merge_frames(&merged, *rendered(late));
+  Film merged = *rendered(small_settings(40, 30, 16));
+  merge_films(&merged, *rendered(late));
   EXPECT_EQ(merged.settings.samples, 64u);
   EXPECT_EQ(merged.count, whole->count);
   for (int half = 0; half < kHalves; ++half) {
@@ -97,11 +97,11 @@ TEST(L3_Merge, AddsTheSamplesOfTwoRanges) {
       EXPECT_NEAR(merged.components[0].primal[half][i].x, whole->components[0].primal[half][i].x, 1e-5f * 64.0f);
     }
   }
-  Frame again = *whole;
-  EXPECT_THROW(merge_frames(&again, *whole), Error);  // the same samples
+  Film again = *whole;
+  EXPECT_THROW(merge_films(&again, *whole), Error);  // the same samples
 }
 
-std::shared_ptr<const Frame> rendered_range(uint32_t first, uint32_t count) {
+std::shared_ptr<const Film> rendered_range(uint32_t first, uint32_t count) {
   GradusSettings settings = small_settings(40, 30, count);
   settings.first_sample = first;
   return rendered(settings);
@@ -109,15 +109,15 @@ std::shared_ptr<const Frame> rendered_range(uint32_t first, uint32_t count) {
 
 // Only the sum of the sample counts was kept: samples 32 to 47 went in twice.
 TEST(L3_Merge, RangesWithAHoleStayApart) {
-  Frame merged = *rendered_range(0, 16);
-  merge_frames(&merged, *rendered_range(32, 16));
+  Film merged = *rendered_range(0, 16);
+  merge_films(&merged, *rendered_range(32, 16));
   EXPECT_EQ(merged.samples.list(), (std::vector<SampleRange>{{0, 16}, {32, 48}}));
-  EXPECT_THROW(merge_frames(&merged, *rendered_range(40, 8)), Error);
-  EXPECT_EQ(failure_of(small_settings(40, 30, 64), std::make_shared<const Frame>(merged)),
+  EXPECT_THROW(merge_films(&merged, *rendered_range(40, 8)), Error);
+  EXPECT_EQ(failure_of(small_settings(40, 30, 64), std::make_shared<const Film>(merged)),
             "the frame lacks samples 16 to 31: render and merge these first");
-  merge_frames(&merged, *rendered_range(16, 16));
+  merge_films(&merged, *rendered_range(16, 16));
   EXPECT_EQ(merged.samples.list(), (std::vector<SampleRange>{{0, 48}}));
-  const auto resumed = rendered(small_settings(40, 30, 64), std::make_shared<const Frame>(merged));
+  const auto resumed = rendered(small_settings(40, 30, 64), std::make_shared<const Film>(merged));
   EXPECT_EQ(resumed->count, rendered_range(0, 64)->count);
   EXPECT_EQ(resumed->samples.list(), (std::vector<SampleRange>{{0, 64}}));
 }
@@ -126,11 +126,11 @@ TEST(L3_Merge, RangesWithAHoleStayApart) {
 TEST(L3_Merge, AFrameThatEndedEarlyLeavesItsOtherSamplesFree) {
   GradusSettings settings = small_settings(40, 30, 1u << 20);
   settings.time_limit = 0.02f;
-  Frame early = *rendered(settings);
+  Film early = *rendered(settings);
   const uint32_t end = early.samples.list().front().end;
   ASSERT_LT(end, 1u << 20);
   settings.first_sample = end;
-  EXPECT_NO_THROW(merge_frames(&early, *rendered(settings)));
+  EXPECT_NO_THROW(merge_films(&early, *rendered(settings)));
   EXPECT_EQ(early.samples.list().size(), 1u);
 }
 
@@ -144,7 +144,7 @@ TEST(L3_Border, SamplesOfARegionAreThoseOfTheFullFrame) {
   const auto part = start(settings);
   part->wait(-1.0);
   const Region r{60, 50, 97, 83};
-  const Frame &a = *full->frame(), &b = *part->frame();
+  const Film &a = *full->film(), &b = *part->film();
   EXPECT_EQ(b.region.x0, 60 - 35);
   EXPECT_EQ(b.region.y1, 83 + 35);
   EXPECT_EQ(b.region.x1, 97 + 35);
@@ -234,12 +234,12 @@ TEST(Loop, CanBeReadWhileSampling) {
 TEST(Loop, ReadingDoesNotWaitForABatch) {
   GradusSettings settings = small_settings(70, 50, 32);
   settings.passes |= bit(GRADUS_PASS_VARIANCE);
-  std::atomic<bool> go_on{false}, in_second_batch{false};
+  std::atomic<bool> released{false}, in_second_batch{false};
   auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
                         fake->before = [&](const WorkUnit& unit) {
                           if (unit.first_sample == 0) return;
                           in_second_batch = true;
-                          for (int ms = 0; ms < 10000 && !go_on; ++ms) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                          for (int ms = 0; ms < 10000 && !released; ++ms) std::this_thread::sleep_for(std::chrono::milliseconds(1));
                         };
                       }));
   while (!in_second_batch) std::this_thread::yield();
@@ -250,7 +250,7 @@ TEST(Loop, ReadingDoesNotWaitForABatch) {
   }
   EXPECT_THROW(read(*render, GRADUS_PASS_VARIANCE, all), Error);
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(1));
-  go_on = true;
+  released = true;
   ASSERT_TRUE(render->wait(20.0));
   const auto whole = start_and_wait(settings);
   for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_VARIANCE}) {
@@ -284,7 +284,7 @@ TEST(Loop, StopsByTimeAndDeliversTheReconstruction) {
 }
 
 // Seconds of sampling with a limit, where each sample of the one tile takes this long.
-double limited_seconds(double limit, double sample, const std::shared_ptr<const Frame>& resumed = nullptr) {
+double limited_seconds(double limit, double sample, const std::shared_ptr<const Film>& resumed = nullptr) {
   GradusSettings settings = small_settings(8, 8, 100000);
   settings.time_limit = float(limit);
   const auto slow = fake_factory([sample](FakeIntegrator* fake) {
@@ -321,17 +321,17 @@ TEST(Loop, StopsTilesByNoise) {
   settings.noise_threshold = 0.05f;
   auto render = start(settings, fake_factory([](FakeIntegrator* fake) { fake->noise = 0.5f; }));
   ASSERT_TRUE(render->wait(20.0));
-  const Frame& frame = *render->frame();
+  const Film& film = *render->film();
   const auto stats = nlohmann::json::parse(render->stats_json());
   EXPECT_EQ(stats["stopped"], "noise");
   EXPECT_FALSE(stats["unbiased"]);
-  uint32_t least = UINT32_MAX, most = 0;
-  for (size_t i = 0; i < frame.count[0].size(); ++i) {
-    least = std::min(least, samples_at(frame, i));
-    most = std::max(most, samples_at(frame, i));
+  uint32_t minimum = UINT32_MAX, maximum = 0;
+  for (size_t i = 0; i < film.count[0].size(); ++i) {
+    minimum = std::min(minimum, samples_at(film, i));
+    maximum = std::max(maximum, samples_at(film, i));
   }
-  EXPECT_GE(least, 16u);
-  EXPECT_LT(most, 256u);
+  EXPECT_GE(minimum, 16u);
+  EXPECT_LT(maximum, 256u);
   // And the error is what was asked for: the picture's relative error is near the threshold or below.
   const std::vector<float> image = read(*render, GRADUS_PASS_COMBINED, {0, 0, 128, 64});
   double error = 0.0, signal = 0.0;
@@ -374,7 +374,7 @@ TEST(Loop, AnswersOutOfOrderCalls) {
   EXPECT_FALSE(render->wait(0.0));
   EXPECT_THROW(render->outcome(nullptr), Error);
   EXPECT_THROW(render->stats_json(), Error);
-  EXPECT_THROW(render->frame(), Error);
+  EXPECT_THROW(render->film(), Error);
 }
 
 TEST(Loop, L2IsCloserToTheTruthThanTheNoisyImage) {

@@ -19,8 +19,8 @@ constexpr Region kSampled{-20, -10, 310, 260}, kRead{5, 3, 295, 247};  // more r
 uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 
 // Sums of random samples; some pixels have none in one half, some pairs none at one end, some values are denormal.
-Frame random_frame(int channels) {
-  Frame frame(400, 300, kSampled, channels, 2, true);
+Film random_frame(int channels) {
+  Film frame(400, 300, kSampled, channels, 2, true);
   frame.settings.film_exposure = 2.0f;  // exact products: no bit depends on how they are added
   frame.passes = make_pass_planes(bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_DENOISING_ALBEDO), kSampled.area());
   frame.fallback.assign(size_t(kSampled.area()), 0.0f);
@@ -51,14 +51,14 @@ Frame random_frame(int channels) {
   return frame;
 }
 
-std::vector<float> read(const Frame& frame, uint32_t pass, const Region& region) {
+std::vector<float> read(const Film& frame, uint32_t pass, const Region& region) {
   std::vector<float> pixels(size_t(region.area()) * pass_info(pass).channels);
-  read_frame_pass(frame, pass, region, pixels.data());
+  read_film_pass(frame, pass, region, pixels.data());
   return pixels;
 }
 
 // As Gradient X and Y were read: each cropped from images of the whole frame.
-std::vector<float> gradient_of_images(const Frame& frame, bool vertical) {
+std::vector<float> gradient_of_images(const Film& frame, bool vertical) {
   std::vector<float> pixels(3 * size_t(kRead.area()), 0.0f);
   for (int component = 0; component < int(frame.components.size()); ++component) {
     const GradientImages images = read_images(frame, component);
@@ -78,14 +78,14 @@ std::vector<float> gradient_of_images(const Frame& frame, bool vertical) {
 
 TEST(PassRead, GradientsHaveTheBitsOfWholeImages) {
   for (const int channels : {3, 4}) {
-    const Frame frame = random_frame(channels);
+    const Film frame = random_frame(channels);
     EXPECT_EQ(read(frame, GRADUS_PASS_GRADIENT_X, kRead), gradient_of_images(frame, false)) << channels;
     EXPECT_EQ(read(frame, GRADUS_PASS_GRADIENT_Y, kRead), gradient_of_images(frame, true)) << channels;
   }
 }
 
 TEST(PassRead, VarianceIsThatOfTheHalvesMeans) {
-  const Frame frame = random_frame(3);
+  const Film frame = random_frame(3);
   const std::vector<float> variance = read(frame, GRADUS_PASS_VARIANCE, kRead);
   size_t out = 0, unknown = 0;
   for (int32_t y = kRead.y0; y < kRead.y1; ++y) {
@@ -105,7 +105,7 @@ TEST(PassRead, VarianceIsThatOfTheHalvesMeans) {
 }
 
 TEST(PassRead, EveryPassHasTheSameBitsForAnyNumberOfThreads) {
-  const Frame frame = random_frame(4);
+  const Film frame = random_frame(4);
   for (const uint32_t pass : {GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_DEPTH, GRADUS_PASS_NORMAL, GRADUS_PASS_DENOISING_ALBEDO,
                               GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y, GRADUS_PASS_VARIANCE, GRADUS_PASS_SAMPLE_COUNT,
                               GRADUS_PASS_FALLBACK}) {

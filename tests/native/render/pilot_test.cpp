@@ -106,11 +106,11 @@ TEST(Benefit, PartsAreChosenForThePicture) {
   };
   const std::vector<double> pixels(3, 100.0);
   using Chosen = std::vector<bool>;
-  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.1, 2)}, pixels), (Chosen{true, true, true}));
-  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(100, 0.9, 2), part(1, 0.1, 2)}, pixels), (Chosen{false, false, false}));
-  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(100, 0.1, 2), part(1, 0.9, 2)}, pixels), (Chosen{false, true, false}));
-  EXPECT_EQ(choose_parts({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.6, 2)}, pixels), (Chosen{true, true, true})) << "hardly better";
-  EXPECT_EQ(choose_parts({part(0, 1, 2), part(0, 1, 1), part(0, 1, 3)}, pixels), (Chosen{false, false, false})) << "no noise";
+  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.1, 2)}, pixels), (Chosen{true, true, true}));
+  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(100, 0.9, 2), part(1, 0.1, 2)}, pixels), (Chosen{false, false, false}));
+  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(100, 0.1, 2), part(1, 0.9, 2)}, pixels), (Chosen{false, true, false}));
+  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.6, 2)}, pixels), (Chosen{true, true, true})) << "hardly better";
+  EXPECT_EQ(choose_blocks({part(0, 1, 2), part(0, 1, 1), part(0, 1, 3)}, pixels), (Chosen{false, false, false})) << "no noise";
 }
 
 // Pixels are noisy everywhere, differences only where x is at least `noisy_from`.
@@ -118,30 +118,30 @@ struct HalfNoisy final : Integrator {
   explicit HalfNoisy(int32_t from) : noisy_from(from) {}
   int32_t noisy_from;
 
-  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& /*stop*/) const override {
+  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& /*stop*/) const override {
     for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
       for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
-        if (unit.pixel_map != nullptr && (*unit.pixel_map)[frame->index(x, y)] == 0) continue;
-        const bool is_on = unit.gradient_map == nullptr || (*unit.gradient_map)[frame->index(x, y)] != 0;
+        if (unit.pixel_map != nullptr && (*unit.pixel_map)[film->index(x, y)] == 0) continue;
+        const bool is_on = unit.gradient_map == nullptr || (*unit.gradient_map)[film->index(x, y)] != 0;
         for (uint32_t s = unit.first_sample; s < unit.first_sample + unit.count; ++s) {
-          sample_pixel(x, y, s, frame->gradients && is_on, frame, counters);
+          sample_pixel(x, y, s, film->gradients && is_on, film, counters);
         }
       }
     }
   }
 
-  void sample_pixel(int32_t x, int32_t y, uint32_t s, bool has_gradients, Frame* frame, Counters* counters) const {
-    const size_t i = frame->index(x, y);
+  void sample_pixel(int32_t x, int32_t y, uint32_t s, bool has_gradients, Film* film, Counters* counters) const {
+    const size_t i = film->index(x, y);
     const int half = int(s % 2);
-    frame->components[0].primal[half][i] += Radiance(random_value(x, y, s));
-    ++frame->count[half][i];
+    film->components[0].primal[half][i] += Radiance(random_value(x, y, s));
+    ++film->count[half][i];
     counters->rays_primary += 4;
     if (!has_gradients) return;
     counters->rays_shift += 4;
     for (int k = 0; k < kOffsets; ++k) {
-      if (!frame->region.contains(x + kOffsetX[k], y + kOffsetY[k])) continue;
-      frame->components[0].gradient[half][k][i] += Radiance(x >= noisy_from ? 5.0f * random_value(x, y, s + 77 * uint32_t(k)) : 0.1f);
-      frame->pair_count[half][k][i] += 1.0f;
+      if (!film->region.contains(x + kOffsetX[k], y + kOffsetY[k])) continue;
+      film->components[0].gradient[half][k][i] += Radiance(x >= noisy_from ? 5.0f * random_value(x, y, s + 77 * uint32_t(k)) : 0.1f);
+      film->pair_count[half][k][i] += 1.0f;
     }
   }
 };
@@ -188,7 +188,7 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
 // A user could choose its seed, and had the samples that chose the map in the picture: L2 was biased.
 TEST(Pilot, ItsSeedIsNoUsers) { EXPECT_GT(pilot_settings(small_settings(8, 8, 1)).seed, find_option("seed")->maximum); }
 
-nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr<const Frame>* frame) {
+nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr<const Film>* film) {
   GradusSettings s = small_settings(256, 96, 4);
   s.integrator = integrator;
   s.reconstruction = GRADUS_RECONSTRUCTION_L1;
@@ -197,7 +197,7 @@ nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr
   render->wait(-1.0);
   std::string text;
   EXPECT_EQ(render->outcome(&text), GRADUS_OK) << text;
-  *frame = render->frame();
+  *film = render->film();
   return nlohmann::json::parse(render->stats_json());
 }
 
@@ -209,14 +209,14 @@ TEST(Pilot, ACancelMeanwhileIsACancel) {
   const auto noisy = [](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(64); };
   const auto first = start(s, noisy);
   first->wait(-1.0);
-  ASSERT_TRUE(first->frame()->gradients);
+  ASSERT_TRUE(first->film()->gradients);
   std::atomic<bool> is_cancelled{false};
   const auto waits = [&](const IntegratorContext& context, uint32_t integrator) {
     while (!is_cancelled) std::this_thread::yield();
     return noisy(context, integrator);
   };
   s.samples = 8;
-  const auto second = start(s, waits, first->frame());
+  const auto second = start(s, waits, first->film());
   second->cancel();
   is_cancelled = true;
   second->wait(-1.0);
@@ -226,20 +226,20 @@ TEST(Pilot, ACancelMeanwhileIsACancel) {
 }
 
 TEST(Pilot, AutoDecidesAndSaysWhy) {
-  std::shared_ptr<const Frame> frame;
-  const nlohmann::json some = stats_of(128, GRADUS_INTEGRATOR_AUTO, &frame);
+  std::shared_ptr<const Film> film;
+  const nlohmann::json some = stats_of(128, GRADUS_INTEGRATOR_AUTO, &film);
   EXPECT_EQ(some["integrator"], "gradient");
-  EXPECT_TRUE(frame->gradients);
-  EXPECT_GT(frame->pair_count[0][kRight][10], 0.0f);
-  EXPECT_EQ(frame->pair_count[0][kRight][200], 0.0f);
-  const nlohmann::json none = stats_of(0, GRADUS_INTEGRATOR_AUTO, &frame);
+  EXPECT_TRUE(film->gradients);
+  EXPECT_GT(film->pair_count[0][kRight][10], 0.0f);
+  EXPECT_EQ(film->pair_count[0][kRight][200], 0.0f);
+  const nlohmann::json none = stats_of(0, GRADUS_INTEGRATOR_AUTO, &film);
   EXPECT_EQ(none["integrator"], "path");
   EXPECT_EQ(none["reconstruction"], "none");
-  EXPECT_FALSE(frame->gradients);
+  EXPECT_FALSE(film->gradients);
   EXPECT_NE(none["plan"]["skipped"]["gradients"].get<std::string>().find("pilot"), std::string::npos);
   // What the user says is obeyed.
-  EXPECT_EQ(stats_of(0, GRADUS_INTEGRATOR_GRADIENT, &frame)["integrator"], "gradient");
-  const GradientImages images = read_images(*frame, 0);
+  EXPECT_EQ(stats_of(0, GRADUS_INTEGRATOR_GRADIENT, &film)["integrator"], "gradient");
+  const GradientImages images = read_images(*film, 0);
   for (const auto* differences : {&images.dx, &images.dy}) {
     EXPECT_TRUE(std::all_of(differences->begin(), differences->end(), [](float v) { return is_finite(v); }));
   }

@@ -140,9 +140,9 @@ TEST(E8_Sizes, ZeroSamplesGiveAText) {
 // Along a straight edge both halves agree on the same wrong coverage; a low threshold stopped such tiles at 16 samples.
 TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
   GradusSettings s = small_settings(64, 64, 1024);
-  const auto first_check = [&](float threshold, uint32_t least) {
+  const auto first_check = [&](float threshold, uint32_t minimum) {
     s.noise_threshold = threshold;
-    s.min_samples = least;
+    s.min_samples = minimum;
     return make_plan(s, *empty_snapshot()).first_check;
   };
   EXPECT_EQ(first_check(0.05f, 0), 16u);
@@ -189,11 +189,11 @@ TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {
     EXPECT_EQ(names(chosen, "denoiser Some Denoiser 1.2.3"), c.denoises ? 1 : 0);
     EXPECT_EQ(names(skipped, "denoiser"), c.denoises ? 0 : 1);
   }
-  GradusSettings asked = small_settings(64, 64, 1);
-  asked.denoiser = GRADUS_DENOISER_OIDN;
-  asked.time_limit = 60.0f;
+  GradusSettings requested = small_settings(64, 64, 1);
+  requested.denoiser = GRADUS_DENOISER_OIDN;
+  requested.time_limit = 60.0f;
   Reasons none;
-  EXPECT_TRUE(denoises_after(make_plan(asked, *empty_snapshot(), {"Some Denoiser 1.2.3", ""}), 1.0, &none, &none));
+  EXPECT_TRUE(denoises_after(make_plan(requested, *empty_snapshot(), {"Some Denoiser 1.2.3", ""}), 1.0, &none, &none));
   EXPECT_TRUE(none.empty());
 }
 

@@ -11,7 +11,7 @@ namespace gradus::test {
 namespace {
 
 nlohmann::json warnings_of(const RenderStats& stats) {
-  return nlohmann::json::parse(stats_json(stats, Plan{}, make_test_frame(test_settings(4, 4), true)))["warnings"];
+  return nlohmann::json::parse(stats_json(stats, Plan{}, make_test_film(test_settings(4, 4), true)))["warnings"];
 }
 
 // Of stills alone it was a warning: frames of animations that are reconstructed together were delivered without a word.

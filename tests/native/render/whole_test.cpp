@@ -22,7 +22,7 @@ uint64_t checkered(test::PathScene* scene) {
   return scene->material(p.desc(p.add(GRADUS_OP_DIFFUSE, {test::In::from(color)})));
 }
 
-// Smooth and rough glass, rough metal, a texture, a world, lamps and a mesh that shine, behind a lens.
+// Smooth and rough glass, rough metal, a texture, a world, lights and a mesh that shine, behind a lens.
 void build_room(test::PathScene* scene) {
   test::build(test::Scenario::GlossyFloor, scene);
   scene->world(Rgb(0.3f, 0.4f, 0.5f));

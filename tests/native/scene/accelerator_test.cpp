@@ -84,13 +84,13 @@ void furnish(TestScene* scene, int side) {
 }
 
 bool holds(const Accelerator& accelerator, const GeometryGroup* group) {
-  return accelerator.resting.group.get() == group || accelerator.moving.group.get() == group;
+  return accelerator.static_part.group.get() == group || accelerator.moving.group.get() == group;
 }
 
 // Triangles in the top levels of `now` that those of `before` do not share.
 uint64_t built_triangles(const Accelerator& now, const Accelerator& before) {
   uint64_t sum = 0;
-  for (const auto* group : {now.resting.group.get(), now.moving.group.get()}) {
+  for (const auto* group : {now.static_part.group.get(), now.moving.group.get()}) {
     if (!group || holds(before, group)) continue;
     for (const auto& mesh : group->meshes) sum += mesh->triangle_count;
   }
@@ -98,7 +98,7 @@ uint64_t built_triangles(const Accelerator& now, const Accelerator& before) {
 }
 
 // Frames that tell nothing of motion: a room, a ball that is told to move and does, and what `show` adds.
-constexpr uint32_t kTold = GRADUS_VISIBLE_ALL | GRADUS_MAY_MOVE;
+constexpr uint32_t kMayMove = GRADUS_VISIBLE_ALL | GRADUS_MAY_MOVE;
 
 struct Hints {
   const char* name;
@@ -109,7 +109,7 @@ std::shared_ptr<const Snapshot> show_frame(TestScene* scene, int frame, const Hi
   while (scene->instance_count() > 0) scene->remove_last();
   scene->mesh(2, sphere(Vec3(0.0f), 1.0f, 20, 20));
   scene->instance(1);
-  scene->instance(2, translation(Vec3(float(frame), 2, 0)), kTold);
+  scene->instance(2, translation(Vec3(float(frame), 2, 0)), kMayMove);
   hints.show(scene, frame);
   return scene->commit();
 }
@@ -123,20 +123,20 @@ class AcceleratorHints : public testing::TestWithParam<Hints> {};
 TEST(Accelerator, WhatRestsIsBuiltOnceAndSharedByTheFrames) {
   TestScene scene;
   furnish(&scene, kSoupSide);
-  std::weak_ptr<const GeometryGroup> resting, moving;
+  std::weak_ptr<const GeometryGroup> static_part, moving;
   for (int frame = 1; frame < 5; ++frame) {
     scene.matrices_before = {Mat4(1.0f), translation(Vec3(float(frame - 1), 2, 0))};
     scene.move(1, translation(Vec3(float(frame), 2, 0)));
     const auto snapshot = scene.commit();
     const Accelerator& built = *snapshot->accelerator;
     ASSERT_TRUE(built.moving.group);
-    EXPECT_EQ(built.resting.instances, std::vector<uint32_t>{0});
+    EXPECT_EQ(built.static_part.instances, std::vector<uint32_t>{0});
     EXPECT_EQ(built.moving.instances, std::vector<uint32_t>{1});
     if (frame > 1) {
-      EXPECT_EQ(built.resting.group, resting.lock());
+      EXPECT_EQ(built.static_part.group, static_part.lock());
     }
     EXPECT_NE(built.moving.group, moving.lock());
-    resting = built.resting.group;
+    static_part = built.static_part.group;
     moving = built.moving.group;
     Hit hit;
     ASSERT_TRUE(snapshot->intersect({Vec3(float(frame), 2, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
@@ -240,34 +240,34 @@ TEST_P(AcceleratorHints, WhatIsWrongCostsTimeAlone) {
   EXPECT_TRUE(seen[0] != seen[1] && seen[1] != seen[2]) << "the test says something";
 }
 
-constexpr uint32_t kUntold = GRADUS_VISIBLE_ALL;
+constexpr uint32_t kFixed = GRADUS_VISIBLE_ALL;
 
 INSTANTIATE_TEST_SUITE_P(
     All, AcceleratorHints,
     testing::Values(Hints{"MovesUntold",
-                          [](TestScene* scene, int frame) { scene->instance(2, translation(Vec3(-3, float(frame), 0)), kUntold); }},
+                          [](TestScene* scene, int frame) { scene->instance(2, translation(Vec3(-3, float(frame), 0)), kFixed); }},
                     Hints{"DeformsUntold",
                           [](TestScene* scene, int frame) {
                             scene->mesh(3, sphere(Vec3(0.0f), 0.5f + 0.25f * float(frame), 20, 20));
-                            scene->instance(3, translation(Vec3(-3, 0, 0)), kUntold);
+                            scene->instance(3, translation(Vec3(-3, 0, 0)), kFixed);
                           }},
                     Hints{"AppearsUntold",
                           [](TestScene* scene, int frame) {
-                            if (frame > 1) scene->instance(2, translation(Vec3(-3, 0, 0)), kUntold);
+                            if (frame > 1) scene->instance(2, translation(Vec3(-3, 0, 0)), kFixed);
                           }},
                     Hints{"VanishesUntold",
                           [](TestScene* scene, int frame) {
-                            if (frame < 3) scene->instance(2, translation(Vec3(-3, 0, 0)), kUntold);
+                            if (frame < 3) scene->instance(2, translation(Vec3(-3, 0, 0)), kFixed);
                           }},
                     Hints{"IsHiddenUntold",
                           [](TestScene* scene, int frame) {
                             scene->instance(2, translation(Vec3(-3, 0, 0)),
-                                            frame == 2 ? kUntold & ~uint32_t(GRADUS_VISIBLE_CAMERA) : kUntold);
+                                            frame == 2 ? kFixed & ~uint32_t(GRADUS_VISIBLE_CAMERA) : kFixed);
                           }},
-                    Hints{"RestsThoughTold", [](TestScene* scene, int) { scene->instance(2, translation(Vec3(-3, 0, 0)), kTold); }},
+                    Hints{"RestsThoughTold", [](TestScene* scene, int) { scene->instance(2, translation(Vec3(-3, 0, 0)), kMayMove); }},
                     Hints{"IsToldNowAndThen",
                           [](TestScene* scene, int frame) {
-                            scene->instance(2, translation(Vec3(-3, float(frame / 2), 0)), frame == 2 ? kTold : kUntold);
+                            scene->instance(2, translation(Vec3(-3, float(frame / 2), 0)), frame == 2 ? kMayMove : kFixed);
                           }}),
     [](const testing::TestParamInfo<Hints>& info) { return std::string(info.param.name); });
 
@@ -302,8 +302,8 @@ TEST(Accelerator, TheSameListIsSharedWhereItsPlacesChange) {
   };
   const auto first = show(1);
   const auto second = show(3);
-  EXPECT_EQ(first->accelerator->resting.group, second->accelerator->resting.group);
-  EXPECT_EQ(second->accelerator->resting.instances, std::vector<uint32_t>{3});
+  EXPECT_EQ(first->accelerator->static_part.group, second->accelerator->static_part.group);
+  EXPECT_EQ(second->accelerator->static_part.instances, std::vector<uint32_t>{3});
   for (const Answer& a : ask(*second, queries)) EXPECT_LT(a.hit ? a.instance : 0, 4u);
   Hit hit;
   ASSERT_TRUE(second->intersect({Vec3(0, 0, 0), 0.0f, Vec3(0, 0, 1), kInfinity, 0.5f}, GRADUS_VISIBLE_CAMERA, &hit));
@@ -330,7 +330,7 @@ TEST(Accelerator, AChangeOfWhatRestsIsSeen) {
   const auto first = scene.commit();
   scene.mesh(1, sphere(Vec3(0.0f), 6.0f, 12, 12));
   const auto second = scene.commit();
-  EXPECT_NE(first->accelerator->resting.group, second->accelerator->resting.group);
+  EXPECT_NE(first->accelerator->static_part.group, second->accelerator->static_part.group);
   EXPECT_EQ(first->accelerator->moving.group, second->accelerator->moving.group);
   Hit hit;
   ASSERT_TRUE(second->intersect({Vec3(0, 0, 0), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));

@@ -199,7 +199,7 @@ TEST(ManyLights, AnObjectWithTooManyTrianglesIsNamed) {
   const auto snapshot = scene.commit();
   ASSERT_EQ(snapshot->warnings.size(), 2u);
   EXPECT_EQ(snapshot->warnings[1], "object 'number 1' is not sampled as a light: too many triangles emit light");
-  EXPECT_EQ(snapshot->emitters->beyond_limit, std::vector<uint32_t>{1});
+  EXPECT_EQ(snapshot->light_table->beyond_limit, std::vector<uint32_t>{1});
 }
 
 TEST(BadMesh, ContradictingArraysAreRefusedByName) {
@@ -243,7 +243,7 @@ TEST(Commit, UnchangedGeometryIsShared) {
   const auto third = scene.commit();
   EXPECT_NE(third->accelerator, first->accelerator);
   EXPECT_NE(third->content_key, first->content_key);
-  EXPECT_EQ(third->accelerator->resting.group->mesh_scenes, first->accelerator->resting.group->mesh_scenes);
+  EXPECT_EQ(third->accelerator->static_part.group->mesh_scenes, first->accelerator->static_part.group->mesh_scenes);
   Hit hit;
   EXPECT_TRUE(second->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
 }

@@ -41,7 +41,7 @@ GradusCamera make_camera(const BlenderCamera& c, double w, double h, const Mat4&
   camera.type = c.orthographic ? GRADUS_CAMERA_ORTHOGRAPHIC : GRADUS_CAMERA_PERSPECTIVE;
   const float window[4] = {float((-1 - p.axis_x) / p.m00), float((1 - p.axis_x) / p.m00), float((-1 - p.axis_y) / p.m11),
                            float((1 - p.axis_y) / p.m11)};
-  set_at_rest(&camera, window, pose);
+  set_static(&camera, window, pose);
   return camera;
 }
 
@@ -161,13 +161,13 @@ TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
     GradusCamera moving = make_camera(blender, 640, 360, kPose);
     std::vector<Mat4> matrices;
     std::vector<float> windows;
-    const auto at_rest = [&](float time) {
+    const auto frozen_at = [&](float time) {
       GradusCamera camera = make_camera(blender, 640, 360, translation(Vec3(0.5f * time, -time, 2.0f * time)) * kPose);
       for (float& value : camera.window) value *= 1.0f + time;
       return camera;
     };
     for (const float time : {0.0f, 0.5f, 1.0f}) {
-      const GradusCamera key = at_rest(time);
+      const GradusCamera key = frozen_at(time);
       matrices.push_back(translation(Vec3(0.5f * time, -time, 2.0f * time)) * kPose);
       windows.insert(windows.end(), key.window, key.window + 4);
     }
@@ -176,7 +176,7 @@ TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
     moving.shutter_windows = windows.data();
     const Camera camera(moving, 640, 360);
     for (const float time : {0.0f, 0.2f, 0.5f, 0.9f, 1.0f}) {
-      const Ray ray = camera.ray({Vec2(500, 70), Vec2(0.0f), time}), expected = Camera(at_rest(time), 640, 360).ray({Vec2(500, 70)});
+      const Ray ray = camera.ray({Vec2(500, 70), Vec2(0.0f), time}), expected = Camera(frozen_at(time), 640, 360).ray({Vec2(500, 70)});
       EXPECT_LT(glm::length(ray.origin - expected.origin), 1e-5f) << time;
       EXPECT_LT(glm::length(ray.direction - expected.direction), 1e-5f) << time;
       EXPECT_EQ(ray.time, time);

@@ -32,7 +32,7 @@ struct Names {
   uint64_t small, large, plain, first, second;  // two meshes, and materials: of one colour, and of two images
 };
 
-// Two balls, a lamp and a world, whose parts the caller calls by these names.
+// Two balls, a light and a world, whose parts the caller calls by these names.
 uint64_t key_of(const Names& names) {
   TestScene scene;
   scene.mesh(names.small, sphere(Vec3(0.0f), 1.0f, 4, 8));

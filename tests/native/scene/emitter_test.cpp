@@ -32,11 +32,11 @@ std::vector<GradusLight> random_lights(std::mt19937& random, int count, bool dir
   return lights;
 }
 
-// Lamps of all kinds, an emissive sphere, a world.
-std::shared_ptr<const Snapshot> mixed_scene(int lamps) {
+// Lights of all kinds, an emissive sphere, a world.
+std::shared_ptr<const Snapshot> mixed_scene(int analytic_lights) {
   std::mt19937 random(11);
   TestScene scene;
-  scene.lights(random_lights(random, lamps, false));
+  scene.lights(random_lights(random, analytic_lights, false));
   scene.mesh(1, sphere(Vec3(2, 1, 0), 0.5f, 8, 12));
   scene.material(5, MaterialDesc(GRADUS_OP_EMISSION, Rgb(1.0f), 5.0f));
   scene.material(6, MaterialDesc::colored_by_generated());
@@ -59,15 +59,15 @@ TEST(A4_LightDensity, SampledPointsHaveADensity) {
   for (int i = 0; i < 100000; ++i) {
     const Receiver receiver = random_receiver(random);
     const float choice = u(random), x = u(random), y = u(random);
-    EmitterPoint point;
-    EmitterView at_once;
-    sample_emitter(*snapshot, receiver, choice, Vec2(x, y), &point, &at_once);
-    if (point.kind == EmitterKind::None) continue;
-    const EmitterView view = view_emitter(*snapshot, point, receiver);
+    LightPoint point;
+    LightEvaluation at_once;
+    sample_light_point(*snapshot, receiver, choice, Vec2(x, y), &point, &at_once);
+    if (point.kind == LightKind::None) continue;
+    const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
     ++sampled;
     without += !(view.pdf > 0.0f);
     EXPECT_EQ(view.pdf, at_once.pdf);
-    EXPECT_EQ(view.pdf, emitter_pdf(*snapshot, point, receiver));
+    EXPECT_EQ(view.pdf, light_point_pdf(*snapshot, point, receiver));
     EXPECT_GE(view.pdf, 0.0f);
   }
   EXPECT_GT(sampled, 50000);
@@ -84,15 +84,15 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
   for (int i = 0; i < 100000; ++i) {
     const Receiver receiver = random_receiver(random);
     const float choice = u(random), x = u(random);
-    EmitterPoint point;
-    EmitterView sampled_view;
-    sample_emitter(*snapshot, receiver, choice, Vec2(x, u(random)), &point, &sampled_view);
-    if (point.kind != EmitterKind::Lamp || point.dirac) continue;
-    const EmitterView view = view_emitter(*snapshot, point, receiver);
+    LightPoint point;
+    LightEvaluation sampled_view;
+    sample_light_point(*snapshot, receiver, choice, Vec2(x, u(random)), &point, &sampled_view);
+    if (point.kind != LightKind::AnalyticLight || point.dirac) continue;
+    const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
     if (!(view.pdf > 0.0f)) continue;
-    std::vector<LampHit> hits;
-    intersect_lamps(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, &hits);
-    const LampHit* met = nullptr;
+    std::vector<LightHit> hits;
+    intersect_lights(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, &hits);
+    const LightHit* met = nullptr;
     for (size_t k = 0; k < hits.size(); ++k) {
       if (hits[k].point.index == point.index) met = &hits[k];
       if (k > 0) {
@@ -104,7 +104,7 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
       ++missed;
       continue;
     }
-    const EmitterView again = view_emitter(*snapshot, met->point, receiver);
+    const LightEvaluation again = evaluate_light(*snapshot, met->point, receiver);
     different += std::fabs(again.pdf - view.pdf) > 1e-4f * view.pdf;
     if (view.distance != kInfinity) displaced += std::fabs(met->distance - view.distance) > 1e-3f * view.distance + 1e-4f;
   }
@@ -123,9 +123,9 @@ TEST(A4_LightDensity, TriangleMetByRay) {
     const Vec3 direction = glm::normalize(Vec3(2, 1, 0) + 0.5f * random_direction(random) - receiver.position);
     Hit hit;
     if (!snapshot->intersect({receiver.position, 0.0f, direction, kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) continue;
-    const EmitterPoint point = emitter_of_surface(*snapshot, snapshot->surface_point(hit));
-    ASSERT_EQ(point.kind, EmitterKind::Triangle);
-    const EmitterView view = view_emitter(*snapshot, point, receiver);
+    const LightPoint point = light_point_of_surface(*snapshot, snapshot->surface_point(hit));
+    ASSERT_EQ(point.kind, LightKind::Triangle);
+    const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
     EXPECT_GT(view.pdf, 0.0f);
     EXPECT_NEAR(view.radiance.x, 5.0f, 1e-5f);
     EXPECT_NEAR(view.distance, hit.t, 1e-4f);
@@ -133,14 +133,14 @@ TEST(A4_LightDensity, TriangleMetByRay) {
     SurfacePoint from;
     from.position = receiver.position;
     from.geometric_normal = receiver.normal;
-    EXPECT_FALSE(snapshot->occluded(ray_to_emitter(offset_origin(from, view.direction), from, point, view)));
+    EXPECT_FALSE(snapshot->occluded(ray_to_light(offset_origin(from, view.direction), from, point, view)));
     ++met;
   }
   EXPECT_GT(met, 500);
 }
 
-double probability_sum(const EmitterTable& table, const Receiver& receiver) {
-  EmitterChoice room;
+double probability_sum(const LightTable& table, const Receiver& receiver) {
+  LightChoice room;
   const GroupChoice group = table.choose(receiver, &room).group;
   double sum = group.world;
   for (size_t i = 0; i < table.suns.size(); ++i) sum += group.suns * table.sun_probability(i, receiver);
@@ -152,7 +152,7 @@ TEST(A4_LightChoice, ProbabilitiesSumToOne) {
   const auto snapshot = mixed_scene(1000);
   std::mt19937 random(15);
   for (int i = 0; i < 200; ++i)
-    EXPECT_NEAR(probability_sum(*snapshot->emitters, random_receiver(random)), 1.0, 4.0 * std::numeric_limits<float>::epsilon());
+    EXPECT_NEAR(probability_sum(*snapshot->light_table, random_receiver(random)), 1.0, 4.0 * std::numeric_limits<float>::epsilon());
 }
 
 // One memo in turn for receivers that differ in place, side or transmission: it must never answer for another.
@@ -160,7 +160,7 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
   const auto snapshot = mixed_scene(60);
   std::mt19937 random(16);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  EmitterChoice memo;
+  LightChoice memo;
   for (int i = 0; i < 100; ++i) {
     Receiver receiver = random_receiver(random);
     for (const float side : {1.0f, -1.0f}) {
@@ -171,14 +171,14 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
         with_memo.memo = &memo;
         const float choice = uniform(random);
         const Vec2 u(uniform(random), uniform(random));
-        EmitterPoint point, same_point;
-        EmitterView view, same_view;
-        sample_emitter(*snapshot, receiver, choice, u, &point, &view);
-        sample_emitter(*snapshot, with_memo, choice, u, &same_point, &same_view);
+        LightPoint point, same_point;
+        LightEvaluation view, same_view;
+        sample_light_point(*snapshot, receiver, choice, u, &point, &view);
+        sample_light_point(*snapshot, with_memo, choice, u, &same_point, &same_view);
         ASSERT_EQ(point.kind, same_point.kind);
         ASSERT_EQ(point.index, same_point.index);
         ASSERT_EQ(view.pdf, same_view.pdf);
-        ASSERT_EQ(emitter_pdf(*snapshot, point, receiver), emitter_pdf(*snapshot, point, with_memo));
+        ASSERT_EQ(light_point_pdf(*snapshot, point, receiver), light_point_pdf(*snapshot, point, with_memo));
       }
     }
   }
@@ -186,7 +186,7 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
 
 TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
   const auto snapshot = mixed_scene(60);
-  const EmitterTable& table = *snapshot->emitters;
+  const LightTable& table = *snapshot->light_table;
   std::mt19937 random(16);
   std::uniform_real_distribution<double> u(0.0, 1.0);
   for (int k = 0; k < 5; ++k) {
@@ -212,7 +212,7 @@ TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
   }
 }
 
-// E4: variance with 10,000 lamps not above that of uniform choice.
+// E4: variance with 10,000 lights not above that of uniform choice.
 TEST(E4_ManyLights, TreeBeatsUniformChoice) {
   std::mt19937 random(17);
   std::uniform_real_distribution<float> u(-50.0f, 50.0f), v(0.0f, 0.9999999f);
@@ -228,7 +228,7 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
   for (int k = 0; k < 20; ++k) {
     const Receiver receiver{Vec3(0.5f * u(random), 0.5f * u(random), 0), Vec3(0, 0, 1), false};
     const auto value = [&](uint32_t i) {
-      const Vec3 d = snapshot->emitters->lamps[i].position - receiver.position;
+      const Vec3 d = snapshot->light_table->analytic_lights[i].position - receiver.position;
       return double(d.z) / std::pow(double(glm::dot(d, d)), 1.5);
     };
     double exact = 0.0, squares = 0.0;
@@ -236,10 +236,10 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
     double mean = 0.0, second = 0.0;
     constexpr int kCount = 2000;
     for (int i = 0; i < kCount; ++i) {
-      EmitterPoint point;
-      EmitterView sampled_view;
-      sample_emitter(*snapshot, receiver, v(random), Vec2(0.5f), &point, &sampled_view);
-      const EmitterView view = view_emitter(*snapshot, point, receiver);
+      LightPoint point;
+      LightEvaluation sampled_view;
+      sample_light_point(*snapshot, receiver, v(random), Vec2(0.5f), &point, &sampled_view);
+      const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
       const double x = view.radiance.x * view.direction.z / view.pdf;
       mean += x / kCount;
       second += x * x / kCount;
@@ -295,15 +295,15 @@ struct Spread {
 // Irradiance without shadows, by one triangle among all alike and a point on it.
 double by_uniform_choice(const Snapshot& snapshot, const Receiver& receiver, std::mt19937* random) {
   std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
-  const std::vector<EmissiveTriangle>& all = snapshot.emitters->triangles;
+  const std::vector<EmissiveTriangle>& all = snapshot.light_table->triangles;
   const EmissiveTriangle& triangle = all[size_t(u(*random) * float(all.size()))];
   const float root = std::sqrt(u(*random));
   Hit hit;
   hit.instance = triangle.instance;
   hit.triangle = triangle.triangle;
   hit.barycentric = Vec2(1.0f - root, u(*random) * root);
-  const EmitterPoint point = emitter_of_surface(snapshot, snapshot.surface_point(hit));
-  const EmitterView view = view_emitter(snapshot, point, receiver);
+  const LightPoint point = light_point_of_surface(snapshot, snapshot.surface_point(hit));
+  const LightEvaluation view = evaluate_light(snapshot, point, receiver);
   const double cosine = std::max(double(glm::dot(receiver.normal, view.direction)), 0.0);
   return view.radiance.x * cosine * double(view.cosine) * double(triangle.area) * double(all.size()) /
          (double(view.distance) * double(view.distance));
@@ -312,7 +312,7 @@ double by_uniform_choice(const Snapshot& snapshot, const Receiver& receiver, std
 TEST(E4_ManyLights, HundredThousandTrianglesAreBetterChosenThanUniformly) {
   std::mt19937 random(18);
   const auto snapshot = shining_balls(&random);
-  ASSERT_GE(snapshot->emitters->triangles.size(), 100000u);
+  ASSERT_GE(snapshot->light_table->triangles.size(), 100000u);
   std::uniform_real_distribution<float> x(-5.0f, 5.0f), u(0.0f, 0.9999999f);
   double tree = 0.0, uniform = 0.0, ratio = 0.0;
   constexpr int kReceivers = 10;
@@ -320,10 +320,10 @@ TEST(E4_ManyLights, HundredThousandTrianglesAreBetterChosenThanUniformly) {
     const Receiver receiver{Vec3(x(random), x(random), 0.0f), Vec3(0, 0, 1), false};
     Spread by_tree, by_chance;
     for (int i = 0; i < 10000; ++i) {
-      EmitterPoint point;
-      EmitterView view;
+      LightPoint point;
+      LightEvaluation view;
       const Vec2 at(u(random), u(random));
-      sample_emitter(*snapshot, receiver, u(random), at, &point, &view);
+      sample_light_point(*snapshot, receiver, u(random), at, &point, &view);
       by_tree.add(view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0);
     }
     for (int i = 0; i < 100000; ++i) by_chance.add(by_uniform_choice(*snapshot, receiver, &random));

@@ -114,7 +114,7 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
 TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> exponent(-8.0f, 8.0f), uniform;
-  int blocked = 0, asked = 0;
+  int blocked = 0, requested = 0;
   for (int i = 0; i < 1000; ++i) {
     const float size = std::pow(10.0f, exponent(random));
     Soup floor, light;
@@ -133,16 +133,16 @@ TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
       const float root = std::sqrt(uniform(random));
       hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
       const SurfacePoint point = snapshot->surface_point(hit);
-      EmitterPoint emitter;
-      EmitterView view;
+      LightPoint light_point;
+      LightEvaluation view;
       const float choice = uniform(random), u = uniform(random);
-      sample_emitter(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)), &emitter, &view);
-      if (emitter.kind == EmitterKind::None || !(view.pdf > 0.0f)) continue;
-      ++asked;
-      blocked += snapshot->occluded(ray_to_emitter(offset_origin(point, view.direction), point, emitter, view));
+      sample_light_point(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)), &light_point, &view);
+      if (light_point.kind == LightKind::None || !(view.pdf > 0.0f)) continue;
+      ++requested;
+      blocked += snapshot->occluded(ray_to_light(offset_origin(point, view.direction), point, light_point, view));
     }
   }
-  EXPECT_GT(asked, 50000);
+  EXPECT_GT(requested, 50000);
   EXPECT_EQ(blocked, 0);
 }
 
@@ -166,7 +166,7 @@ std::vector<Ray> make_rays(int count, int broken) {
 
 // CPU seconds of tracing them, the least of some rounds; hits: of one round.
 double time_of(const Snapshot& snapshot, const std::vector<Ray>& rays, int* hits) {
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (int round = 0; round < 5; ++round) {
     *hits = 0;
     const uint64_t began = thread_cpu_nanoseconds();
@@ -174,9 +174,9 @@ double time_of(const Snapshot& snapshot, const std::vector<Ray>& rays, int* hits
       Hit hit;
       *hits += snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &hit) || snapshot.occluded(ray);
     }
-    least = std::min(least, 1e-9 * double(thread_cpu_nanoseconds() - began));
+    minimum = std::min(minimum, 1e-9 * double(thread_cpu_nanoseconds() - began));
   }
-  return least;
+  return minimum;
 }
 
 TEST(D4_BrokenRays, AreMissesAndCheap) {

@@ -20,17 +20,17 @@ using gradus::testing::ChiSquareResult;
 double density(const Snapshot& snapshot, const Receiver& receiver, const Vec3& direction) {
   double sum = 0.0;
   const Ray ray{receiver.position, 0.0f, direction, kInfinity};
-  std::vector<LampHit> hits;
-  intersect_lamps(snapshot, ray, &hits);
-  for (const LampHit& met : hits) sum += emitter_pdf(snapshot, met.point, receiver);
-  sum += emitter_pdf(snapshot, emitter_of_world(snapshot, direction), receiver);
+  std::vector<LightHit> hits;
+  intersect_lights(snapshot, ray, &hits);
+  for (const LightHit& met : hits) sum += light_point_pdf(snapshot, met.point, receiver);
+  sum += light_point_pdf(snapshot, light_point_of_world(snapshot, direction), receiver);
   // All surfaces on the ray: light sampling does not know which is in front.
   Ray rest = ray;
   Hit hit;
   for (int i = 0; i < 16 && snapshot.intersect(rest, GRADUS_VISIBLE_CAMERA, &hit); ++i) {
     const SurfacePoint point = snapshot.surface_point(hit);
-    const EmitterPoint emitter = emitter_of_surface(snapshot, point);
-    if (emitter.kind != EmitterKind::None) sum += emitter_pdf(snapshot, emitter, receiver);
+    const LightPoint light_point = light_point_of_surface(snapshot, point);
+    if (light_point.kind != LightKind::None) sum += light_point_pdf(snapshot, light_point, receiver);
     rest.origin = offset_origin(point, direction);
   }
   return sum;
@@ -38,11 +38,11 @@ double density(const Snapshot& snapshot, const Receiver& receiver, const Vec3& d
 
 void expect_matching(const Snapshot& snapshot, const Receiver& receiver, const Vec3& axis, uint32_t seed) {
   const auto sample = [&](const Vec2& u, const Vec2& v, Vec3* direction) {
-    EmitterPoint point;
-    EmitterView sampled_view;
-    sample_emitter(snapshot, receiver, v.x, u, &point, &sampled_view);
-    if (point.kind == EmitterKind::None) return false;
-    const EmitterView view = view_emitter(snapshot, point, receiver);
+    LightPoint point;
+    LightEvaluation sampled_view;
+    sample_light_point(snapshot, receiver, v.x, u, &point, &sampled_view);
+    if (point.kind == LightKind::None) return false;
+    const LightEvaluation view = evaluate_light(snapshot, point, receiver);
     *direction = view.direction;
     return view.pdf > 0.0f;
   };
@@ -162,7 +162,7 @@ TEST(A3_EnvironmentSampling, SkyWithSun) {
     TestScene scene;
     set_sky(&scene, size, elevation);
     const auto snapshot = scene.commit();
-    ASSERT_EQ(snapshot->emitters->world.sun_count(), 1u);
+    ASSERT_EQ(snapshot->light_table->world.sun_count(), 1u);
     const Vec3 axis = snapshot->materials[snapshot->world_material]->suns[0].direction;
     for (uint32_t i = 0; i < 4; ++i) {
       SCOPED_TRACE(i);
@@ -179,10 +179,10 @@ void expect_light(const Snapshot& snapshot, float noise) {
   constexpr int kCount = 20000;
   double sum = 0.0, squares = 0.0, grid = 0.0;
   for (int i = 0; i < kCount; ++i) {
-    EmitterPoint point;
-    EmitterView view;
+    LightPoint point;
+    LightEvaluation view;
     const Vec2 u(uniform(random), uniform(random));
-    sample_emitter(snapshot, receiver, uniform(random), u, &point, &view);
+    sample_light_point(snapshot, receiver, uniform(random), u, &point, &view);
     const double x = view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0;
     sum += x;
     squares += x * x;
@@ -208,7 +208,7 @@ TEST(A3_EnvironmentSampling, SunBehindAStretchedMappingIsFoundByTheMap) {
   TestScene scene;
   set_sky(&scene, 0.0095f, 0.6f, 1.001f);
   const auto snapshot = scene.commit();
-  EXPECT_EQ(snapshot->emitters->world.sun_count(), 0u);
+  EXPECT_EQ(snapshot->light_table->world.sun_count(), 0u);
   expect_light(*snapshot, 4.0f);
 }
 

@@ -18,11 +18,11 @@ double irradiance(const Snapshot& snapshot, const Receiver& receiver, int count 
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
     const float choice = uniform(random), x = uniform(random);
-    EmitterPoint point;
-    EmitterView sampled_view;
-    sample_emitter(snapshot, receiver, choice, Vec2(x, uniform(random)), &point, &sampled_view);
-    if (point.kind == EmitterKind::None) continue;
-    const EmitterView view = view_emitter(snapshot, point, receiver);
+    LightPoint point;
+    LightEvaluation sampled_view;
+    sample_light_point(snapshot, receiver, choice, Vec2(x, uniform(random)), &point, &sampled_view);
+    if (point.kind == LightKind::None) continue;
+    const LightEvaluation view = evaluate_light(snapshot, point, receiver);
     const float cosine = glm::dot(receiver.normal, view.direction);
     if (view.pdf > 0.0f && cosine > 0.0f) sum += view.radiance.x * cosine / view.pdf;
   }
@@ -140,7 +140,7 @@ TEST(LightUnits, AreaIsDarkFromBehind) {
   EXPECT_EQ(irradiance_of(light, {Vec3(0.0f), Vec3(0, 0, -1), false}), 0.0);
 }
 
-// Flux through a hemisphere around a small lamp does not depend on the spread.
+// Flux through a hemisphere around a small light does not depend on the spread.
 TEST(LightUnits, SpreadKeepsTheFlux) {
   for (const float spread : {0.5f, 2.0f, kPi}) {
     GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, kDown, Rgb(1.0f));

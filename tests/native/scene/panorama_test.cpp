@@ -42,7 +42,7 @@ GradusCamera make_camera(const Projection& p, const Mat4& pose = Mat4(1.0f)) {
   const bool bent = p.fov == 2.5f;
   const float straight[5] = {-1.17e-5f, -0.019988737f, -3.3525e-6f, 3.0993e-6f, -2.61e-8f}, curved[5] = {0.01f, -0.1f, 0.001f, 0, 0};
   std::copy_n(bent ? curved : straight, 5, camera.fisheye_polynomial);
-  set_at_rest(&camera, p.window, pose);
+  set_static(&camera, p.window, pose);
   return camera;
 }
 
@@ -119,9 +119,9 @@ TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
     const bool at_pole = std::fabs(relative.y) > 0.99f || relative.z > 0.99f;  // where a pixel is no larger than rounding
     Vec2 back;
     ASSERT_TRUE(camera.project(ray.origin + 7.0f * ray.direction, Moment::Now, &back));
-    EXPECT_LT(glm::length(camera.way(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
+    EXPECT_LT(glm::length(camera.film_displacement(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
     ASSERT_TRUE(camera.project_direction(ray.direction, Moment::Now, &back));
-    EXPECT_LT(glm::length(camera.way(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
+    EXPECT_LT(glm::length(camera.film_displacement(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
     EXPECT_NEAR(camera.depth(ray.origin + ray.direction * 7.0f, ray.time), 7.0f, 1e-5f);
     EXPECT_EQ(ray.t_min, 0.1f);
     EXPECT_EQ(ray.t_max, 1000.0f);
@@ -195,8 +195,8 @@ TEST(PanoramaEdges, MotionTakesTheShortestWayAround) {
   ASSERT_TRUE(camera.project(Vec3(0.01f, 0, 1), Moment::Now, &from));
   ASSERT_TRUE(camera.project(Vec3(-0.01f, 0, 1), Moment::Now, &to));
   EXPECT_GT(from.x - to.x, 600.0f);
-  EXPECT_NEAR(camera.way(from, to).x, 0.02 * kWidth / kTau, 0.01);
-  EXPECT_NEAR(camera.way(to, from).x, -0.02 * kWidth / kTau, 0.01);
+  EXPECT_NEAR(camera.film_displacement(from, to).x, 0.02 * kWidth / kTau, 0.01);
+  EXPECT_NEAR(camera.film_displacement(to, from).x, -0.02 * kWidth / kTau, 0.01);
 }
 
 TEST(PanoramaEdges, LongitudesAreThoseOfTheWindow) {
@@ -251,10 +251,10 @@ TEST(SphericalStereo, PointsOfRaysAppearWhereTheRaysLeft) {
           if (is_none(ray)) continue;
           Vec2 back;
           ASSERT_TRUE(camera.project(ray.origin + 5.0f * ray.direction, Moment::Now, &back));
-          EXPECT_LT(glm::length(camera.way(film, back)), 0.05f)
+          EXPECT_LT(glm::length(camera.film_displacement(film, back)), 0.05f)
               << projection << " " << convergence << " " << merge << " " << film.x << " " << film.y;
           ASSERT_TRUE(camera.project_direction(ray.direction, Moment::Now, &back));
-          EXPECT_LT(glm::length(camera.way(film, back)), 0.05f)
+          EXPECT_LT(glm::length(camera.film_displacement(film, back)), 0.05f)
               << projection << " " << convergence << " " << merge << " " << film.x << " " << film.y;
         }
       }

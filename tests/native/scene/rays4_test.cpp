@@ -53,30 +53,30 @@ TEST_F(Rays4Test, AreEmptyBetweenPointsThatRoundingCannotTellApart) {
 }
 
 TEST_F(Rays4Test, ReachEmittersOfAllKindsAsOneShadowRayDoes) {
-  EmitterPoint emitters[3];
-  emitters[0].kind = EmitterKind::Lamp;
-  emitters[0].normal = Vec3(0, 0, -1);
-  emitters[1].kind = EmitterKind::Triangle;
-  emitters[1].error = 1e-6f;
-  emitters[1].normal = Vec3(0, 0, 1);
-  emitters[2].kind = EmitterKind::World;
-  emitters[2].direction = Vec3(0.6f, 0.0f, 0.8f);
-  for (EmitterPoint& emitter : emitters) {
-    emitter.position = Vec3(2.0f, 0.5f, 0.25f);
+  LightPoint light_points[3];
+  light_points[0].kind = LightKind::AnalyticLight;
+  light_points[0].normal = Vec3(0, 0, -1);
+  light_points[1].kind = LightKind::Triangle;
+  light_points[1].error = 1e-6f;
+  light_points[1].normal = Vec3(0, 0, 1);
+  light_points[2].kind = LightKind::World;
+  light_points[2].direction = Vec3(0.6f, 0.0f, 0.8f);
+  for (LightPoint& light_point : light_points) {
+    light_point.position = Vec3(2.0f, 0.5f, 0.25f);
     SurfacePoint from[4];
-    EmitterView view[4];
+    LightEvaluation view[4];
     for (int i = 0; i < 4; ++i) {
       from[i] = point(vector());
-      view[i].distance = glm::length(emitter.position - from[i].position);
-      view[i].direction = emitter.at_infinity() ? emitter.direction : (emitter.position - from[i].position) / view[i].distance;
+      view[i].distance = glm::length(light_point.position - from[i].position);
+      view[i].direction = light_point.at_infinity() ? light_point.direction : (light_point.position - from[i].position) / view[i].distance;
     }
     const Points4 points = gather(from[0], from[1], from[2], from[3], 0.0f);
     const Lanes3 direction = lanes(view[0].direction, view[1].direction, view[2].direction, view[3].direction);
     const Lanes distance{view[0].distance, view[1].distance, view[2].distance, view[3].distance};
-    const Rays4 rays = rays_to_emitter(offset_origins(points, direction), points, direction, distance, emitter);
+    const Rays4 rays = rays_to_light(offset_origins(points, direction), points, direction, distance, light_point);
     for (int i = 0; i < 4; ++i) {
-      const Ray one = ray_to_emitter(offset_origin(from[i], view[i].direction), from[i], emitter, view[i]);
-      if (emitter.at_infinity()) {
+      const Ray one = ray_to_light(offset_origin(from[i], view[i].direction), from[i], light_point, view[i]);
+      if (light_point.at_infinity()) {
         EXPECT_EQ(rays.t_max[i], kInfinity);
         EXPECT_EQ(lane(rays.direction, i), one.direction);
       } else {

@@ -40,9 +40,9 @@ std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
   scene.instance(1, place * sized);
   scene.instance(2, place * translation(Vec3(0.5f, 0, 1.2f) * scale) * sized);
   scene.instance(2, place * translation(Vec3(-1.5f, -1, 0.5f) * scale) * scaling(Vec3(0.5f * scale)));
-  GradusLight lamp = make_light(GRADUS_LIGHT_RECTANGLE, place * translation(Vec3(1, 1, 4) * scale), Rgb(1.0f));
-  lamp.size[0] = lamp.size[1] = scale;
-  scene.lights({lamp});
+  GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, place * translation(Vec3(1, 1, 4) * scale), Rgb(1.0f));
+  light.size[0] = light.size[1] = scale;
+  scene.lights({light});
   scene.scene.set_camera(look_down(place, scale));
   const auto snapshot = scene.commit();
   const Camera camera(snapshot->camera, 64, 64);
@@ -56,12 +56,12 @@ std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
     if (!snapshot->intersect(camera.ray({Vec2(x, y) + jitter, Vec2(0.5f)}), GRADUS_VISIBLE_CAMERA, &hit)) continue;
     const SurfacePoint point = snapshot->surface_point(hit);
     const Receiver receiver{point.position, point.geometric_normal, false};
-    EmitterView view;
-    EmitterPoint emitter;
-    sample_emitter(*snapshot, receiver, choice, u, &emitter, &view);
+    LightEvaluation view;
+    LightPoint light_point;
+    sample_light_point(*snapshot, receiver, choice, u, &light_point, &view);
     const float cosine = glm::dot(view.direction, receiver.normal);
-    if (emitter.kind == EmitterKind::None || cosine <= 0.0f || view.pdf <= 0.0f) continue;
-    if (snapshot->occluded(ray_to_emitter(offset_origin(point, view.direction), point, emitter, view))) continue;
+    if (light_point.kind == LightKind::None || cosine <= 0.0f || view.pdf <= 0.0f) continue;
+    if (snapshot->occluded(ray_to_light(offset_origin(point, view.direction), point, light_point, view))) continue;
     blocks[size_t(y / 8 * 8 + x / 8)] += double(view.radiance.x * cosine / view.pdf) / (64 * 16);
   }
   return blocks;
@@ -90,7 +90,7 @@ TEST(D5_Scale, DirectLightIsTheSame) {
 TEST(D6_FarAway, DirectLightIsTheSame) {
   for (const bool instanced : {false, true}) {
     const std::vector<double> reference = render(1.0f, Vec3(0.0f), instanced);
-    // The matrices come in float: at 1e5 objects and lamps stand on a grid of 8 mm, which moves shadow edges.
+    // The matrices come in float: at 1e5 objects and lights stand on a grid of 8 mm, which moves shadow edges.
     expect_same(reference, render(1.0f, Vec3(1e5f, -1e5f, 1e5f), instanced), 6);
     for (const double block : render(1.0f, Vec3(1e7f, 1e7f, -1e7f), instanced)) EXPECT_TRUE(std::isfinite(block));
   }

@@ -11,7 +11,7 @@
 namespace gradus::test {
 namespace {
 
-constexpr float kOffset = 0.3f;
+constexpr float kReplayed = 0.3f;
 
 std::shared_ptr<const Snapshot> ball(float offset, bool smooth, const Mat4& place = Mat4(1.0f)) {
   PathScene scene;
@@ -42,7 +42,7 @@ Vec3 grazing(const Vec3& normal, float side = 1.0f) {
 }
 
 TEST(ShadowTerminator, ALightBehindTheFacetIsSeenWhereTheSmoothSurfaceSeesIt) {
-  const auto scene = ball(kOffset, true);
+  const auto scene = ball(kReplayed, true);
   int behind = 0;
   for (const SurfacePoint& p : points(*scene)) {
     for (const float side : {-1.0f, 1.0f}) {
@@ -59,7 +59,7 @@ TEST(ShadowTerminator, ALightBehindTheFacetIsSeenWhereTheSmoothSurfaceSeesIt) {
 
 // The bulge is as high as the sphere over its facets, within a factor of two.
 TEST(ShadowTerminator, RaysBeginOnTheSphere) {
-  const auto scene = ball(kOffset, true);
+  const auto scene = ball(kReplayed, true);
   for (const SurfacePoint& p : points(*scene)) {
     const float height = glm::length(shadow_origin(*scene, p, grazing(p.shading_normal))) - glm::length(p.position);
     const float sphere = 1.0f - glm::length(p.position);
@@ -69,7 +69,7 @@ TEST(ShadowTerminator, RaysBeginOnTheSphere) {
 }
 
 TEST(ShadowTerminator, NothingChangesFarFromItOrOnFlatFacesOrWithoutOffset) {
-  const auto smooth = ball(kOffset, true), flat = ball(kOffset, false), off = ball(0.0f, true);
+  const auto smooth = ball(kReplayed, true), flat = ball(kReplayed, false), off = ball(0.0f, true);
   for (const SurfacePoint& p : points(*smooth)) EXPECT_EQ(shadow_origin(*smooth, p, p.shading_normal), offset_origin(p, p.shading_normal));
   for (const auto& scene : {flat, off}) {
     for (const SurfacePoint& p : points(*scene)) {
@@ -86,7 +86,7 @@ TEST(ShadowTerminator, InstancesAreLiftedOutwards) {
   place[0] = Vec4(-2.0f, 0.3f, 0.0f, 0.0f);
   place[1] = Vec4(0.0f, 0.5f, 0.4f, 0.0f);
   place[3] = Vec4(30.0f, -20.0f, 10.0f, 1.0f);
-  const auto scene = ball(kOffset, true, place);
+  const auto scene = ball(kReplayed, true, place);
   const auto all = points(*scene, Vec3(30.0f, -20.0f, 10.0f) - scene->origin);
   ASSERT_GT(all.size(), 300u);
   for (const SurfacePoint& p : all) {
@@ -108,11 +108,11 @@ TEST(ShadowTerminator, BlackFacetsAtTheTerminatorOfACoarseBall) {
     scene.light(make_light(GRADUS_LIGHT_SUN, from_the_right, Rgb(1.0f)));
     scene.camera(Vec3(0, 0, 4), Vec3(0.0f), 1.6f, GRADUS_CAMERA_ORTHOGRAPHIC);
     const IntegratorContext context = scene.context(test_settings(32, 32));
-    Frame frame = make_test_frame(context.settings, false);
-    sample_frame(*make_path_integrator(context), 0, 16, &frame);
-    return read_images(frame, 0).primal;
+    Film film = make_test_film(context.settings, false);
+    sample_film(*make_path_integrator(context), 0, 16, &film);
+    return read_images(film, 0).primal;
   };
-  const auto fine = image(0.0f, 200), coarse = image(0.0f, 5), lifted = image(kOffset, 5);
+  const auto fine = image(0.0f, 200), coarse = image(0.0f, 5), lifted = image(kReplayed, 5);
   int black = 0, black_lifted = 0, lit_behind = 0;
   for (size_t i = 0; i < fine.size(); ++i) {
     black += fine[i] > 0.005f && coarse[i] == 0.0f;

@@ -58,16 +58,16 @@ TEST_F(Walls, OpaqueSceneNeedsNoProgram) {
   EXPECT_EQ(snapshot->transmittance(kUp, 8), Rgb(0.0f));
 }
 
-TEST(Lamps, AProgramMultipliesTheStrength) {
+TEST(AnalyticLights, AProgramMultipliesTheStrength) {
   TestScene scene;
   scene.material(4, MaterialDesc(GRADUS_OP_EMISSION, Rgb(0.5f, 2.0f, 1.0f), 3.0f));
   GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 2)), Rgb(1.0f));
   light.material = 4;
   scene.lights({light});
   const auto snapshot = scene.commit();
-  EmitterPoint point;
-  EmitterView view;
-  sample_emitter(*snapshot, {Vec3(0.0f), Vec3(0, 0, 1), false}, 0.5f, Vec2(0.5f), &point, &view);
+  LightPoint point;
+  LightEvaluation view;
+  sample_light_point(*snapshot, {Vec3(0.0f), Vec3(0, 0, 1), false}, 0.5f, Vec2(0.5f), &point, &view);
   EXPECT_NEAR(view.radiance.x, 1.5f / 4, 1e-6f);
   EXPECT_NEAR(view.radiance.y, 6.0f / 4, 1e-6f);
 }

@@ -64,7 +64,7 @@ void set_image(TestScene* scene, uint32_t width, uint32_t sun) {
   scene->scene.set_image(kImage, image);
 }
 
-const Distribution2D* map_of(const Snapshot& snapshot) { return snapshot.emitters->world.map(); }
+const Distribution2D* map_of(const Snapshot& snapshot) { return snapshot.light_table->world.map(); }
 
 uint32_t image_map_width(uint32_t image_width) {
   TestScene scene;
@@ -96,8 +96,8 @@ TEST(WorldMap, OfAConstantWorldIsNotMade) {
   scene.world(kWorld);
   const auto snapshot = scene.commit();
   EXPECT_EQ(map_of(*snapshot), nullptr);
-  EXPECT_FLOAT_EQ(snapshot->emitters->world.mean(), 2.0f);
-  EXPECT_FLOAT_EQ(snapshot->emitters->world.density(Vec3(0, 0, 1), Vec2(0.0f), Receiver()), 0.25f * kInvPi);
+  EXPECT_FLOAT_EQ(snapshot->light_table->world.mean(), 2.0f);
+  EXPECT_FLOAT_EQ(snapshot->light_table->world.density(Vec3(0, 0, 1), Vec2(0.0f), Receiver()), 0.25f * kInvPi);
 }
 
 TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
@@ -112,7 +112,7 @@ TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
   for (int i = 0; i < 1000; ++i) {
     Vec2 place;
-    const Vec3 d = snapshot->emitters->world.sample(Receiver(), {uniform(random), uniform(random)}, &place);
+    const Vec3 d = snapshot->light_table->world.sample(Receiver(), {uniform(random), uniform(random)}, &place);
     hits += shade_world(*snapshot, d, RayState()).x > 1.0f;
   }
   // The sun gives 5000 of about 5800 parts of the light.

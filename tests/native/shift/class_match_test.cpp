@@ -52,7 +52,7 @@ TEST(ClassMatch, LooksAlikeFromBothEnds) {
       const bool mirrors = (i == 2 && j == 9) || (i == 9 && j == 2);  // glass that reflects all is one
       EXPECT_EQ(same_classes(all[i], all[j]), i == j || mirrors) << i << " " << j;
       for (float u = 0.0f; u < 1.0f; u += 1.0f / 64) {
-        EXPECT_EQ(choose_alike(all[i], all[j], u), choose_alike(all[j], all[i], u)) << i << " " << j << " " << u;
+        EXPECT_EQ(choose_same_class(all[i], all[j], u), choose_same_class(all[j], all[i], u)) << i << " " << j << " " << u;
       }
     }
   }
@@ -65,8 +65,8 @@ TEST(ClassMatch, SharesTheOverlapOfTheIntervals) {
   const float shared = polished.class_probability(ScatterClass::Diffuse);
   ASSERT_GT(shared, 0.1f);
   ASSERT_LT(shared, 0.9f);
-  EXPECT_TRUE(choose_alike(matte, polished, 0.99f * shared));
-  EXPECT_FALSE(choose_alike(matte, polished, 1.01f * shared));
+  EXPECT_TRUE(choose_same_class(matte, polished, 0.99f * shared));
+  EXPECT_FALSE(choose_same_class(matte, polished, 1.01f * shared));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using DVec3 = glm::dvec3;
 
 enum class Kind { Ball, FacingDisk, Rectangle, Ellipse, Spot, Mesh, Count };
 
-void add_emitter(Kind kind, test::PathScene* scene) {
+void add_emitting_object(Kind kind, test::PathScene* scene) {
   if (kind == Kind::Mesh) {
     test::Surface light;
     light.emission = Rgb(3.0f);
@@ -38,7 +38,7 @@ struct Seen {
 
 DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
 
-Seen see(const Vec3& receiver, const EmitterView& view, const Vec3& normal, bool facing) {
+Seen see(const Vec3& receiver, const LightEvaluation& view, const Vec3& normal, bool facing) {
   const DVec3 from = to_double(receiver);
   return {from, from + double(view.distance) * to_double(view.direction),
           glm::normalize(facing ? from - DVec3(0.2, 0.1, 0.3) : to_double(normal))};
@@ -53,11 +53,11 @@ double solid_angle_of_area(const Seen& seen) {
   return glm::length(glm::cross((direction(h * s) - direction(-h * s)) / (2.0 * h), (direction(h * t) - direction(-h * t)) / (2.0 * h)));
 }
 
-class B4_EmitterCopy : public ::testing::TestWithParam<Kind> {};
+class B4_LightPointCopy : public ::testing::TestWithParam<Kind> {};
 
-TEST_P(B4_EmitterCopy, JacobianAndWayBack) {
+TEST_P(B4_LightPointCopy, JacobianAndWayBack) {
   test::PathScene scene;
-  add_emitter(GetParam(), &scene);
+  add_emitting_object(GetParam(), &scene);
   scene.camera(Vec3(0, 0, 3), Vec3(0), 1.0f);
   const IntegratorContext context = scene.context(test::test_settings(4, 4));
   const Snapshot& snapshot = *context.snapshot;
@@ -71,12 +71,12 @@ TEST_P(B4_EmitterCopy, JacobianAndWayBack) {
   for (int tries = 0; done < shifts && tries < 20 * shifts; ++tries) {
     const Receiver base{Vec3(0.2f, 0.1f, 0.3f) + 2.0f * direction(), Vec3(0.0f), true};
     const Receiver offset{base.position + 0.1f * direction(), Vec3(0.0f), true};
-    EmitterView there;
+    LightEvaluation there;
     const float choice = random.get();
-    EmitterPoint point;
-    sample_emitter(snapshot, base, choice, random.get2(), &point, &there);
-    const EmitterView here = view_emitter(snapshot, point, base), moved = view_emitter(snapshot, point, offset);
-    if (point.kind == EmitterKind::None || is_black(here.radiance) || is_black(moved.radiance)) continue;
+    LightPoint point;
+    sample_light_point(snapshot, base, choice, random.get2(), &point, &there);
+    const LightEvaluation here = evaluate_light(snapshot, point, base), moved = evaluate_light(snapshot, point, offset);
+    if (point.kind == LightKind::None || is_black(here.radiance) || is_black(moved.radiance)) continue;
     if (!(here.cosine > 1e-3f) || !(moved.cosine > 1e-3f)) continue;
     ++done;
     const bool facing = GetParam() == Kind::FacingDisk;
@@ -93,7 +93,7 @@ TEST_P(B4_EmitterCopy, JacobianAndWayBack) {
   EXPECT_GE(same_point, 0.999 * done);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, B4_EmitterCopy,
+INSTANTIATE_TEST_SUITE_P(All, B4_LightPointCopy,
                          ::testing::Values(Kind::Ball, Kind::FacingDisk, Kind::Rectangle, Kind::Ellipse, Kind::Spot, Kind::Mesh));
 
 }  // namespace

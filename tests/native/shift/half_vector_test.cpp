@@ -263,9 +263,9 @@ TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
     const float width = 0.1f * float(1 + i % 9);
     EXPECT_EQ(is_parallax_below(x, y, z, width), is_parallax_below(y, x, z, width));
     EXPECT_EQ(is_short_edge(x, y, z), is_short_edge(y, x, z));
-    EXPECT_EQ(looks_alike(x, y, z, width), looks_alike(y, x, z, width));
+    EXPECT_EQ(looks_similar(x, y, z, width), looks_similar(y, x, z, width));
     is_short += is_short_edge(x, y, z) ? 1 : 0;
-    alike += looks_alike(x, y, z, width) ? 1 : 0;
+    alike += looks_similar(x, y, z, width) ? 1 : 0;
   }
   EXPECT_GT(is_short, kCases / 10);
   EXPECT_GT(alike, kCases / 10);
@@ -274,9 +274,9 @@ TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
 
 TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0), z(0, 0, 2);
-  EXPECT_TRUE(looks_alike(x, y, z, 0.06f));
-  EXPECT_FALSE(looks_alike(x, y, z, 0.04f));
-  EXPECT_FALSE(looks_alike(x, y, z, 0.0f));  // Dirac
+  EXPECT_TRUE(looks_similar(x, y, z, 0.06f));
+  EXPECT_FALSE(looks_similar(x, y, z, 0.04f));
+  EXPECT_FALSE(looks_similar(x, y, z, 0.0f));  // Dirac
   EXPECT_FALSE(is_short_edge(x, y, z));
   EXPECT_TRUE(is_short_edge(x, y, Vec3(0, 0, 0.1f)));
   EXPECT_TRUE(is_short_edge(x, y, x));

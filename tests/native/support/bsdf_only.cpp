@@ -6,16 +6,16 @@ namespace gradus::test {
 
 namespace {
 
-Rgb lamps_between(const Snapshot& scene, const Ray& ray) {
+Rgb lights_between(const Snapshot& scene, const Ray& ray) {
   Rgb sum(0.0f);
-  std::vector<LampHit> hits;
-  intersect_lamps(scene, ray, &hits);
-  for (const LampHit& hit : hits) sum += view_emitter(scene, hit.point, Receiver{ray.origin, Vec3(0.0f), true}).radiance;
+  std::vector<LightHit> hits;
+  intersect_lights(scene, ray, &hits);
+  for (const LightHit& hit : hits) sum += evaluate_light(scene, hit.point, Receiver{ray.origin, Vec3(0.0f), true}).radiance;
   return sum;
 }
 
 // A direction by all classes; false: absorbed. factor: f·|cos| over its density.
-bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, Vec3* wi, Rgb* factor, std::string* word) {
+bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, Vec3* wi, Rgb* factor, std::string* path) {
   float u = random->get();
   for (int k = 0; k < kScatterClasses; ++k) {
     const auto c = static_cast<ScatterClass>(k);
@@ -25,7 +25,7 @@ bool scatter(const Closures& closures, const Vec3& wo, testing::Random* random, 
       const float lobe = random->get();
       if (!closures.sample(c, wo, lobe, random->get2(), &sample) || !(sample.pdf > 0.0f)) return false;
       *wi = sample.wi;
-      *word += "DRT"[k];
+      *path += "DRT"[k];
       *factor = sample.value / (probability * sample.pdf);
       return true;
     }
@@ -42,20 +42,20 @@ void bsdf_only_path(const IntegratorContext& context, int x, int y, testing::Ran
   const Vec2 lens = random->get2();
   Ray ray = context.camera.ray({film, lens, scene.shutter.sample(random->get())});
   Rgb throughput(1.0f);
-  std::string word = "E";
+  std::string path = "E";
   for (uint32_t scatterings = 0;; ++scatterings) {
     Hit hit;
     const bool found = scene.intersect(ray, GRADUS_VISIBLE_ALL, &hit);
     if (found) ray.t_max = hit.t;
-    found_light(word + "L", throughput * lamps_between(scene, ray));
-    if (!found) return found_light(word + "L", throughput * shade_world(scene, ray.direction, RayState{}));
+    found_light(path + "L", throughput * lights_between(scene, ray));
+    if (!found) return found_light(path + "L", throughput * shade_world(scene, ray.direction, RayState{}));
     const SurfacePoint point = scene.surface_point(hit);
     ShadeResult shade;
     shade_surface(scene, point, -ray.direction, RayState{}, context.settings.roughness_threshold, &shade);
-    found_light(word + "L", throughput * shade.emission);
+    found_light(path + "L", throughput * shade.emission);
     Vec3 wi;
     Rgb factor;
-    if (scatterings > context.settings.max_bounces || !scatter(shade.closures, -ray.direction, random, &wi, &factor, &word)) return;
+    if (scatterings > context.settings.max_bounces || !scatter(shade.closures, -ray.direction, random, &wi, &factor, &path)) return;
     throughput *= factor;
     ray = spawn_ray(point, wi);
   }

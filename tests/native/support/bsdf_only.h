@@ -14,7 +14,7 @@ namespace gradus::test {
 Rgb bsdf_only_sample(const IntegratorContext& context, int x, int y, testing::Random* random);
 
 // The same, light by light: the path's word (contract 3.1), and what it adds.
-using FoundLight = std::function<void(const std::string& word, const Rgb& light)>;
+using FoundLight = std::function<void(const std::string& path, const Rgb& light)>;
 void bsdf_only_path(const IntegratorContext& context, int x, int y, testing::Random* random, const FoundLight& found_light);
 
 }  // namespace gradus::test

@@ -39,7 +39,7 @@ class DifferenceStatistics {
   }
   // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), t of each (A5's rule), and of all of them
   // together.
-  void check(const char* what, int least = 50) const {
+  void check(const char* what, int minimum = 50) const {
     double sum_t2 = 0.0;
     int used = 0;
     std::vector<double> p_values;
@@ -52,7 +52,7 @@ class DifferenceStatistics {
         ++used;
       }
     }
-    ASSERT_GT(used, least) << what;
+    ASSERT_GT(used, minimum) << what;
     const double expected = double(count_ - 1) / double(count_ - 3);
     EXPECT_LT(sum_t2 / used, 1.6 * expected) << what;
     const auto off = std::count_if(p_values.begin(), p_values.end(), [&](double p) { return p < sidak(p_values.size()); });

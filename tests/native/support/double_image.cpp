@@ -27,7 +27,7 @@ class DoubleObserver : public NoObserver {
     radiance = DVec3(0.0);
     throughput_ = DVec3(1.0);
   }
-  void lamp(const RaySource&, const Contribution& c, const LampSighting& lamp) { add(to_double(lamp.weight) * found(c)); }
+  void light_crossing(const RaySource&, const Contribution& c, const LightCrossing& light_crossing) { add(to_double(light_crossing.weight) * found(c)); }
   void passed(const Segment& segment) { throughput_ *= to_double(segment.weight); }
   void world(const RaySource&, const Contribution& c) { add(found(c)); }
   void emission(const RaySource&, const Contribution& c, const Vertex&) { add(found(c)); }
@@ -68,23 +68,23 @@ double DoubleImage::worst() const {
 
 DoubleImage render_in_double(const IntegratorContext& context, uint32_t samples) {
   const PathContext path(*context.snapshot, context.camera, context.settings);
-  Frame frame = make_test_frame(context.settings, false);
+  Film film = make_test_film(context.settings, false);
   const auto scratch = std::make_unique<PathScratch>();
-  PassRecorder recorder(path, &frame, &frame.counters);
+  PassRecorder recorder(path, &film, &film.counters);
   DoubleObserver observer(path);
-  PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &frame.counters, &observer);
-  std::vector<Sums> sums(size_t(frame.region.area()));
-  const WorkUnit unit{frame.region, 0, samples, nullptr};
+  PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &film.counters, &observer);
+  std::vector<Sums> sums(size_t(film.region.area()));
+  const WorkUnit unit{film.region, 0, samples, nullptr};
   const auto vertices = std::make_unique<CameraVertices>(path);
-  for_each_sample(path, unit, frame, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
+  for_each_sample(path, unit, film, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
     const PathResult& result = tracer.trace(s.sampler, s.film, s.first);
-    add_primal(result, s, unit, &frame, &frame.counters);
+    add_primal(result, s, unit, &film, &film.counters);
     if (!fits(result.radiance[0])) return;
     sums[s.pixel].sum += observer.radiance;
     sums[s.pixel].squares += observer.radiance * observer.radiance;
   });
   DoubleImage result;
-  result.image = read_images(frame, 0).primal;
+  result.image = read_images(film, 0).primal;
   for (size_t i = 0; i < result.image.size(); ++i) {
     const double mean = sums[i / 3].sum[int(i % 3)] / samples;
     const double variance = (sums[i / 3].squares[int(i % 3)] / samples - mean * mean) / std::max(1u, samples - 1);

@@ -174,11 +174,11 @@ void PathScene::camera(const Vec3& from, const Vec3& at, float field, GradusCame
   field_ = field;
 }
 
-void PathScene::open_shutter(std::vector<float> curve, std::vector<Mat4> camera_way) {
+void PathScene::open_shutter(std::vector<float> curve, std::vector<Mat4> camera_motion) {
   camera_desc.shutter_open = -0.5f;
   camera_desc.shutter_close = 0.5f;
   curve_ = std::move(curve);
-  camera_way_ = std::move(camera_way);
+  camera_motion_ = std::move(camera_motion);
 }
 
 IntegratorContext PathScene::context(const GradusSettings& settings) {
@@ -190,7 +190,7 @@ IntegratorContext PathScene::context(const GradusSettings& settings) {
   camera_desc.shutter_curve = curve_.empty() ? nullptr : curve_.data();
   camera_desc.shutter_curve_count = static_cast<uint32_t>(curve_.size());
   camera_keys_.clear();
-  for (const Mat4& m : camera_way_) camera_keys_.push_back(m * glm::make_mat4(camera_desc.matrix));
+  for (const Mat4& m : camera_motion_) camera_keys_.push_back(m * glm::make_mat4(camera_desc.matrix));
   camera_desc.shutter_key_count = static_cast<uint32_t>(camera_keys_.size());
   camera_desc.shutter_matrices = camera_keys_.empty() ? nullptr : &camera_keys_[0][0][0];
   scene.scene.set_camera(camera_desc);
@@ -223,18 +223,18 @@ void sample_at_pixel_centres(GradusSettings* settings) {
   settings->filter_width = 1e-4f;
 }
 
-void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame) {
+void sample_film(const Integrator& integrator, uint32_t first, uint32_t count, Film* film) {
   WorkUnit unit;
-  unit.tile = frame->region;
+  unit.tile = film->region;
   unit.first_sample = first;
   unit.count = count;
   const std::atomic<bool> stop{false};
-  integrator.sample(unit, frame, &frame->counters, stop);
+  integrator.sample(unit, film, &film->counters, stop);
 }
 
-Frame make_test_frame(const GradusSettings& settings, bool gradients, int components) {
+Film make_test_film(const GradusSettings& settings, bool gradients, int components) {
   const Region region{0, 0, static_cast<int32_t>(settings.width), static_cast<int32_t>(settings.height)};
-  return Frame(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, components, gradients);
+  return Film(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, components, gradients);
 }
 
 Surface matte(const Rgb& color) {
@@ -277,15 +277,15 @@ Surface glass(float roughness) {
 
 namespace {
 
-GradusLight point_lamp(const Vec3& position, float radius, float intensity) {
+GradusLight point_light(const Vec3& position, float radius, float intensity) {
   GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(position), Rgb(intensity));
   light.radius = radius;
   return light;
 }
 
 // A ball and a rectangle over a glossy ball.
-void add_lamps_with_extent(PathScene* scene, uint32_t flags, float roughness) {
-  GradusLight ball = point_lamp(Vec3(0.3f, 0.2f, 0.2f), 0.15f, 0.5f);
+void add_lights_with_extent(PathScene* scene, uint32_t flags, float roughness) {
+  GradusLight ball = point_light(Vec3(0.3f, 0.2f, 0.2f), 0.15f, 0.5f);
   ball.flags |= flags;
   scene->light(ball);
   GradusLight area = make_light(GRADUS_LIGHT_RECTANGLE, translation(Vec3(-0.3f, 0.9f, 0.0f)), Rgb(4.0f));
@@ -322,7 +322,7 @@ void build(Scenario scenario, PathScene* scene) {
       scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
       break;
     case Scenario::PointAndSun: {
-      scene->light(point_lamp(Vec3(0.1f, 0.6f, 0.4f), 0.0f, 0.6f));
+      scene->light(point_light(Vec3(0.1f, 0.6f, 0.4f), 0.0f, 0.6f));
       GradusLight sun = make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(1.0f));
       scene->light(sun);
       sun.angle = 0.5f;
@@ -337,11 +337,11 @@ void build(Scenario scenario, PathScene* scene) {
       break;
     case Scenario::GlossyFloor:
       add_ceiling_light(scene, 8.0f, 0.6f);
-      scene->light(point_lamp(Vec3(-0.4f, 0.3f, 0.3f), 0.0f, 0.2f));
+      scene->light(point_light(Vec3(-0.4f, 0.3f, 0.3f), 0.0f, 0.2f));
       break;
     case Scenario::Facets: {  // many directions near the terminator, for lights that both techniques find, one, or the other
       scene->scene.shadow_terminator_offset = 0.4f;
-      add_lamps_with_extent(scene, 0, 0.6f);
+      add_lights_with_extent(scene, 0, 0.6f);
       scene->ball(Vec3(0.5f, -0.6f, 0.4f), 0.35f, scene->material(matte(Rgb(0.6f))), 4, true);
       Surface leaf = matte(Rgb(0.5f));
       leaf.glass = 0.3f;
@@ -374,11 +374,11 @@ void build(Scenario scenario, PathScene* scene) {
       scene->quad(Vec3(-0.7f, -0.7f, 0.4f), Vec3(1.2f, 0, 0.3f), Vec3(0, 1.1f, -0.2f), scene->material(veil));
       break;
     }
-    case Scenario::LampsSeen:
-      add_lamps_with_extent(scene, 0, 0.2f);
+    case Scenario::LightsSeen:
+      add_lights_with_extent(scene, 0, 0.2f);
       break;
-    case Scenario::LampsUnseen:
-      add_lamps_with_extent(scene, GRADUS_LIGHT_NO_MIS, 0.6f);  // light sampling alone is noisy on sharper surfaces
+    case Scenario::LightsUnseen:
+      add_lights_with_extent(scene, GRADUS_LIGHT_NO_MIS, 0.6f);  // light sampling alone is noisy on sharper surfaces
       break;
     case Scenario::Fisheye:  // from within the box; the image circle ends inside of the frame
       add_ceiling_light(scene, 8.0f, 0.6f);

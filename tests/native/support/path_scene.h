@@ -37,7 +37,7 @@ class PathScene {
   // map_size: width of the map that its light is sampled by.
   void world(uint64_t material, uint32_t map_size) { scene.world(material, map_size); }
   // The shutter is open from half a frame before the frame to half a frame after it; curve: empty, all the time.
-  void open_shutter(std::vector<float> curve = {}, std::vector<Mat4> camera_way = {});
+  void open_shutter(std::vector<float> curve = {}, std::vector<Mat4> camera_motion = {});
   // At `from`, looking at `at`, y up; field: width of the frame at distance 1 (orthographic: in metres; panorama: as
   // GradusPanorama says).
   void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
@@ -56,7 +56,7 @@ class PathScene {
   std::vector<GradusLight> lights_;
   uint64_t next_key_ = 1;
   std::vector<float> curve_;
-  std::vector<Mat4> camera_way_;  // times its matrix
+  std::vector<Mat4> camera_motion_;  // times its matrix
   std::vector<Mat4> camera_keys_;
   Vec3 camera_from_ = Vec3(0.0f);
   float field_ = 1.0f;
@@ -68,8 +68,8 @@ GradusSettings test_settings(uint32_t width, uint32_t height);
 void sample_at_pixel_centres(GradusSettings* settings);
 
 // All pixels with samples [first, first + count).
-void sample_frame(const Integrator& integrator, uint32_t first, uint32_t count, Frame* frame);
-Frame make_test_frame(const GradusSettings& settings, bool gradients, int components = 1);
+void sample_film(const Integrator& integrator, uint32_t first, uint32_t count, Film* film);
+Film make_test_film(const GradusSettings& settings, bool gradients, int components = 1);
 
 // An open box with two coloured walls, seen from its open side, and a square light below its ceiling.
 void add_box(PathScene* scene, const Surface& floor);
@@ -89,8 +89,8 @@ enum class Scenario {
   Glass,
   RoughGlass,
   Transparent,
-  LampsSeen,
-  LampsUnseen,
+  LightsSeen,
+  LightsUnseen,
   Facets,
   Fisheye,
   Moving,

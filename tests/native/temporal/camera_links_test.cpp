@@ -88,16 +88,16 @@ GradusCamera camera_of(const CameraType& type, const Mat4& pose, float zoom) {
     const bool is_a_turn = type.is_all_around() && k < 2;
     window[k] = type.window[k] / (is_a_turn ? 1.0f : zoom);
   }
-  set_at_rest(&camera, window, pose);
+  set_static(&camera, window, pose);
   camera.clip_start = 1e-3f;
   camera.clip_end = 1e5f;
   return camera;
 }
 
 // What pixel centres see of a camera at rest, in the world.
-class Film {
+class TestFilm {
  public:
-  Film(const GradusCamera& desc, bool wraps) : wraps_(wraps) {
+  TestFilm(const GradusCamera& desc, bool wraps) : wraps_(wraps) {
     const Camera camera(desc, kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) rays_.push_back(camera.ray({Vec2(float(x) + 0.5f, float(y) + 0.5f)}));
@@ -113,11 +113,11 @@ class Film {
   // The pixel whose ray passes nearest to a point, by the angle.
   int nearest(const Vec3& point) const {
     int best = -1;
-    float least = kInfinity;
+    float minimum = kInfinity;
     for (size_t j = 0; j < rays_.size(); ++j) {
       if (!sees(j)) continue;
       const float away = glm::length(glm::normalize(point - rays_[j].origin) - rays_[j].direction);
-      if (away < least) least = away, best = int(j);
+      if (away < minimum) minimum = away, best = int(j);
     }
     return best;
   }
@@ -145,9 +145,9 @@ class Film {
   std::vector<Ray> rays_;
 };
 
-class LinksOfCameras : public testing::TestWithParam<Case> {
+class CorrespondenceOfCameras : public testing::TestWithParam<Case> {
  protected:
-  LinksOfCameras() {
+  CorrespondenceOfCameras() {
     if (GetParam().in_room) scene_.ball(Vec3(0.0f), kRoom, scene_.material(matte(Rgb(0.5f))), 24);
   }
   // Blurred: the shutter opens at the pose and closes elsewhere; half way there is what is seen in the middle of it.
@@ -171,36 +171,36 @@ class LinksOfCameras : public testing::TestWithParam<Case> {
   PathScene scene_;
   std::vector<std::shared_ptr<const Snapshot>> snapshots_;
   std::vector<CentreView> views_;
-  std::vector<Film> films_;
+  std::vector<TestFilm> films_;
 };
 
-TEST_P(LinksOfCameras, LeadWhereTheSamePointIsSeen) {
+TEST_P(CorrespondenceOfCameras, LeadWhereTheSamePointIsSeen) {
   const auto& [type, change, in_room] = GetParam();
   const Mat4 pose = glm::rotate(translation(Vec3(0.2f, -0.1f, 0.3f)), 0.4f, glm::normalize(Vec3(0.2f, 1.0f, 0.1f)));
   const Mat4 step = glm::rotate(translation(Vec3(0.11f, -0.05f, -0.07f)), 0.13f, glm::normalize(Vec3(0.1f, 1.0f, 0.2f)));
   const bool moves = change == Change::Move || change == Change::Blur;
   add_frame(pose, 1.0f, change == Change::Blur);
   add_frame(moves ? step * pose : pose, change == Change::Zoom ? 1.12f : 1.0f, change == Change::Blur);
-  const std::vector<int32_t> links = link_pixels(views_[0], views_[1]).pixel;
-  const bool rests_at_infinity = type.type == GRADUS_CAMERA_ORTHOGRAPHIC && !in_room;
+  const std::vector<int32_t> correspondence = match_pixels(views_[0], views_[1]).pixel;
+  const bool is_static_at_infinity = type.type == GRADUS_CAMERA_ORTHOGRAPHIC && !in_room;
   std::set<int> wanted;  // pixels that others lead to
   int linked = 0, astray = 0, reached = 0;
-  for (size_t i = 0; i < links.size(); ++i) {
+  for (size_t i = 0; i < correspondence.size(); ++i) {
     if (!films_[0].sees(i)) {
-      EXPECT_EQ(links[i], kNoLink) << "beyond the image circle: " << i;
+      EXPECT_EQ(correspondence[i], kNoCorrespondence) << "beyond the image circle: " << i;
       continue;
     }
-    const int expected = rests_at_infinity ? int(i) : films_[1].nearest(films_[0].point(i, in_room ? kRoom : kFarAway));
-    if (links[i] != kNoLink) {
+    const int expected = is_static_at_infinity ? int(i) : films_[1].nearest(films_[0].point(i, in_room ? kRoom : kFarAway));
+    if (correspondence[i] != kNoCorrespondence) {
       ++linked;
-      astray += films_[1].pixels_between(links[i], expected) > 1 ? 1 : 0;
+      astray += films_[1].pixels_between(correspondence[i], expected) > 1 ? 1 : 0;
       if (change == Change::None) {
-        EXPECT_EQ(links[i], int32_t(i));
+        EXPECT_EQ(correspondence[i], int32_t(i));
       }
     }
     if (films_[1].is_inside(expected)) {
       wanted.insert(expected);
-      reached += links[i] != kNoLink ? 1 : 0;
+      reached += correspondence[i] != kNoCorrespondence ? 1 : 0;
     }
   }
   const bool has_steep_rim = type.type == kPanorama && type.panorama == GRADUS_PANORAMA_MIRROR_BALL;
@@ -209,7 +209,7 @@ TEST_P(LinksOfCameras, LeadWhereTheSamePointIsSeen) {
   EXPECT_GE(reached, int(0.98 * double(wanted.size()))) << "of " << wanted.size();
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LinksOfCameras, testing::ValuesIn(all_cases()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(All, CorrespondenceOfCameras, testing::ValuesIn(all_cases()), [](const auto& info) {
   return std::string(info.param.camera.name) + kChanges[int(info.param.change)] + (info.param.in_room ? "InARoom" : "UnderTheSky");
 });
 

@@ -32,14 +32,14 @@ class TwoFrames : public testing::Test {
  protected:
   TwoFrames() {
     auto first = std::make_shared<TemporalFrame>(), second = std::make_shared<TemporalFrame>();
-    first->base = {row_of({1, 2, 3}, {10, 20, 0}), row_of({0.1f, 0.2f, 0.3f}, {1, 2, 0})};
-    first->replay = first->base;  // of the first frame: a stream of its own
+    first->fresh = {row_of({1, 2, 3}, {10, 20, 0}), row_of({0.1f, 0.2f, 0.3f}, {1, 2, 0})};
+    first->replay = first->fresh;  // of the first frame: a stream of its own
     first->replay_share = {0.5f, 0.5f, 0.5f};
-    second->base = {row_of({4, 5, 6}, {40, kAbsentPair, 0}), row_of({0.4f, 0.5f, 0.6f}, {4, 5, 0})};
+    second->fresh = {row_of({4, 5, 6}, {40, kAbsentPair, 0}), row_of({0.4f, 0.5f, 0.6f}, {4, 5, 0})};
     second->replay = {row_of({7, 8, 9}, {70, 80, 0}), row_of({0.7f, 0.8f, 0.9f}, {7, 8, 0})};
     second->replay_share = {0.5f, 0.5f, 0.25f};
     second->stream = 1;
-    second->replayed = {first->stream, {{kNoLink, 0, 1}}};  // the picture moves to the right by a pixel
+    second->replayed = {first->stream, {{kNoCorrespondence, 0, 1}}};  // the picture moves to the right by a pixel
     frames_ = {first, second};
   }
   std::vector<float> row(RowKind kind, int t) const {
@@ -76,8 +76,8 @@ TEST_F(TwoFrames, HalfDifferencesAreThoseOfTheRows) {
   EXPECT_TRUE(std::isnan(half_differences(RowKind::kDt, 0)[2]));
 }
 
-Frame sampled(int32_t number, uint32_t seed, int width = 20) {
-  Frame frame(uint32_t(width), 8, {0, 0, width, 8}, 4, 1, true);
+Film sampled(int32_t number, uint32_t seed, int width = 20) {
+  Film frame(uint32_t(width), 8, {0, 0, width, 8}, 4, 1, true);
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   const auto fill = [&](std::vector<Radiance>* plane) {
@@ -101,14 +101,14 @@ class FiveFrames : public testing::Test {
   FiveFrames() {
     for (int place = 0; place < 5; ++place) {
       const int own = place == 3 ? 2 : place;
-      base_.push_back(std::make_shared<Frame>(sampled(own, uint32_t(own))));
-      auto replay = std::make_shared<Frame>(sampled(own, uint32_t(10 + own)));
+      fresh_.push_back(std::make_shared<Film>(sampled(own, uint32_t(own))));
+      auto replay = std::make_shared<Film>(sampled(own, uint32_t(10 + own)));
       replay->replayed.stream_frame = place == 4 ? 2 : own - 1;
-      for (int i = 0; i < 160; ++i) replay->replayed.links.pixel.push_back(i == 7 ? kNoLink : (i + 3) % 160);
+      for (int i = 0; i < 160; ++i) replay->replayed.correspondence.pixel.push_back(i == 7 ? kNoCorrespondence : (i + 3) % 160);
       replay_.push_back(std::move(replay));
     }
   }
-  std::unique_ptr<HalvedWindowSource> spooled() const { return SpooledFrames(load(base_), load(replay_), {}).window(0, 4); }
+  std::unique_ptr<HalvedWindowSource> spooled() const { return SpooledFrames(load(fresh_), load(replay_), {}).window(0, 4); }
   // The bits of all rows: absent differences are no numbers.
   static std::vector<unsigned char> bits(const HalvedWindowSource& source, int t, bool is_last) {
     const auto [width, height, channels, frames] = source.size();
@@ -117,7 +117,7 @@ class FiveFrames : public testing::Test {
       all.insert(all.end(), static_cast<const unsigned char*>(row), static_cast<const unsigned char*>(row) + bytes);
     };
     std::vector<float> row(size_t(width) * size_t(channels));
-    std::vector<int32_t> links(static_cast<size_t>(width));
+    std::vector<int32_t> correspondence(static_cast<size_t>(width));
     for (int y = 0; y < height; ++y) {
       for (const RowKind kind : kRowKinds) {
         if (is_last && is_temporal(kind)) continue;
@@ -127,28 +127,28 @@ class FiveFrames : public testing::Test {
         add(row.data(), row.size() * sizeof(float));
       }
       if (is_last) continue;
-      source.read_links(t, y, links.data());
-      add(links.data(), links.size() * sizeof(int32_t));
+      source.read_correspondence(t, y, correspondence.data());
+      add(correspondence.data(), correspondence.size() * sizeof(int32_t));
     }
     return all;
   }
-  static LoadPart load(const std::vector<std::shared_ptr<Frame>>& frames) {
-    return [&](int place, const CancelTest&) { return std::make_shared<Frame>(*frames[size_t(place)]); };
+  static LoadSamples load(const std::vector<std::shared_ptr<Film>>& frames) {
+    return [&](int place, const CancelCheck&) { return std::make_shared<Film>(*frames[size_t(place)]); };
   }
   FrameWindow in_memory() const {
     std::vector<std::shared_ptr<const TemporalFrame>> frames;
-    for (size_t t = 0; t < 5; ++t) frames.push_back(std::make_shared<TemporalFrame>(make_temporal_frame(*base_[t], *replay_[t])));
+    for (size_t t = 0; t < 5; ++t) frames.push_back(std::make_shared<TemporalFrame>(make_temporal_frame(*fresh_[t], *replay_[t])));
     return FrameWindow(std::move(frames));
   }
-  std::vector<std::shared_ptr<Frame>> base_, replay_;
+  std::vector<std::shared_ptr<Film>> fresh_, replay_;
 };
 
 // All samples of a pixel count alike, whichever half of the frame they are of.
 TEST_F(FiveFrames, SharesAreThoseOfTheSamples) {
-  const Frame &base = *base_[1], &replay = *replay_[1];
-  const TemporalFrame frame = make_temporal_frame(base, replay);
+  const Film &fresh = *fresh_[1], &replay = *replay_[1];
+  const TemporalFrame frame = make_temporal_frame(fresh, replay);
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {
-    const uint32_t own = samples_at(base, i), other = samples_at(replay, i);
+    const uint32_t own = samples_at(fresh, i), other = samples_at(replay, i);
     EXPECT_NEAR(frame.replay_share[i] * float(own + other), float(other), 1e-5f) << own << ' ' << other;
   }
 }
@@ -164,13 +164,13 @@ TEST_F(FiveFrames, SpooledRowsAreThoseOfTheFramesInMemory) {
 TEST_F(FiveFrames, WindowsThatOverlapReadEachPartOnce) {
   const FrameWindow whole = in_memory();
   std::array<int, 5> bases{}, replays{};
-  const auto counted = [](const LoadPart& load, std::array<int, 5>* loads) {
-    return [load, loads](int place, const CancelTest& cancel) {
+  const auto counted = [](const LoadSamples& load, std::array<int, 5>* loads) {
+    return [load, loads](int place, const CancelCheck& cancel) {
       ++loads->at(size_t(place));
       return load(place, cancel);
     };
   };
-  SpooledFrames frames(counted(load(base_), &bases), counted(load(replay_), &replays), {});
+  SpooledFrames frames(counted(load(fresh_), &bases), counted(load(replay_), &replays), {});
   for (const auto& [first, last] : {std::pair(0, 2), {1, 3}, {2, 4}}) {
     const auto window = frames.window(first, last);
     for (int t = first; t <= last; ++t) EXPECT_EQ(bits(*window, t - first, t == last), bits(whole, t, t == last)) << first << ", " << t;
@@ -184,17 +184,17 @@ TEST_F(FiveFrames, WindowsThatOverlapReadEachPartOnce) {
 TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
   const FrameWindow whole = in_memory();
   int loads = 0;
-  const auto counted = [&](const LoadPart& load) {
-    return [&loads, load](int place, const CancelTest& cancel) {
+  const auto counted = [&](const LoadSamples& load) {
+    return [&loads, load](int place, const CancelCheck& cancel) {
       ++loads;
       return load(place, cancel);
     };
   };
   const auto never = [] { return false; };
-  StreamedFrames frames(counted(load(base_)), counted(load(replay_)), [](int, std::shared_ptr<Frame> base, const Frame&) { return base; });
+  StreamedFrames frames(counted(load(fresh_)), counted(load(replay_)), [](int, std::shared_ptr<Film> fresh, const Film&) { return fresh; });
   std::vector<float> row(20 * 4), expected(row);
   for (int t = 0; t < 4; ++t) {
-    EXPECT_EQ(frames.frame(t, never)->components[0].primal[0][0].x, base_[size_t(t)]->components[0].primal[0][0].x);
+    EXPECT_EQ(frames.frame(t, never)->components[0].primal[0][0].x, fresh_[size_t(t)]->components[0].primal[0][0].x);
     const auto pair = frames.differences(t, never);
     for (int y = 0; y < 8; ++y) {
       pair[0]->read_half_differences(RowKind::kDt, 0, y, row.data());
@@ -208,24 +208,24 @@ TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
 
 // Between two frames alone a cancel was heard: the rows of each were put down, and those of all read again and again for their weights.
 TEST_F(FiveFrames, K2_ACancelIsHeardAtEveryRow) {
-  std::atomic<int> asked{0};
+  std::atomic<int> requested{0};
   std::atomic<bool> is_cancelled{false};
-  const auto window = SpooledFrames(load(base_), load(replay_), {}).window(0, 4, [&] {
-    ++asked;
+  const auto window = SpooledFrames(load(fresh_), load(replay_), {}).window(0, 4, [&] {
+    ++requested;
     return is_cancelled.load();
   });
-  EXPECT_GE(asked, 9 * 8) << "rows of five frames and of their differences";
+  EXPECT_GE(requested, 9 * 8) << "rows of five frames and of their differences";
   std::vector<float> row(20 * 4);
-  std::vector<int32_t> links(20);
+  std::vector<int32_t> correspondence(20);
   EXPECT_NO_THROW(window->read_row(RowKind::kPrimal, 0, 0, row.data()));
   is_cancelled = true;
   EXPECT_THROW(window->read_row(RowKind::kPrimal, 0, 0, row.data()), Error);
   EXPECT_THROW(window->read_half_differences(RowKind::kPrimal, 0, 0, row.data()), Error);
-  EXPECT_THROW(window->read_links(0, 0, links.data()), Error);
+  EXPECT_THROW(window->read_correspondence(0, 0, correspondence.data()), Error);
 }
 
 TEST_F(FiveFrames, TheNoiseOfRowsIsThereWhereItIsAskedFor) {
-  const auto window = SpooledFrames(load(base_), load(replay_), {.halves = false}).window(0, 4);
+  const auto window = SpooledFrames(load(fresh_), load(replay_), {.halves = false}).window(0, 4);
   std::vector<float> row(20 * 4);
   EXPECT_NO_THROW(window->read_row(RowKind::kDxDt, 0, 0, row.data()));
   EXPECT_THROW(window->read_half_differences(RowKind::kPrimal, 0, 0, row.data()), Error);
@@ -233,29 +233,29 @@ TEST_F(FiveFrames, TheNoiseOfRowsIsThereWhereItIsAskedFor) {
 
 TEST_F(FiveFrames, LinksAreThoseThatTheNextFrameHasFollowed) {
   const auto window = spooled();
-  std::vector<int32_t> links(20);
-  window->read_links(0, 0, links.data());
-  EXPECT_EQ(links[3], 0);
-  EXPECT_EQ(links[10], kNoLink) << "nobody has followed it";
-  window->read_links(2, 0, links.data());
-  EXPECT_EQ(links[10], 10) << "the same frame again";
-  window->read_links(3, 0, links.data());
-  EXPECT_EQ(links[3], 0);
+  std::vector<int32_t> correspondence(20);
+  window->read_correspondence(0, 0, correspondence.data());
+  EXPECT_EQ(correspondence[3], 0);
+  EXPECT_EQ(correspondence[10], kNoCorrespondence) << "nobody has followed it";
+  window->read_correspondence(2, 0, correspondence.data());
+  EXPECT_EQ(correspondence[10], 10) << "the same frame again";
+  window->read_correspondence(3, 0, correspondence.data());
+  EXPECT_EQ(correspondence[3], 0);
 }
 
 TEST_F(FiveFrames, OneOfAnotherSizeOrWithoutGradientsIsNamed) {
   const auto refusal = [&] { return test::refusal_of([&] { spooled(); }); };
-  replay_[4] = std::make_shared<Frame>(sampled(4, 1, 21));
+  replay_[4] = std::make_shared<Film>(sampled(4, 1, 21));
   EXPECT_EQ(refusal(), "stored frame 4 has another size or other planes than those beside it");
-  base_[1] = std::make_shared<Frame>(sampled(1, 1, 21));
+  fresh_[1] = std::make_shared<Film>(sampled(1, 1, 21));
   EXPECT_EQ(refusal().find("stored frame 1 has another size"), 0u);
-  base_[0]->gradients = false;
+  fresh_[0]->gradients = false;
   EXPECT_EQ(refusal().find("stored frame 0 has another size or other planes"), 0u);
 }
 
 // Plain paths: differences in space were read beyond the ends of what there is.
 TEST_F(FiveFrames, WithoutGradientsThereArePixelsAndTheirDifferencesOverTime) {
-  for (const auto& frames : {base_, replay_}) {
+  for (const auto& frames : {fresh_, replay_}) {
     for (const auto& frame : frames) frame->gradients = false;
   }
   const auto window = spooled();

@@ -24,20 +24,20 @@ GradusSettings settings_of(int32_t frame, uint32_t seed = 0) {
 
 const Region kWhole{0, 0, int32_t(kSize), int32_t(kSize)};
 
-Frame sampled(const IntegratorContext& context, uint32_t samples, const SampleSources* sources = nullptr, const Region& region = kWhole) {
-  Frame frame(kSize, kSize, region, 3, 1, true);
+Film sampled(const IntegratorContext& context, uint32_t samples, const ReplayMap* replay_map = nullptr, const Region& region = kWhole) {
+  Film frame(kSize, kSize, region, 3, 1, true);
   WorkUnit unit;
   unit.tile = frame.region;
   unit.count = samples;
-  unit.sources = sources;
+  unit.replay_map = replay_map;
   make_gradient_integrator(context)->sample(unit, &frame, &frame.counters, std::atomic<bool>{false});
   return frame;
 }
 
-SampleSources sources_of(const IntegratorContext& before, const IntegratorContext& now, const Region& region = kWhole) {
-  const PixelLinks links =
-      link_pixels(view_centres(*before.snapshot, kSize, kSize, region), view_centres(*now.snapshot, kSize, kSize, region));
-  return {before.settings.frame, inverse_links(links), 0, before.settings.seed};
+ReplayMap sources_of(const IntegratorContext& before, const IntegratorContext& now, const Region& region = kWhole) {
+  const PixelCorrespondence correspondence =
+      match_pixels(view_centres(*before.snapshot, kSize, kSize, region), view_centres(*now.snapshot, kSize, kSize, region));
+  return {before.settings.frame, inverse_correspondence(correspondence), 0, before.settings.seed};
 }
 
 class Replays : public testing::TestWithParam<Scenario> {};
@@ -46,8 +46,8 @@ TEST_P(Replays, OfAStillSceneHaveTheBitsOfTheFrameBefore) {
   PathScene scene;
   build(GetParam(), &scene);
   const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
-  const SampleSources sources = sources_of(before, now);
-  const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources), own = sampled(now, 4);
+  const ReplayMap replay_map = sources_of(before, now);
+  const Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map), own = sampled(now, 4);
   for (int half = 0; half < kHalves; ++half) {
     EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
     for (int k = 0; k < kOffsets; ++k) EXPECT_EQ(base.components[0].gradient[half][k], offset.components[0].gradient[half][k]);
@@ -64,9 +64,9 @@ TEST(Replay, SeesWhatWasSeenAtItsMomentsThroughTheLens) {
   build(Scenario::Moving, &scene);
   scene.camera_desc.aperture_radius = 0.1f;
   const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
-  SampleSources sources{7, {std::vector<int32_t>(size_t(kSize) * kSize)}, 0, 0, false};
-  std::iota(sources.links.pixel.begin(), sources.links.pixel.end(), 0);
-  const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources);
+  ReplayMap replay_map{7, {std::vector<int32_t>(size_t(kSize) * kSize)}, 0, 0, false};
+  std::iota(replay_map.correspondence.pixel.begin(), replay_map.correspondence.pixel.end(), 0);
+  const Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map);
   for (int half = 0; half < kHalves; ++half) EXPECT_TRUE(base.components[0].primal[half] == offset.components[0].primal[half]);
 }
 
@@ -76,8 +76,8 @@ TEST(Replay, OfABorderTakesTheNumbersOfItsOwnPixels) {
   build(Scenario::DiffuseArea, &scene);
   const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
   const Region border{9, 5, 31, 22};
-  SampleSources sources = sources_of(before, now, border);
-  const Frame base = sampled(before, 4, nullptr, border), offset = sampled(now, 4, &sources, border);
+  ReplayMap replay_map = sources_of(before, now, border);
+  const Film base = sampled(before, 4, nullptr, border), offset = sampled(now, 4, &replay_map, border);
   for (int half = 0; half < kHalves; ++half) EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
 }
 
@@ -86,16 +86,16 @@ TEST(Replay, HolesHaveNumbersOfTheirOwn) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);
   const IntegratorContext now = scene.context(settings_of(8));
-  const SampleSources holes{7, {std::vector<int32_t>(size_t(kSize) * kSize, kNoLink)}};
-  const Frame own = sampled(now, 4), offset = sampled(now, 4, &holes);
+  const ReplayMap holes{7, {std::vector<int32_t>(size_t(kSize) * kSize, kNoCorrespondence)}};
+  const Film own = sampled(now, 4), offset = sampled(now, 4, &holes);
   size_t lit = 0, alike = 0;
-  for (size_t i = 0; i < holes.links.pixel.size(); ++i) {
+  for (size_t i = 0; i < holes.correspondence.pixel.size(); ++i) {
     const Radiance &a = own.components[0].primal[0][i], &b = offset.components[0].primal[0][i];
     lit += a.x > 0.0f;
     alike += a.x > 0.0f && a == b;
   }
-  EXPECT_GT(lit, holes.links.pixel.size() / 2);
-  EXPECT_LT(alike, lit / 10);  // the lamp itself
+  EXPECT_GT(lit, holes.correspondence.pixel.size() / 2);
+  EXPECT_LT(alike, lit / 10);  // the light itself
 }
 
 // A camera that moves aside by 5.3 pixels.
@@ -114,7 +114,7 @@ struct Pan {
   GradusCamera before_desc{}, now_desc{};
 };
 
-float gray(const Frame& frame, size_t pixel) {
+float gray(const Film& frame, size_t pixel) {
   Radiance sum = frame.components[0].primal[0][pixel] + frame.components[0].primal[1][pixel];
   const uint32_t count = samples_at(frame, pixel);
   return (sum.x + sum.y + sum.z) / (3.0f * float(count));
@@ -127,13 +127,13 @@ TEST(Replay, IsAPictureOfItsOwnFrame) {
   int holes = 0;
   for (uint32_t seed = 0; seed < 48; ++seed) {
     const IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
-    const SampleSources sources = sources_of(before, now);
-    const Frame offset = sampled(now, 8, &sources), other = sampled(now, 8);
+    const ReplayMap replay_map = sources_of(before, now);
+    const Film offset = sampled(now, 8, &replay_map), other = sampled(now, 8);
     std::vector<float> a(offset.count[0].size()), b(a.size());
     for (size_t i = 0; i < a.size(); ++i) a[i] = gray(offset, i), b[i] = gray(other, i);
     replayed.add(a);
     fresh.add(b);
-    for (const int32_t source : sources.links.pixel) holes += source == kNoLink;
+    for (const int32_t source : replay_map.correspondence.pixel) holes += source == kNoCorrespondence;
   }
   EXPECT_GT(holes, 48 * 2 * int(kSize)) << "the strip that comes into view";
   double mean_a = 0.0, mean_b = 0.0, variance = 0.0;
@@ -154,11 +154,11 @@ TEST(Replay, MakesDifferencesOverTimeQuieter) {
     double linked = 0.0, independent = 0.0;
     for (uint32_t seed = 0; seed < 6; ++seed) {
       const IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
-      const SampleSources sources = sources_of(before, now);
-      const Frame base = sampled(before, 4), offset = sampled(now, 4, &sources), other = sampled(now, 4);
-      for (size_t q = 0; q < sources.links.pixel.size(); ++q) {
-        const int32_t i = sources.links.pixel[q];
-        if (i == kNoLink) continue;
+      const ReplayMap replay_map = sources_of(before, now);
+      const Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map), other = sampled(now, 4);
+      for (size_t q = 0; q < replay_map.correspondence.pixel.size(); ++q) {
+        const int32_t i = replay_map.correspondence.pixel[q];
+        if (i == kNoCorrespondence) continue;
         linked += std::pow(gray(offset, q) - gray(base, size_t(i)), 2);
         independent += std::pow(gray(other, q) - gray(base, size_t(i)), 2);
       }

@@ -376,9 +376,9 @@ class ToolSequence : public Tool {
   void remove(int frame) const {
     for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
   }
-  void render(uint32_t reconstruction, uint32_t samples = 4, bool stands_still = false) {
+  void render(uint32_t reconstruction, uint32_t samples = 4, bool is_static_scene = false) {
     fs::remove_all(folder / kFolder);
-    render({reconstruction, samples, stands_still ? 0.0f : 0.02f, stands_still});
+    render({reconstruction, samples, is_static_scene ? 0.0f : 0.02f, is_static_scene});
   }
   struct Job {
     uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2, samples = 4;

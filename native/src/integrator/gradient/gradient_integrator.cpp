@@ -11,8 +11,8 @@ namespace {
 
 // What one worker needs; large, so kept from sample to sample.
 struct Worker {
-  Worker(const PathContext& context, Frame* frame, Counters* counters)
-      : recorder(context, frame, counters),
+  Worker(const PathContext& context, Film* film, Counters* counters)
+      : recorder(context, film, counters),
         vertices(context),
         offsets(context, counters, &vertices),
         tracer(context, &scratch, &recorder, counters, &offsets),
@@ -34,14 +34,14 @@ struct Worker {
 bool has_gradients(const WorkUnit& unit, size_t pixel) { return unit.gradient_map == nullptr || (*unit.gradient_map)[pixel] != 0; }
 
 // Counts of a pixel's half and its neighbours' (contract 1.5): none outside of the sampled region, so that such pairs are absent.
-std::array<PairCount, kOffsets> pair_counts(const WorkUnit& unit, const Frame& frame, int32_t x, int32_t y, int half) {
+std::array<PairCount, kOffsets> pair_counts(const WorkUnit& unit, const Film& film, int32_t x, int32_t y, int half) {
   std::array<PairCount, kOffsets> pairs{};
   for (int k = 0; k < kOffsets; ++k) {
     const int32_t nx = x + kOffsetX[k];
     const int32_t ny = y + kOffsetY[k];
-    if (frame.region.contains(nx, ny) && has_gradients(unit, frame.index(nx, ny))) {
-      pairs[k].own = static_cast<float>(half_count(unit, frame.index(x, y), half));
-      pairs[k].other = static_cast<float>(half_count(unit, frame.index(nx, ny), half));
+    if (film.region.contains(nx, ny) && has_gradients(unit, film.index(nx, ny))) {
+      pairs[k].own = static_cast<float>(half_count(unit, film.index(x, y), half));
+      pairs[k].other = static_cast<float>(half_count(unit, film.index(nx, ny), half));
     }
   }
   return pairs;
@@ -66,26 +66,26 @@ class GradientIntegrator final : public Integrator {
   explicit GradientIntegrator(const IntegratorContext& context)
       : context_(context), path_(*context_.snapshot, context_.camera, context_.settings, context_.components) {}
 
-  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
-    const auto worker = std::make_unique<Worker>(path_, frame, counters);
-    for_each_sample(path_, unit, *frame, &worker->vertices, stop, [&](const PixelSample& s) {
-      worker->recorder.begin_sample(s.pixel, s.half, s.number, unit.again);
+  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
+    const auto worker = std::make_unique<Worker>(path_, film, counters);
+    for_each_sample(path_, unit, *film, &worker->vertices, stop, [&](const PixelSample& s) {
+      worker->recorder.begin_sample(s.pixel, s.half, s.number, unit.adds_components);
       const uint32_t wanted = unit_components(unit, s.pixel);
       if (!has_gradients(unit, s.pixel)) {
         worker->plain.want(wanted);
-        add_primal(worker->plain.trace(s.sampler, s.film, s.first), s, unit, frame, counters);
+        add_primal(worker->plain.trace(s.sampler, s.film, s.first), s, unit, film, counters);
         return;
       }
-      const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *frame, s.x, s.y, s.half);
+      const std::array<PairCount, kOffsets> pairs = pair_counts(unit, *film, s.x, s.y, s.half);
       worker->offsets.start(pairs, s, wanted);
       worker->tracer.want(wanted);
-      add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, unit, frame, counters);
+      add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, unit, film, counters);
       worker->offsets.finish();
       for (int c = 0; c < path_.components.count(); ++c) {
-        if ((wanted >> c & 1) != 0) add_gradients(worker->offsets.gradient(c), s, frame->channels, &frame->components[size_t(c)], counters);
+        if ((wanted >> c & 1) != 0) add_gradients(worker->offsets.gradient(c), s, film->channels, &film->components[size_t(c)], counters);
       }
-      if (unit.again) return;
-      for (int k = 0; k < kOffsets; ++k) frame->pair_count[s.half][k][s.pixel] += pairs[k].weight();
+      if (unit.adds_components) return;
+      for (int k = 0; k < kOffsets; ++k) film->pair_count[s.half][k][s.pixel] += pairs[k].weight();
     });
   }
 

@@ -28,13 +28,13 @@ float all_techniques(const Contribution& base, float pdf_light, float pdf_bsdf) 
 }  // namespace
 
 // 1 where the choice of the point is discrete, or a direction that is copied.
-float copy_jacobian(const EmitterPoint& point, const EmitterView& base, const EmitterView& offset) {
+float copy_jacobian(const LightPoint& point, const LightEvaluation& base, const LightEvaluation& offset) {
   const bool copied = point.dirac || point.at_infinity();
-  return copied ? 1.0f : emitter_jacobian(base.cosine, base.distance, offset.cosine, offset.distance);
+  return copied ? 1.0f : light_point_jacobian(base.cosine, base.distance, offset.cosine, offset.distance);
 }
 
 // Where the classes of the two vertices differ, BSDF samples share the random number of the class, which light samples do not have.
-bool OffsetPaths::joint(const EmitterView& view, const OffsetPath& offset) const {
+bool OffsetPaths::joint(const LightEvaluation& view, const OffsetPath& offset) const {
   return joint_ && !offset.mixed && view.casts_shadow && (view.visibility & kAllBounces) == kAllBounces;
 }
 
@@ -45,8 +45,8 @@ bool OffsetPaths::both_leave_facets(const Vertex& base, const Vec3& base_directi
 // What the offset's own segment shows; alpha is 1 − what the camera sees through. Brings its throughput to the end of the segment.
 Radiance OffsetPaths::see(OffsetPath* o) const {
   Radiance seen(0.0f);
-  for (const LampSighting& lamp : o->segment->lamps) {
-    seen += Radiance(lamp_contribution(context_, o->source(), o->state, lamp).clamped, 0.0f);
+  for (const LightCrossing& light_crossing : o->segment->light_crossings) {
+    seen += Radiance(light_hit_contribution(context_, o->source(), o->state, light_crossing).clamped, 0.0f);
   }
   o->state.throughput *= o->segment->weight;
   const float all = mean_component(o->state.throughput);
@@ -55,10 +55,10 @@ Radiance OffsetPaths::see(OffsetPath* o) const {
     seen += Radiance(world_contribution(context_, o->source(), o->state).clamped, shows_through ? -all : 0.0f);
   } else if (o->segment->end == SegmentEnd::Surface) {
     const ShadeResult& shade = o->here->shade;
-    if (o->from_camera && is_hole(context_, *o->here)) {
+    if (o->from_camera && is_holdout(context_, *o->here)) {
       return seen - Radiance(0.0f, 0.0f, 0.0f, all);
     }
-    const float hole = o->from_camera ? held_out(o->state.throughput, shade.holdout) : 0.0f;
+    const float hole = o->from_camera ? holdout_alpha(o->state.throughput, shade.holdout) : 0.0f;
     if (is_black(shade.emission)) {
       return seen - Radiance(0.0f, 0.0f, 0.0f, hole);
     }
@@ -68,7 +68,7 @@ Radiance OffsetPaths::see(OffsetPath* o) const {
 }
 
 // What a camera ray shows is the same for all whose offset it is.
-Radiance OffsetPaths::see_once(OffsetPath* o) const {
+Radiance OffsetPaths::shown_once(OffsetPath* o) const {
   if (o->camera == nullptr) {
     return see(o);
   }
@@ -79,48 +79,48 @@ Radiance OffsetPaths::see_once(OffsetPath* o) const {
 }
 
 void OffsetPaths::seen() {
-  sees_kept_ = false;
+  sees_deferred_ = false;
   if (open_ == 0) {
     return;
   }
-  const int component = context_.components.component(base_state_.word);  // of both: the shift copies classes
+  const int component = context_.components.component(base_state_.lpe_state);  // of both: the shift copies classes
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
-      const Radiance seen = see_once(&o);
+      const Radiance seen = shown_once(&o);
       if (seen != Radiance(0.0f) || seen_ != Radiance(0.0f)) {
         add(k, component, pairs_[k].paired(seen_, seen, o.ratio));
       }
     }
-    if (o.stage == OffsetStage::Traced || o.stage == OffsetStage::Linked) {
+    if (o.stage == OffsetStage::Traced || o.stage == OffsetStage::Reconnected) {
       include_kind(&o);
     }
-    if (o.fresh && o.stage == OffsetStage::Traced && goes_on(o) != base_goes_on()) {
-      part(k, ShiftFailure::Missed, goes_on(o), false);
+    if (o.fresh && o.stage == OffsetStage::Traced && continues(o) != base_continues()) {
+      decouple(k, ShiftFailure::Missed, continues(o), false);
     }
-    if (o.stage == OffsetStage::Linked) {
+    if (o.stage == OffsetStage::Reconnected) {
       join(&o);
     }
   }
 }
 
 // From class D: the emitter point is copied. base, offset: as seen from the two vertices; probability: of the base's decisions up to it.
-void OffsetPaths::copy_emitter(int k, const RaySource& source, const Contribution& c, const EmitterPoint& point, const EmitterView& base,
-                               const EmitterView& offset, float probability) {
+void OffsetPaths::copy_light_point(int k, const RaySource& source, const Contribution& c, const LightPoint& point, const LightEvaluation& base,
+                               const LightEvaluation& offset, float probability) {
   OffsetPath& o = offsets_[k];
   const ShiftedEvent event = event_towards(base_event_, *o.here, offset.direction, copy_jacobian(point, base, offset));
   if (event.failure != ShiftFailure::None || is_black(offset.radiance)) {
     count_failure(&counters_, event.failure);
-    alone(k, c);
+    add_unpaired(k, c);
     return;
   }
   ++counters_.rays_shift_shadow;
   uint16_t transparent_depth = o.state.ray.state.transparent_depth;
-  const Ray ray = ray_to_emitter(offset_origin(o.here->point, offset.direction), o.here->point, point, offset);
+  const Ray ray = ray_to_light(offset_origin(o.here->point, offset.direction), o.here->point, point, offset);
   const Rgb through = segment_transmittance(context_, ray, base_state_.ray, &transparent_depth);
   if (is_black(through)) {
     ++counters_.fail_occluded;
-    alone(k, c);
+    add_unpaired(k, c);
     return;
   }
   const Rgb value = o.state.throughput * event.factor * offset.radiance * through * (bsdf_weight(offset.pdf, event.pdf) / probability);
@@ -130,7 +130,7 @@ void OffsetPaths::copy_emitter(int k, const RaySource& source, const Contributio
 
 // An emitter that the shared path found; weight: of the segment up to it. Straight after the first shared vertex the offset scattered with
 // a density of its own, so its weight against light sampling, whose density both share, is its own too.
-void OffsetPaths::found_linked(int k, const RaySource& source, const Contribution& c, const Rgb& weight, bool joint) {
+void OffsetPaths::found_by_reconnected(int k, const RaySource& source, const Contribution& c, const Rgb& weight, bool joint) {
   const OffsetPath& o = offsets_[k];
   if (o.stage == OffsetStage::Deeper || !(c.pdf_light > 0.0f)) {
     pair(k, c, o.state.throughput * weight * c.tail, o.ratio);
@@ -142,27 +142,27 @@ void OffsetPaths::found_linked(int k, const RaySource& source, const Contributio
   pair(k, c, value, o.ratio * (all ? all_techniques(c, c.pdf_light, o.shared_pdf) : 1.0f));
 }
 
-void OffsetPaths::lamp(const RaySource& source, const Contribution& c, const LampSighting& lamp) {
-  collect(c, lamp.weight);
+void OffsetPaths::light_crossing(const RaySource& source, const Contribution& c, const LightCrossing& light_crossing) {
+  collect(c, light_crossing.weight);
   if (open_ == 0) {
     return;
   }
   seen_ += Radiance(c.clamped, 0.0f);
-  const bool looks = any(OffsetStage::Pending) || any(OffsetStage::Linked);
-  const EmitterView base =
-      source.vertex != nullptr && looks ? view_emitter(context_.scene, lamp.point, receiver_of(*source.vertex)) : EmitterView{};
+  const bool looks = any(OffsetStage::Pending) || any(OffsetStage::Reconnected);
+  const LightEvaluation base =
+      source.vertex != nullptr && looks ? evaluate_light(context_.scene, light_crossing.point, receiver_of(*source.vertex)) : LightEvaluation{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
       continue;
     }
-    if (is_beside(o.stage) && !passes(o, lamp.crossed)) {
-      alone(k, c);
+    if (is_beside(o.stage) && !passes(o, light_crossing.crossed)) {
+      add_unpaired(k, c);
     } else if (is_beside(o.stage)) {
-      found_linked(k, source, c, lamp.weight, joint(base, o));
+      found_by_reconnected(k, source, c, light_crossing.weight, joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
-      const EmitterView view = view_emitter(context_.scene, lamp.point, receiver_of(*o.here));
-      copy_emitter(k, source, c, lamp.point, base, view, lamp.probability);
+      const LightEvaluation view = evaluate_light(context_.scene, light_crossing.point, receiver_of(*o.here));
+      copy_light_point(k, source, c, light_crossing.point, base, view, light_crossing.probability);
     }
   }
 }
@@ -173,25 +173,25 @@ void OffsetPaths::world(const RaySource& source, const Contribution& c) {
     return;
   }
   seen_ += Radiance(c.clamped, 0.0f);
-  EmitterView base;
+  LightEvaluation base;
   base.direction = base_state_.ray.ray.direction;
   base.visibility = context_.scene.world.visibility;
-  const EmitterPoint sampled = any(OffsetStage::Pending) ? emitter_of_world(context_.scene, base.direction) : EmitterPoint{};
+  const LightPoint sampled = any(OffsetStage::Pending) ? light_point_of_world(context_.scene, base.direction) : LightPoint{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
       continue;
     }
     if (is_beside(o.stage)) {
-      found_linked(k, source, c, Rgb(1.0f), joint(base, o));
+      found_by_reconnected(k, source, c, Rgb(1.0f), joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
       // The same direction, so the same radiance.
-      EmitterView view = base;
+      LightEvaluation view = base;
       view.radiance = c.light;
       view.pdf = light_pdf(context_, RaySource{o.here, source.event}, sampled);
-      EmitterPoint point = sampled;
-      point.kind = EmitterKind::World;  // also where light sampling leaves it out
-      copy_emitter(k, source, c, point, base, view, base_segment_->probability);
+      LightPoint point = sampled;
+      point.kind = LightKind::World;  // also where light sampling leaves it out
+      copy_light_point(k, source, c, point, base, view, base_segment_->probability);
     }
   }
 }
@@ -202,27 +202,27 @@ void OffsetPaths::emission(const RaySource& source, const Contribution& c, const
     return;
   }
   seen_ += Radiance(c.clamped, 0.0f);
-  link_all(vertex);
-  const EmitterPoint point = any(OffsetStage::Pending) ? emitter_of_surface(context_.scene, vertex.point) : EmitterPoint{};
+  reconnect_all(vertex);
+  const LightPoint point = any(OffsetStage::Pending) ? light_point_of_surface(context_.scene, vertex.point) : LightPoint{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
       continue;
     }
     if (is_beside(o.stage)) {
-      found_linked(k, source, c, Rgb(1.0f), joint_ && !o.mixed);  // as for light samples there
+      found_by_reconnected(k, source, c, Rgb(1.0f), joint_ && !o.mixed);  // as for light samples there
     } else if (o.stage == OffsetStage::Pending) {
-      const Rgb emission = o.link.open ? linked_emission(o, vertex) : Rgb(0.0f);
+      const Rgb emission = o.connection.open ? reconnected_emission(o, vertex) : Rgb(0.0f);
       if (is_black(emission)) {
-        alone(k, c);
+        add_unpaired(k, c);
         continue;
       }
       const float pdf_light = light_pdf(context_, RaySource{o.here, source.event}, point);
-      const Rgb value = o.link.throughput * emission * bsdf_weight(pdf_light, o.link.pdf);
+      const Rgb value = o.connection.throughput * emission * bsdf_weight(pdf_light, o.connection.pdf);
       const bool all = joint_ && !o.mixed &&
                        both_leave_facets(*source.vertex, base_state_.ray.ray.direction, o,
                                          glm::normalize(vertex.point.position - o.here->point.position));
-      pair(k, c, value, o.link.ratio * (all ? all_techniques(c, pdf_light, o.link.pdf) : 1.0f));
+      pair(k, c, value, o.connection.ratio * (all ? all_techniques(c, pdf_light, o.connection.pdf) : 1.0f));
     }
   }
 }

@@ -8,12 +8,12 @@ namespace gradus {
 namespace {
 
 // A point of the world shines from the same direction, with the same radiance, wherever one looks from.
-EmitterView view_from(const PathContext& context, const LightSample& sample, const Vertex& vertex) {
-  if (sample.point.kind != EmitterKind::World) {
-    return view_emitter(context.scene, sample.point, receiver_of(vertex));
+LightEvaluation view_from(const PathContext& context, const LightSample& sample, const Vertex& vertex) {
+  if (sample.point.kind != LightKind::World) {
+    return evaluate_light(context.scene, sample.point, receiver_of(vertex));
   }
-  EmitterView view = sample.view;
-  view.pdf = emitter_pdf(context.scene, sample.point, receiver_of(vertex));
+  LightEvaluation view = sample.view;
+  view.pdf = light_point_pdf(context.scene, sample.point, receiver_of(vertex));
   return view;
 }
 
@@ -27,13 +27,13 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
   bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    OffsetLight& light = o.light;
+    OffsetLightSample& light = o.light;
     wanted[k] = false;
     if (o.stage != OffsetStage::Traced) {
       continue;
     }
     if (!light.known) {
-      light = OffsetLight{};
+      light = OffsetLightSample{};
       light.known = true;
       light.view = view_from(context_, sample, *o.here);
     }
@@ -47,20 +47,20 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
   }
   const bool packet = !context_.scene.features.has_transparent_shadows && sample.view.casts_shadow;
   if (any && packet) {
-    const EmitterView& a = offsets_[0].light.view;
-    const EmitterView& b = offsets_[1].light.view;
-    const EmitterView& c = offsets_[2].light.view;
-    const EmitterView& d = offsets_[3].light.view;
+    const LightEvaluation& a = offsets_[0].light.view;
+    const LightEvaluation& b = offsets_[1].light.view;
+    const LightEvaluation& c = offsets_[2].light.view;
+    const LightEvaluation& d = offsets_[3].light.view;
     const Lanes3 direction = lanes(a.direction, b.direction, c.direction, d.direction);
     const Lanes distance{a.distance, b.distance, c.distance, d.distance};
-    const Points4 points = own_points();
+    const Points4 points = offset_points();
     Lanes3 start = offset_origins(points, direction);
     for (int k = 0; k < kOffsets; ++k) {
       const OffsetPath& o = offsets_[k];
       if (wanted[k] && !leaves_facet(o.here->point, o.light.view.direction))
         set_lane(k, shadow_origin(context_.scene, o.here->point, o.light.view.direction), &start);
     }
-    context_.scene.occluded4(rays_to_emitter(start, points, direction, distance, sample.point), wanted, blocked);
+    context_.scene.occluded4(rays_to_light(start, points, direction, distance, sample.point), wanted, blocked);
   }
   for (int k = 0; k < kOffsets; ++k) {
     if (wanted[k]) {
@@ -72,9 +72,9 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
   }
 }
 
-void OffsetPaths::light_own(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+void OffsetPaths::light_decoupled_vertex(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
   OffsetPath& o = offsets_[k];
-  const EmitterView& view = o.light.view;
+  const LightEvaluation& view = o.light.view;
   const LitClass& lit = o.light.lit;
   const bool all = joint(view, o) && reconnects(scatter_class) && sample.point.found_by_rays &&
                    both_leave_facets(vertex, sample.view.direction, o, view.direction);
@@ -82,7 +82,7 @@ void OffsetPaths::light_own(int k, const Vertex& vertex, const LightSample& samp
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
   if (is_black(lit.value) || is_black(o.light.transmittance) || !(pdf > 0.0f)) {
     ++(is_black(lit.value) ? counters_.fail_class : is_black(o.light.transmittance) ? counters_.fail_occluded : counters_.fail_density);
-    alone(k, c);
+    add_unpaired(k, c);
     return;
   }
   const Rgb value = o.state.throughput * lit.value * o.light.transmittance / (view.pdf + lit.pdf_bsdf);
@@ -98,29 +98,29 @@ bool OffsetPaths::is_lit(const Vertex& vertex, const LightSample& sample, uint32
 }
 
 // At the shared vertex, seen from the offset's last one: emitter, shadow and p_n are those of the base.
-void OffsetPaths::light_linked(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+void OffsetPaths::light_reconnected(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
   OffsetPath& o = offsets_[k];
-  if (!o.link.open || !(glm::dot(vertex.facing_normal(), o.linked->wo) > 0.0f) || !is_lit(vertex, sample, o.link.transparent_depth)) {
-    alone(k, c);
+  if (!o.connection.open || !(glm::dot(vertex.facing_normal(), o.reconnected->wo) > 0.0f) || !is_lit(vertex, sample, o.connection.transparent_depth)) {
+    add_unpaired(k, c);
     return;
   }
-  const float link_ratio = o.link.ratio * o.link.kind_ratio;
-  see_linked(&o, vertex);
-  if (o.link.alike && link_ratio > 0.0f) {
-    pair(k, c, o.link.throughput * c.tail, link_ratio);
+  const float connection_ratio = o.connection.ratio * o.connection.kind_ratio;
+  shade_reconnected(&o, vertex);
+  if (o.connection.looks_same && connection_ratio > 0.0f) {
+    pair(k, c, o.connection.throughput * c.tail, connection_ratio);
     return;
   }
-  const LitClass lit = o.link.alike ? LitClass{} : light_class(context_, *o.linked, scatter_class, sample, base_state_.ray.state);
+  const LitClass lit = o.connection.looks_same ? LitClass{} : light_class(context_, *o.reconnected, scatter_class, sample, base_state_.ray.state);
   // A texture that looks at the ray may make the vertex rough for the offset alone: then the way back would be a replay.
-  if (is_black(lit.value) || !(link_ratio > 0.0f) || replays(o.here->point.position, *o.linked)) {
+  if (is_black(lit.value) || !(connection_ratio > 0.0f) || replays(o.here->point.position, *o.reconnected)) {
     ++counters_.fail_class;
-    alone(k, c);
+    add_unpaired(k, c);
     return;
   }
   const bool all =
       joint(sample.view, o) && reconnects(scatter_class) && sample.point.found_by_rays && leaves_facet(vertex.point, sample.view.direction);
   const float ratio = all ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
-  pair(k, c, o.link.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), link_ratio * ratio);
+  pair(k, c, o.connection.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), connection_ratio * ratio);
 }
 
 void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
@@ -128,20 +128,20 @@ void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, Scatter
   if (open_ == 0) {
     return;
   }
-  link_all(vertex);
+  reconnect_all(vertex);
   light_all(sample, scatter_class);
   for (int k = 0; k < kOffsets; ++k) {
     const OffsetPath& o = offsets_[k];
     if (o.stage == OffsetStage::Pending) {
-      light_linked(k, vertex, sample, scatter_class, c);
+      light_reconnected(k, vertex, sample, scatter_class, c);
     } else if (o.stage == OffsetStage::Traced) {
-      light_own(k, vertex, sample, scatter_class, c);
+      light_decoupled_vertex(k, vertex, sample, scatter_class, c);
     } else if (o.stage == OffsetStage::Deeper) {
       if (is_lit(vertex, sample, o.state.ray.state.transparent_depth)) {
         pair(k, c, o.state.throughput * c.tail, o.ratio);
       } else {
         ++counters_.fail_occluded;
-        alone(k, c);
+        add_unpaired(k, c);
       }
     }
   }

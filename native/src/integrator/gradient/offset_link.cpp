@@ -6,7 +6,7 @@
 namespace gradus {
 
 // Everything but visibility.
-ShiftFailure OffsetPaths::try_link(OffsetPath* o, const Vertex& vertex, ShiftedEvent* event) const {
+ShiftFailure OffsetPaths::try_reconnection(OffsetPath* o, const Vertex& vertex, ShiftedEvent* event) const {
   const Reconnection connection = reconnect(base_position_, o->here->point.position, vertex.point.position, vertex.point.geometric_normal);
   if (connection.failure != ShiftFailure::None) {
     return connection.failure;
@@ -17,47 +17,47 @@ ShiftFailure OffsetPaths::try_link(OffsetPath* o, const Vertex& vertex, ShiftedE
 
 // The offset arrives at the shared vertex. The base's decisions on its segment were made for both paths: the offset's own surfaces on the
 // way weigh with their expectation.
-void OffsetPaths::open_link(OffsetPath* o, const ShiftedEvent& event, const Rgb& through) {
-  o->link.open = true;
-  o->link.throughput = o->state.throughput * event.factor * through / base_segment_->probability;
-  o->link.ratio = o->ratio * event.ratio;
-  o->link.kind_ratio = event.kind_ratio;
-  o->link.pdf = event.pdf;
-  o->linked->wo = -event.wi;
+void OffsetPaths::open_connection(OffsetPath* o, const ShiftedEvent& event, const Rgb& through) {
+  o->connection.open = true;
+  o->connection.throughput = o->state.throughput * event.factor * through / base_segment_->probability;
+  o->connection.ratio = o->ratio * event.ratio;
+  o->connection.kind_ratio = event.kind_ratio;
+  o->connection.pdf = event.pdf;
+  o->reconnected->wo = -event.wi;
 }
 
 // The ray by which the offset arrives there.
-RayState OffsetPaths::linked_ray(const OffsetPath& o, const Vertex& vertex) const {
+RayState OffsetPaths::reconnected_ray(const OffsetPath& o, const Vertex& vertex) const {
   RayState ray = base_state_.ray.state;
-  ray.transparent_depth = o.link.transparent_depth;
+  ray.transparent_depth = o.connection.transparent_depth;
   ray.length = glm::length(vertex.point.position - o.here->point.position);
   return ray;
 }
 
 // What the shared vertex emits towards the offset: its closures may not be wanted.
-Rgb OffsetPaths::linked_emission(const OffsetPath& o, const Vertex& vertex) const {
-  const bool same = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o.linked->wo) > 0.0f;
-  return same ? vertex.shade.emission : shade_emission(context_.scene, vertex.point, o.linked->wo, linked_ray(o, vertex));
+Rgb OffsetPaths::reconnected_emission(const OffsetPath& o, const Vertex& vertex) const {
+  const bool same = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o.reconnected->wo) > 0.0f;
+  return same ? vertex.shade.emission : shade_emission(context_.scene, vertex.point, o.reconnected->wo, reconnected_ray(o, vertex));
 }
 
 // The shared vertex, whose closures are known, from the offset's side. Most walls look alike from everywhere.
-void OffsetPaths::see_linked(OffsetPath* o, const Vertex& vertex) const {
-  if (std::exchange(o->link.shaded, true)) {
+void OffsetPaths::shade_reconnected(OffsetPath* o, const Vertex& vertex) const {
+  if (std::exchange(o->connection.shaded, true)) {
     return;
   }
-  o->link.alike = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o->linked->wo) > 0.0f;
-  if (!o->link.alike) {
-    o->linked->point = vertex.point;
-    shade_again(context_.scene, vertex.point, *vertex.shade.tape, vertex.wo, o->linked->wo, linked_ray(*o, vertex),
-                context_.settings.roughness_threshold, &o->linked->shade);
+  o->connection.looks_same = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o->reconnected->wo) > 0.0f;
+  if (!o->connection.looks_same) {
+    o->reconnected->point = vertex.point;
+    shade_from_tape(context_.scene, vertex.point, *vertex.shade.tape, vertex.wo, o->reconnected->wo, reconnected_ray(*o, vertex),
+                context_.settings.roughness_threshold, &o->reconnected->shade);
   }
 }
 
 // The base's event at the shared vertex.
-ShiftedEvent OffsetPaths::linked_event(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) const {
-  see_linked(o, vertex);
-  if (!o->link.alike) {
-    return event_towards(event, *o->linked, event.sample.wi, 1.0f);
+ShiftedEvent OffsetPaths::reconnected_event(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) const {
+  shade_reconnected(o, vertex);
+  if (!o->connection.looks_same) {
+    return event_towards(event, *o->reconnected, event.sample.wi, 1.0f);
   }
   ShiftedEvent same;
   same.wi = event.sample.wi;
@@ -68,18 +68,18 @@ ShiftedEvent OffsetPaths::linked_event(OffsetPath* o, const Vertex& vertex, cons
 }
 
 // Connects all pending offsets that have not tried yet.
-void OffsetPaths::link_all(const Vertex& vertex) {
+void OffsetPaths::reconnect_all(const Vertex& vertex) {
   ShiftedEvent events[kOffsets];
   bool wanted[kOffsets];
   bool any = false;
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    wanted[k] = o.stage == OffsetStage::Pending && !o.link.known;
+    wanted[k] = o.stage == OffsetStage::Pending && !o.connection.known;
     if (wanted[k]) {
-      o.link = OffsetLink{};
-      o.link.known = true;
-      o.link.transparent_depth = o.state.ray.state.transparent_depth;
-      const ShiftFailure failure = try_link(&o, vertex, &events[k]);
+      o.connection = OffsetConnection{};
+      o.connection.known = true;
+      o.connection.transparent_depth = o.state.ray.state.transparent_depth;
+      const ShiftFailure failure = try_reconnection(&o, vertex, &events[k]);
       wanted[k] = failure == ShiftFailure::None;
       count_failure(&counters_, failure);
       counters_.rays_shift_shadow += wanted[k] ? 1 : 0;
@@ -90,7 +90,7 @@ void OffsetPaths::link_all(const Vertex& vertex) {
   bool blocked[kOffsets] = {};
   if (any && packet) {
     const Lanes3 direction = lanes(events[0].wi, events[1].wi, events[2].wi, events[3].wi);
-    context_.scene.occluded4(spawn_rays_to(own_points(), direction, vertex.point), wanted, blocked);
+    context_.scene.occluded4(spawn_rays_to(offset_points(), direction, vertex.point), wanted, blocked);
   }
   for (int k = 0; k < kOffsets; ++k) {
     if (!wanted[k]) {
@@ -99,20 +99,20 @@ void OffsetPaths::link_all(const Vertex& vertex) {
     OffsetPath& o = offsets_[k];
     const Rgb through =
         packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
-               : segment_transmittance(context_, spawn_ray_to(o.here->point, vertex.point), base_state_.ray, &o.link.transparent_depth);
+               : segment_transmittance(context_, spawn_ray_to(o.here->point, vertex.point), base_state_.ray, &o.connection.transparent_depth);
     if (is_black(through)) {
       ++counters_.fail_occluded;
     } else {
-      open_link(&o, events[k], through);
+      open_connection(&o, events[k], through);
     }
   }
 }
 
 // Whether the offset has a connection to the shared vertex, from the side that the base sees.
 bool OffsetPaths::arrives(OffsetPath* o, const Vertex& vertex) {
-  if (!o->link.open) {
-    settle(o, OffsetStage::Dead);  // its cause was counted
-  } else if (!(glm::dot(vertex.facing_normal(), o->linked->wo) > 0.0f)) {
+  if (!o->connection.open) {
+    finalize(o, OffsetStage::Failed);  // its cause was counted
+  } else if (!(glm::dot(vertex.facing_normal(), o->reconnected->wo) > 0.0f)) {
     fail(o, ShiftFailure::Side);
   }
   return o->stage == OffsetStage::Pending;
@@ -126,7 +126,7 @@ bool OffsetPaths::shares(const Vec3& y, const Vertex& z, ScatterClass next) cons
 // The event at z, seen from the base's vertex or from y, has a lobe that looks alike from both.
 bool OffsetPaths::shares_direction(const Vec3& y, const Vertex& z, const ScatterEvent& event) const {
   const float width = event.sample.dirac ? 0.0f : class_width(z.shade.closures, event.scatter_class);
-  return looks_alike(base_position_, y, z.point.position, width);
+  return looks_similar(base_position_, y, z.point.position, width);
 }
 
 // Class D before class R or T: the offset shares its base's vertex, and where the lobe is wide the direction, too; or it goes on by a ray
@@ -138,18 +138,18 @@ void OffsetPaths::reach_sharp(const Vertex& vertex, const ScatterEvent& event) {
       copy_direction(&o, event);
     }
   }
-  link_all(vertex);
+  reconnect_all(vertex);
   for (OffsetPath& o : offsets_) {
     if (o.stage != OffsetStage::Pending || !arrives(&o, vertex)) {
       continue;
     }
-    see_linked(&o, vertex);
+    shade_reconnected(&o, vertex);
     const Vec3& y = o.here->point.position;
-    const bool alike = shares_direction(y, vertex, event);
-    if (alike != shares_direction(y, *o.linked, event)) {
+    const bool looks_same = shares_direction(y, vertex, event);
+    if (looks_same != shares_direction(y, *o.reconnected, event)) {
       fail(&o, ShiftFailure::Class);
-    } else if (alike) {
-      link(&o, vertex, event);
+    } else if (looks_same) {
+      reconnect_at(&o, vertex, event);
     } else {
       share_vertex(&o, vertex);
     }
@@ -159,12 +159,12 @@ void OffsetPaths::reach_sharp(const Vertex& vertex, const ScatterEvent& event) {
 // The base's vertex as seen from the offset becomes a vertex of its own, at which the event will be copied.
 void OffsetPaths::share_vertex(OffsetPath* o, const Vertex& vertex) {
   ++counters_.shifts_reconnected;
-  see_linked(o, vertex);
-  o->advance_to_linked();
-  o->state.throughput = o->link.throughput;
-  o->state.ray.state.transparent_depth = o->link.transparent_depth;
-  o->ratio = o->link.ratio;
-  o->kind_ratio = o->link.kind_ratio;
+  shade_reconnected(o, vertex);
+  o->advance_to_reconnected();
+  o->state.throughput = o->connection.throughput;
+  o->state.ray.state.transparent_depth = o->connection.transparent_depth;
+  o->ratio = o->connection.ratio;
+  o->kind_ratio = o->connection.kind_ratio;
   o->mixed = false;
   o->stage = OffsetStage::Traced;
   include_kind(o);
@@ -175,7 +175,7 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
   if (open_ == 0) {
     return;
   }
-  part_by_class(vertex, u);
+  decouple_by_class(vertex, u);
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Deeper) {
       o.state.throughput *= event.factor;
@@ -188,39 +188,39 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
     reach_sharp(vertex, event);
     return;
   }
-  if (may_wait()) {
-    wait(vertex, event);
+  if (may_defer()) {
+    defer(vertex, event);
     return;
   }
-  link_all(vertex);
+  reconnect_all(vertex);
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Pending && arrives(&o, vertex)) {
-      link(&o, vertex, event);
+      reconnect_at(&o, vertex, event);
     }
   }
 }
 
 // The rest is shared.
-void OffsetPaths::link(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) {
-  const ShiftedEvent shared = linked_event(o, vertex, event);
+void OffsetPaths::reconnect_at(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) {
+  const ShiftedEvent shared = reconnected_event(o, vertex, event);
   if (shared.failure != ShiftFailure::None) {
     fail(o, shared.failure);
     return;
   }
-  if (!(o->link.kind_ratio > 0.0f)) {
+  if (!(o->connection.kind_ratio > 0.0f)) {
     fail(o, ShiftFailure::Class);
     return;
   }
   ++counters_.shifts_reconnected;
-  o->state.throughput = o->link.throughput * shared.factor;
-  o->state.ray.state.transparent_depth = o->link.transparent_depth;
-  o->ratio = o->link.ratio * o->link.kind_ratio * shared.ratio;
+  o->state.throughput = o->connection.throughput * shared.factor;
+  o->state.ray.state.transparent_depth = o->connection.transparent_depth;
+  o->ratio = o->connection.ratio * o->connection.kind_ratio * shared.ratio;
   o->kind_ratio = shared.kind_ratio;
   o->shared_pdf = shared.pdf;
-  if (o->link.alike) {
+  if (o->connection.looks_same) {
     join(o);  // its density is the base's
   } else {
-    o->stage = OffsetStage::Linked;
+    o->stage = OffsetStage::Reconnected;
   }
 }
 

@@ -12,31 +12,31 @@
 
 namespace gradus {
 
-bool OffsetPaths::base_goes_on() const { return base_segment_->end == SegmentEnd::Surface && !base_state_.emission_only && !base_in_hole_; }
+bool OffsetPaths::base_continues() const { return base_segment_->end == SegmentEnd::Surface && !base_state_.emission_only && !base_in_holdout_; }
 
-bool OffsetPaths::goes_on(const OffsetPath& o) const {
-  return o.segment->end == SegmentEnd::Surface && !base_state_.emission_only && !(o.from_camera && is_hole(context_, *o.here));
+bool OffsetPaths::continues(const OffsetPath& o) const {
+  return o.segment->end == SegmentEnd::Surface && !base_state_.emission_only && !(o.from_camera && is_holdout(context_, *o.here));
 }
 
-// goes_on: the offset; leaves: it stands at a vertex that was lit.
-void OffsetPaths::part(int k, ShiftFailure cause, bool goes_on, bool leaves) {
+// continues: the offset; leaves: it stands at a vertex that was lit.
+void OffsetPaths::decouple(int k, ShiftFailure cause, bool continues, bool leaves) {
   OffsetPath& o = offsets_[k];
   count_failure(&counters_, cause);
-  if (goes_on) {
-    const PathResult& found = own_tracer_.go_on(*sampler_, o.state, o.here, leaves);
+  if (continues) {
+    const PathResult& found = decoupled_tracer_.continue_path(*sampler_, o.state, o.here, leaves);
     for (int c = 0; c < context_.components.count(); ++c) {
       add(k, c, pairs_[k].paired(Radiance(0.0f), Radiance(Rgb(found.radiance[size_t(c)]), 0.0f), o.ratio));
     }
-    counters_.rays_shift += own_rays_.rays_bounce;
-    counters_.rays_shift_shadow += own_rays_.rays_shadow;
-    own_rays_ = Counters{};
+    counters_.rays_shift += decoupled_rays_.rays_bounce;
+    counters_.rays_shift_shadow += decoupled_rays_.rays_shadow;
+    decoupled_rays_ = Counters{};
   }
-  settle(&o, OffsetStage::Parted);
+  finalize(&o, OffsetStage::Decoupled);
 }
 
 // Where the classes differ and the base's number takes both to the same, the event is copied, but the number is no longer free: the
 // probabilities of the class leave r.
-void OffsetPaths::part_by_class(const Vertex& vertex, const VertexSample& u) {
+void OffsetPaths::decouple_by_class(const Vertex& vertex, const VertexSample& u) {
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.stage != OffsetStage::Traced || !o.mixed) {
@@ -44,8 +44,8 @@ void OffsetPaths::part_by_class(const Vertex& vertex, const VertexSample& u) {
     }
     const Closures& base = vertex.shade.closures;
     const Closures& offset = o.here->shade.closures;
-    if (!choose_alike(base, offset, u.lobe.x)) {
-      part(k, ShiftFailure::Class, true, true);
+    if (!choose_same_class(base, offset, u.lobe.x)) {
+      decouple(k, ShiftFailure::Class, true, true);
       continue;
     }
     ScatterClass chosen;

@@ -2,7 +2,7 @@
 //
 // Which shift a path takes is decided by its classes, which a shift copies, and by predicates that are symmetric in base and offset:
 //   - a vertex of class D whose successor is of class D, or emits, or is a light sample: reconnection at the successor, the rest is shared;
-//   - class D before class R or T: the offset meets its base there, and shares the direction, too, where the lobe is wide (looks_alike()),
+//   - class D before class R or T: the offset meets its base there, and shares the direction, too, where the lobe is wide (looks_similar()),
 //     or copies the direction (shares_sharp_vertex());
 //   - class D before a short edge (is_short_edge()): random replay;
 //   - class R or T: the event is copied (half-vector, or the Dirac lobe), the offset traces a ray of its own.
@@ -23,17 +23,17 @@ enum class OffsetStage : uint8_t {
   Absent,   // no such neighbour, or it takes no samples
   Traced,   // stands at a vertex of its own that corresponds to the base's
   Pending,  // the base left in class D: stands where it was until it is known what the next vertex is used for
-  Linked,   // shares the base's vertices from here on, but on the first segment has a density of its own
+  Reconnected,   // shares the base's vertices from here on, but on the first segment has a density of its own
   Deeper,   // shares all from here on, but has passed more transparent surfaces, whose limit may stop it alone
-  Waiting,  // will be Linked at a vertex behind which the base has found nothing yet (offset_wait.cpp)
+  Deferred,  // will be Linked at a vertex behind which the base has found nothing yet (offset_wait.cpp)
   // Settled: what the base finds from here on is paired with the same times a throughput, by one ratio (Suffix).
   Shared,  // the first segment lies behind it
-  Parted,  // throughput 0: the two have no vertex in common any more, each goes on by itself
-  Dead,    // throughput and ratio 0: the shift failed, base contributions count alone
+  Decoupled,  // throughput 0: the two have no vertex in common any more, each goes on by itself
+  Failed,    // throughput and ratio 0: the shift failed, base contributions count alone
 };
-inline bool is_settled(OffsetStage stage) { return stage >= OffsetStage::Shared; }
+inline bool is_final(OffsetStage stage) { return stage >= OffsetStage::Shared; }
 // Goes along the base's segment, but each contribution is weighed for it.
-inline bool is_beside(OffsetStage stage) { return stage == OffsetStage::Linked || stage == OffsetStage::Deeper; }
+inline bool is_beside(OffsetStage stage) { return stage == OffsetStage::Reconnected || stage == OffsetStage::Deeper; }
 
 // What the base has found since settled offsets were last told. All of it lies behind what they share, so that one pair does for it.
 struct Suffix {
@@ -45,11 +45,11 @@ struct Suffix {
 };
 
 // Connection from an offset's vertex to the base's next one.
-struct OffsetLink {
+struct OffsetConnection {
   bool known = false;
   bool open = false;
-  bool shaded = false;  // the shared vertex as seen from the offset is known: see_linked()
-  bool alike = false;   // and it is what the base sees
+  bool shaded = false;  // the shared vertex as seen from the offset is known: shade_reconnected()
+  bool looks_same = false;   // and it is what the base sees
   Rgb throughput = Rgb(0.0f);
   float ratio = 0.0f;
   float kind_ratio = 0.0f;  // for light and paths that go on; emission looks at `ratio` alone (ShiftedEvent)
@@ -58,9 +58,9 @@ struct OffsetLink {
 };
 
 // A light sample seen from an offset's own vertex.
-struct OffsetLight {
+struct OffsetLightSample {
   bool known = false;
-  EmitterView view;
+  LightEvaluation view;
   bool traced = false;  // the shadow ray, for the first class that scatters the light
   Rgb transmittance = Rgb(0.0f);
   LitClass lit;  // of the class at hand
@@ -78,27 +78,27 @@ struct OffsetPath {
   bool fresh = false;                // it traced its own ray for the base's current segment
   bool mixed = false;                // it left its vertex, or will, by the class of the base's random number (shift/class_match.h)
   float shared_pdf = 0.0f;           // Linked: its density of the event that it linked by
-  OffsetLink link;
-  OffsetLight light;
+  OffsetConnection connection;
+  OffsetLightSample light;
   // Own vertices, the current one first; and the base's vertex as seen from here.
   Vertex* here = nullptr;
   Vertex* previous = nullptr;
-  Vertex* linked = nullptr;
+  Vertex* reconnected = nullptr;
   Vertex storage[3];
-  Segment own_segment;
+  Segment traced_segment;
 
   // To the next vertex of its own. The current one may belong to the path of its pixel.
   void advance() {
     previous = here;
-    here = unused(previous, linked);
-    segment = &own_segment;
+    here = unused(previous, reconnected);
+    segment = &traced_segment;
     camera = nullptr;
   }
   // To the base's vertex, as seen from here.
-  void advance_to_linked() {
+  void advance_to_reconnected() {
     previous = here;
-    here = linked;
-    linked = unused(previous, here);
+    here = reconnected;
+    reconnected = unused(previous, here);
   }
   Vertex* unused(const Vertex* a, const Vertex* b) {
     Vertex* v = storage;

@@ -40,34 +40,34 @@ OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraV
       vertices_(*vertices),
       clamps_(is_finite(context.clamp_direct) || is_finite(context.clamp_indirect)),
       joint_(!context.has_transparency && context.uniform_visibility && !context.kinds_matter),
-      own_tracer_(context, &own_scratch_, nullptr, &own_rays_, &nobody_) {
+      decoupled_tracer_(context, &decoupled_scratch_, nullptr, &decoupled_rays_, &nobody_) {
   for (OffsetPath& o : offsets_) {
     o.here = &o.storage[0];
     o.previous = &o.storage[1];
-    o.linked = &o.storage[2];
+    o.reconnected = &o.storage[2];
   }
 }
 
 void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample, uint32_t wanted) {
-  own_tracer_.want(wanted);
+  decoupled_tracer_.want(wanted);
   pairs_ = pairs;
   sample_ = &sample;
   for (int c = 0; c < context_.components.count(); ++c) gradient_[size_t(c)].fill(Radiance(0.0f));
 }
 
 void OffsetPaths::collect(const Contribution& c, const Rgb& weight) {
-  if (kept_ != nullptr) {
+  if (deferred_vertex_ != nullptr) {
     resume();
   }
   if (c.component != suffix_.component) {
-    tell_settled();
+    flush_final();
     suffix_.component = c.component;
   }
   const Rgb tail = suffix_.weight * weight * c.tail;
   if (clamps_) {
     for (int k = 0; k < kOffsets; ++k) {
       const OffsetPath& o = offsets_[k];
-      if (is_settled(o.stage)) {
+      if (is_final(o.stage)) {
         const Rgb value = clamp_contribution(context_, o.state.throughput * tail, c.indirect);
         add(k, c.component, pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(value, 0.0f), o.ratio));
       }
@@ -84,13 +84,13 @@ void OffsetPaths::scale(const Rgb& factor) {
   suffix_.weight *= factor;
 }
 
-void OffsetPaths::tell_settled() {
+void OffsetPaths::flush_final() {
   if (suffix_.empty) {
     return;
   }
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    if (is_settled(o.stage)) {
+    if (is_final(o.stage)) {
       const Rgb value = o.state.throughput * suffix_.tail;
       add(k, suffix_.component, pairs_[k].paired(Radiance(suffix_.base, 0.0f), Radiance(value, 0.0f), o.ratio));
       o.state.throughput *= suffix_.weight;
@@ -99,14 +99,14 @@ void OffsetPaths::tell_settled() {
   suffix_ = Suffix{};
 }
 
-void OffsetPaths::settle(OffsetPath* o, OffsetStage stage) {
-  tell_settled();
-  open_ -= is_settled(o->stage) ? 0 : 1;
+void OffsetPaths::finalize(OffsetPath* o, OffsetStage stage) {
+  flush_final();
+  open_ -= is_final(o->stage) ? 0 : 1;
   o->stage = stage;
   if (stage != OffsetStage::Shared) {
     o->state.throughput = Rgb(0.0f);
   }
-  if (stage == OffsetStage::Dead) {
+  if (stage == OffsetStage::Failed) {
     o->ratio = 0.0f;
   }
 }
@@ -118,7 +118,7 @@ void OffsetPaths::join(OffsetPath* o) {
   } else if (o->state.ray.state.transparent_depth > base_state_.ray.state.transparent_depth) {
     o->stage = OffsetStage::Deeper;
   } else {
-    settle(o, OffsetStage::Shared);
+    finalize(o, OffsetStage::Shared);
   }
 }
 
@@ -127,11 +127,11 @@ bool OffsetPaths::passes(const OffsetPath& o, int crossed) const {
 }
 
 void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
-  settle(offset, OffsetStage::Dead);
+  finalize(offset, OffsetStage::Failed);
   count_failure(&counters_, cause);
 }
 
-Points4 OffsetPaths::own_points() const {
+Points4 OffsetPaths::offset_points() const {
   return gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point, offsets_[3].here->point, camera_sample_.time);
 }
 
@@ -142,7 +142,7 @@ bool OffsetPaths::any(OffsetStage stage) const {
 void OffsetPaths::pair(int k, const Contribution& c, const Rgb& offset_value, float ratio) {
   if (!(ratio > 0.0f) || !is_finite(ratio)) {
     ++counters_.fail_jacobian;
-    alone(k, c);
+    add_unpaired(k, c);
     return;
   }
   const Radiance offset(clamp_contribution(context_, offset_value, c.indirect), 0.0f);
@@ -153,7 +153,7 @@ void OffsetPaths::begin(const Sampler& sampler, const CameraSample& sample) {
   sampler_ = &sampler;
   camera_sample_ = sample;
   open_ = 0;
-  kept_ = nullptr;
+  deferred_vertex_ = nullptr;
   suffix_ = Suffix{};
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
@@ -169,7 +169,7 @@ void OffsetPaths::begin(const Sampler& sampler, const CameraSample& sample) {
 void OffsetPaths::note_arrival(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
   base_segment_ = &segment;
   base_state_ = state;
-  base_in_hole_ = source.vertex == nullptr && segment.end == SegmentEnd::Surface && is_hole(context_, vertex);
+  base_in_holdout_ = source.vertex == nullptr && segment.end == SegmentEnd::Surface && is_holdout(context_, vertex);
   if (source.vertex != nullptr) {
     base_event_ = *source.event;
     base_from_ = source.vertex;
@@ -183,7 +183,7 @@ void OffsetPaths::note_arrival(const RaySource& source, const PathState& state, 
 }
 
 void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
-  if (kept_ != nullptr) {
+  if (deferred_vertex_ != nullptr) {
     latest_ = {source, &state, &segment, &vertex};
   }
   if (open_ == 0) {
@@ -198,7 +198,7 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
     for (OffsetPath& o : offsets_) {
       if (o.stage == OffsetStage::Traced) {
         o.stage = OffsetStage::Pending;
-        o.link.known = false;
+        o.connection.known = false;
       }
     }
   }
@@ -233,12 +233,12 @@ void OffsetPaths::survived(float probability, const Vertex& vertex) {
     return;
   }
   for (OffsetPath& o : offsets_) {
-    if (is_settled(o.stage)) {
+    if (is_final(o.stage)) {
       continue;  // told by the suffix
     }
     o.state.throughput *= factor;
     if (o.stage == OffsetStage::Pending) {
-      o.link.throughput *= factor;  // a connection that emission already asked for
+      o.connection.throughput *= factor;  // a connection that emission already asked for
     } else if (o.stage == OffsetStage::Traced) {
       shade_vertex(context_, o.state.ray.state, o.here);
       o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);

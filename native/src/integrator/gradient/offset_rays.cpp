@@ -10,19 +10,19 @@ namespace gradus {
 void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
   o->advance();
   o->fresh = true;
-  if (shows_lights_alone(context_, base_state_)) {
-    counters_.rays_shift += trace_to_lights(context_, o->state.ray, &o->own_segment) ? 1 : 0;
+  if (shows_only_lights(context_, base_state_)) {
+    counters_.rays_shift += trace_to_lights(context_, o->state.ray, &o->traced_segment) ? 1 : 0;
     return;
   }
   ++counters_.rays_shift;
-  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->own_segment, Shading::Later);
+  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->traced_segment, Shading::Later);
 }
 
 // In the base's cell of the lattice an offset's camera ray is that of its pixel's base path.
 CameraVertex* OffsetPaths::known_vertex(int k) const {
   const int32_t x = sample_->x + kOffsetX[k], y = sample_->y + kOffsetY[k];
-  const bool same_cell = lattice_cell(x) == lattice_cell(sample_->x) && lattice_cell(y) == lattice_cell(sample_->y);
-  return sample_->first != nullptr && same_cell ? vertices_.at(x, y) : nullptr;
+  const bool same_block = pixel_block_of(x) == pixel_block_of(sample_->x) && pixel_block_of(y) == pixel_block_of(sample_->y);
+  return sample_->first != nullptr && same_block ? vertices_.at(x, y) : nullptr;
 }
 
 void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
@@ -86,7 +86,7 @@ void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathStat
   o->state.ray.state.transparent_depth = transparent_depth;
   o->state.ray.ray = spawn_ray(o->here->point, event.wi);
   o->state.depth = state.depth;
-  o->state.word = state.word;
+  o->state.lpe_state = state.lpe_state;
   o->state.throughput *= event.factor;
   o->ratio *= event.ratio;
   o->kind_ratio = event.kind_ratio;
@@ -124,7 +124,7 @@ bool OffsetPaths::trace_surface(OffsetPath* o, const ShiftedEvent& event) {
   leave(o, event, base_state_);
   o->event.sample.dirac = false;
   o->advance();
-  trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->own_segment);
+  trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->traced_segment);
   if (o->segment->end != SegmentEnd::Surface) {
     fail(o, ShiftFailure::Missed);
     return false;
@@ -151,8 +151,8 @@ void OffsetPaths::copy_direction(OffsetPath* o, const ScatterEvent& next) {
 // Class D before z over a short edge. Not at a surface that is sharp alone: there the direction is copied, which nothing forbids at the
 // other end.
 bool OffsetPaths::replays(const Vec3& y, const Vertex& z) const {
-  const bool rough = z.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
-  return rough && is_short_edge(base_position_, y, z.point.position);
+  const bool non_specular = z.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
+  return non_specular && is_short_edge(base_position_, y, z.point.position);
 }
 
 void OffsetPaths::replay_short_edges(const Vertex& vertex) {

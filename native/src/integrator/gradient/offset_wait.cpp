@@ -12,50 +12,50 @@
 namespace gradus {
 
 // All that are open are to be linked here. Surfaces that let paths through would have to be counted meanwhile.
-bool OffsetPaths::may_wait() const {
+bool OffsetPaths::may_defer() const {
   const auto pending = std::count_if(offsets_.begin(), offsets_.end(), [](const OffsetPath& o) { return o.stage == OffsetStage::Pending; });
   return !context_.has_transparency && pending == open_;
 }
 
-void OffsetPaths::wait(const Vertex& vertex, const ScatterEvent& event) {
-  tell_settled();  // from here on the suffix's weight is that since this event, which link() makes
+void OffsetPaths::defer(const Vertex& vertex, const ScatterEvent& event) {
+  flush_final();  // from here on the suffix's weight is that since this event, which link() makes
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Pending) {
-      o.stage = OffsetStage::Waiting;
+      o.stage = OffsetStage::Deferred;
     }
   }
   open_ = 0;
-  kept_ = &vertex;
-  kept_event_ = event;
-  sees_kept_ = true;
+  deferred_vertex_ = &vertex;
+  deferred_event_ = event;
+  sees_deferred_ = true;
 }
 
 // The base has found something: now as scatter(), and what was told since, would have done.
 void OffsetPaths::resume() {
-  const Vertex& vertex = *std::exchange(kept_, nullptr);
+  const Vertex& vertex = *std::exchange(deferred_vertex_, nullptr);
   const Rgb since = suffix_.weight;
-  tell_settled();
-  bool waited[kOffsets];
+  flush_final();
+  bool deferred[kOffsets];
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    waited[k] = o.stage == OffsetStage::Waiting;
-    if (waited[k]) {
+    deferred[k] = o.stage == OffsetStage::Deferred;
+    if (deferred[k]) {
       o.stage = OffsetStage::Pending;
       ++open_;
     }
   }
-  link_all(vertex);
+  reconnect_all(vertex);
   for (int k = 0; k < kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
-    if (!waited[k]) {
+    if (!deferred[k]) {
       continue;
     }
     if (arrives(&o, vertex)) {
-      link(&o, vertex, kept_event_);
+      reconnect_at(&o, vertex, deferred_event_);
     }
     o.state.throughput *= since;
   }
-  if (sees_kept_) {
+  if (sees_deferred_) {
     note_arrival(latest_.source, *latest_.state, *latest_.segment, *latest_.vertex);
   } else {
     seen();

@@ -11,16 +11,16 @@ class PathIntegrator final : public Integrator {
   explicit PathIntegrator(const IntegratorContext& context)
       : context_(context), path_(*context_.snapshot, context_.camera, context_.settings, context_.components) {}
 
-  void sample(const WorkUnit& unit, Frame* frame, Counters* counters, const std::atomic<bool>& stop) const override {
+  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
     const auto scratch = std::make_unique<PathScratch>();
-    PassRecorder recorder(path_, frame, counters);
+    PassRecorder recorder(path_, film, counters);
     NoObserver observer;
     PathTracer<NoObserver> tracer(path_, scratch.get(), &recorder, counters, &observer);
     const auto vertices = std::make_unique<CameraVertices>(path_);
-    for_each_sample(path_, unit, *frame, vertices.get(), stop, [&](const PixelSample& s) {
-      recorder.begin_sample(s.pixel, s.half, s.number, unit.again);
+    for_each_sample(path_, unit, *film, vertices.get(), stop, [&](const PixelSample& s) {
+      recorder.begin_sample(s.pixel, s.half, s.number, unit.adds_components);
       tracer.want(unit_components(unit, s.pixel));
-      add_primal(tracer.trace(s.sampler, s.film, s.first), s, unit, frame, counters);
+      add_primal(tracer.trace(s.sampler, s.film, s.first), s, unit, film, counters);
     });
   }
 

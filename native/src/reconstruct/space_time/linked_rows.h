@@ -12,8 +12,8 @@
 namespace gradus {
 
 // F_t: to[i] = next[φ(i)] in row y, all channels; pixels without a link are left alone.
-inline void gather_row(const Links& links, int y, const Field& next, RollingRows* to) {
-  links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+inline void gather_row(const CorrespondenceMap& correspondence, int y, const Field& next, RollingRows* to) {
+  correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
     for (int c = 0; c < next.channels(); ++c) {
       std::copy_n(next.row(y + dy, c) + begin + dx, end - begin, to->row(y, c) + begin);
     }
@@ -21,8 +21,8 @@ inline void gather_row(const Links& links, int y, const Field& next, RollingRows
 }
 
 // F_t x_{t+1} − x_t: to[i] = next[φ(i)] − x[i] in row y, all channels; pixels without a link are left alone.
-inline void subtract_row(const Links& links, int y, const Field& x, const Field& next, RollingRows* to) {
-  links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+inline void subtract_row(const CorrespondenceMap& correspondence, int y, const Field& x, const Field& next, RollingRows* to) {
+  correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
     for (int c = 0; c < x.channels(); ++c) {
       const float *here = x.row(y, c), *there = next.row(y + dy, c) + dx;
       float* out = to->row(y, c);
@@ -32,10 +32,10 @@ inline void subtract_row(const Links& links, int y, const Field& x, const Field&
 }
 
 // F_tᵀ: next[φ(i)] += from[i] in row y, of the rows of all channels one after another.
-inline void scatter_row(const Links& links, int y, const float* from, Field* next) {
-  links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+inline void scatter_row(const CorrespondenceMap& correspondence, int y, const float* from, Field* next) {
+  correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
     for (int c = 0; c < next->channels(); ++c) {
-      const float* row = from + ptrdiff_t(c) * links.width();
+      const float* row = from + ptrdiff_t(c) * correspondence.width();
       float* to = next->row(y + dy, c) + dx;
       for (int i = begin; i < end; ++i) to[i] += row[i];
     }

@@ -8,11 +8,11 @@
 
 namespace gradus {
 
-void Links::set_row(int y, const int32_t* targets, std::vector<bool>* taken) {
+void CorrespondenceMap::set_row(int y, const int32_t* targets, std::vector<bool>* taken) {
   Shift* shift = shifts_.data() + size_t(y) * size_t(width_);
   for (int x = 0; x < width_; ++x) {
     const int32_t target = targets[x];
-    if (target == kNoLink) {
+    if (target == kNoCorrespondence) {
       shift[x] = kNone;
       continue;
     }
@@ -25,16 +25,16 @@ void Links::set_row(int y, const int32_t* targets, std::vector<bool>* taken) {
   }
 }
 
-Links read_links(const WindowSource& source, int t) {
+CorrespondenceMap read_correspondence(const WindowSource& source, int t) {
   const WindowSize size = source.size();
-  Links links(size.width, size.height);
+  CorrespondenceMap correspondence(size.width, size.height);
   std::vector<int32_t> row(static_cast<size_t>(size.width));
   std::vector<bool> taken(size_t(size.width) * size_t(size.height), false);
   for (int y = 0; y < size.height; ++y) {
-    source.read_links(t, y, row.data());
-    links.set_row(y, row.data(), &taken);
+    source.read_correspondence(t, y, row.data());
+    correspondence.set_row(y, row.data(), &taken);
   }
-  return links;
+  return correspondence;
 }
 
 }  // namespace gradus

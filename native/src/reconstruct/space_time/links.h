@@ -10,18 +10,18 @@ namespace gradus {
 
 class WindowSource;
 
-class Links {
+class CorrespondenceMap {
  public:
   // Where a pixel goes, relative to itself. Equal for neighbours that stay neighbours.
   using Shift = int32_t;
   static constexpr Shift kNone = INT32_MIN;
 
-  Links(int width, int height) : width_(width), height_(height), shifts_(size_t(width) * size_t(height), kNone) {}
+  CorrespondenceMap(int width, int height) : width_(width), height_(height), shifts_(size_t(width) * size_t(height), kNone) {}
   int width() const { return width_; }
   int height() const { return height_; }
   const Shift* row(int y) const { return shifts_.data() + size_t(y) * size_t(width_); }
 
-  // From target pixels (WindowSource::read_links()). Throws invalid_argument where a target lies outside or is another pixel's, too:
+  // From target pixels (WindowSource::read_correspondence()). Throws invalid_argument where a target lies outside or is another pixel's, too:
   // threads write to linked pixels.
   void set_row(int y, const int32_t* targets, std::vector<bool>* taken);
 
@@ -43,6 +43,6 @@ class Links {
 };
 
 // From frame t of a window to the next.
-Links read_links(const WindowSource& source, int t);
+CorrespondenceMap read_correspondence(const WindowSource& source, int t);
 
 }  // namespace gradus

@@ -14,7 +14,7 @@ class HalfDifferences final : public WindowSource {
   explicit HalfDifferences(const HalvedWindowSource& source) : source_(source) {}
   WindowSize size() const override { return source_.size(); }
   void read_row(RowKind kind, int t, int y, float* out) const override { source_.read_half_differences(kind, t, y, out); }
-  void read_links(int t, int y, int32_t* out) const override { source_.read_links(t, y, out); }
+  void read_correspondence(int t, int y, int32_t* out) const override { source_.read_correspondence(t, y, out); }
 
  private:
   const HalvedWindowSource& source_;
@@ -23,7 +23,7 @@ class HalfDifferences final : public WindowSource {
 // Of the first three channels, by frames.
 class WindowErrors {
  public:
-  WindowErrors(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, const CancelTest& cancel, SolveReport* report)
+  WindowErrors(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, const CancelCheck& cancel, SolveReport* report)
       : noise_(l2(HalfDifferences(source), alpha, cancel, report)) {
     if (reconstruction != GRADUS_RECONSTRUCTION_L2) l2_ = l2(source, alpha, cancel, report);
   }
@@ -40,7 +40,7 @@ class WindowErrors {
   }
 
  private:
-  static Frames l2(const WindowSource& source, float alpha, const CancelTest& cancel, SolveReport* report) {
+  static Frames l2(const WindowSource& source, float alpha, const CancelCheck& cancel, SolveReport* report) {
     return WindowSolver(source, GRADUS_RECONSTRUCTION_L2, alpha, cancel, report).take_solution();
   }
 
@@ -50,7 +50,7 @@ class WindowErrors {
 
 }  // namespace
 
-void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, bool with_error, const CancelTest& cancel,
+void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, bool with_error, const CancelCheck& cancel,
                         SolveReport* report, const std::function<void(int t, Reconstructed picture)>& take) {
   const WindowSize size = source.size();
   WindowSolver solver(source, reconstruction, alpha, cancel, report);

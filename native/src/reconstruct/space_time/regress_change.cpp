@@ -16,8 +16,8 @@ namespace {
 // Errors are alike in neighbours, and differ from one frame to the next: docs/method.md.
 constexpr float kTimesError = 2.0f;
 // Squared error of what shows none, in median luminances.
-constexpr float kLeastError = 1e-8f;
-constexpr int kHoleRadius = 7;
+constexpr float kMinError = 1e-8f;
+constexpr int kDisocclusionRadius = 7;
 
 // Channels [first, first + channels) of frame t's rows in time; 0 where there are none.
 template <class ReadRow>
@@ -44,14 +44,14 @@ Field square(Field field) {
 }
 
 // Pixels without a link are taken to be like those around them: 0 would tell their neighbours that nothing changes.
-class HoleFiller {
+class DisocclusionFiller {
  public:
   // linked: 0 or 1.
-  explicit HoleFiller(Field linked) : linked_(std::move(linked)), around_(box_mean(linked_, kHoleRadius)) {}
+  explicit DisocclusionFiller(Field linked) : linked_(std::move(linked)), around_(box_mean(linked_, kDisocclusionRadius)) {}
 
   // Of fields that are 0 in holes.
-  void fill_with_mean(Field* field) const { fill(field, box_mean(*field, kHoleRadius), identity); }
-  void fill_with_rms(Field* field) const { fill(field, box_mean(square(*field), kHoleRadius), root); }
+  void fill_with_mean(Field* field) const { fill(field, box_mean(*field, kDisocclusionRadius), identity); }
+  void fill_with_rms(Field* field) const { fill(field, box_mean(square(*field), kDisocclusionRadius), root); }
 
  private:
   static float identity(float value) { return value; }
@@ -67,8 +67,8 @@ class HoleFiller {
   Field linked_, around_;
 };
 
-Field linked_pixels(const Links& links) {
-  return make_field(links.width(), links.height(), [&](int x, int y) { return links.row(y)[x] == Links::kNone ? 0.0f : 1.0f; });
+Field corresponding_pixels(const CorrespondenceMap& correspondence) {
+  return make_field(correspondence.width(), correspondence.height(), [&](int x, int y) { return correspondence.row(y)[x] == CorrespondenceMap::kNone ? 0.0f : 1.0f; });
 }
 
 // Of a component, in the scale of 1 for the median luminance.
@@ -78,7 +78,7 @@ struct ComponentChange {
 };
 
 // Without what the links' rounding makes of it.
-ComponentChange read_change(const HalvedWindowSource& source, int t, const Links& links, Field* rounding, float scale) {
+ComponentChange read_change(const HalvedWindowSource& source, int t, const CorrespondenceMap& correspondence, Field* rounding, float scale) {
   const WindowSize size = source.size();
   const auto values = [&](int y, float* row) { source.read_row(RowKind::kDt, t, y, row); };
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
@@ -86,7 +86,7 @@ ComponentChange read_change(const HalvedWindowSource& source, int t, const Links
   keep_sampled_share(change.image.mean, rounding);
   for_values(&change.image.mean, [&](float& value, int x, int y, int c) { value -= rounding->row(y, c)[x]; });
   normalise(scale, &change.image);
-  const HoleFiller holes(linked_pixels(links));
+  const DisocclusionFiller holes(corresponding_pixels(correspondence));
   holes.fill_with_mean(&change.image.mean);
   holes.fill_with_rms(&change.image.half_difference);
   if (size.channels > 3) {
@@ -109,14 +109,14 @@ Field join(const Field& colours, const Field& alpha, const Field& rounding, floa
 }  // namespace
 
 Change regress_change(const ComponentSources& components, int t, const std::vector<Field>& pictures, const Features& features, float scale,
-                      const CancelTest& cancel) {
+                      const CancelCheck& cancel) {
   Change change;
   HalvedImage sum;
   std::vector<Field> colours, alphas, roundings;
   for (size_t k = 0; k < components.size(); ++k) {
-    change.links.push_back(read_links(*components[k], t));
-    roundings.push_back(change_by_rounding(pictures[k], change.links[k], *components[k], t));
-    ComponentChange component = read_change(*components[k], t, change.links[k], &roundings[k], scale);
+    change.correspondence.push_back(read_correspondence(*components[k], t));
+    roundings.push_back(rounding_change(pictures[k], change.correspondence[k], *components[k], t));
+    ComponentChange component = read_change(*components[k], t, change.correspondence[k], &roundings[k], scale);
     colours.push_back(component.image.mean);
     alphas.push_back(std::move(component.alpha));
     if (colours.size() == 1) {
@@ -127,14 +127,14 @@ Change regress_change(const ComponentSources& components, int t, const std::vect
     }
   }
   const FeatureRegression regression(features, sum, cancel);
-  apply_to_parts(
+  apply_to_terms(
       regression.image(), [&](size_t, const Field& part) { return regression.apply(part, cancel); }, &colours);
   for (size_t k = 0; k < components.size(); ++k) {
     if (alphas[k].width() > 0 && !is_black(alphas[k])) alphas[k] = regression.apply(alphas[k], cancel);
     change.difference.push_back(join(colours[k], alphas[k], roundings[k], scale));
   }
   change.weight = make_field(sum.mean.width(), sum.mean.height(), [&](int x, int y) {
-    return track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kLeastError));
+    return track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kMinError));
   });
   return change;
 }

@@ -13,7 +13,7 @@ namespace gradus {
 
 // From one frame to the next, of components that may go different ways.
 struct Change {
-  std::vector<Links> links;       // of each
+  std::vector<CorrespondenceMap> correspondence;       // of each
   std::vector<Field> difference;  // likewise, channels of the sources; of pixels without a link any number
   Field weight;                   // 1/(estimated squared error of all differences of a pixel together)
 };
@@ -23,6 +23,6 @@ using ComponentSources = std::vector<std::unique_ptr<HalvedWindowSource>>;
 // From frame t on. All components go through one regression, that of their sum. pictures: of the components of the frame, by which the part
 // of the change that links to whole pixels make is known; features: the frame's, filtered; scale: its median luminance.
 Change regress_change(const ComponentSources& components, int t, const std::vector<Field>& pictures, const Features& features, float scale,
-                      const CancelTest& cancel);
+                      const CancelCheck& cancel);
 
 }  // namespace gradus

@@ -15,12 +15,12 @@ namespace gradus {
 namespace {
 
 // Squared error of what shows none, in median luminances.
-constexpr float kLeastError = 1e-6f;
+constexpr float kMinError = 1e-6f;
 // Squared distance that errors explain, in these: eight deviations.
 constexpr float kExplained = 64.0f;
 constexpr int kColors = 3;
 
-Field to_field(const Frame& frame, const std::vector<float>& image, int channels) {
+Field to_field(const Film& frame, const std::vector<float>& image, int channels) {
   const auto w = size_t(frame.region.width()), n = size_t(channels);
   Field field(frame.region.width(), frame.region.height(), channels);
   for_values(&field, [&](float& value, int x, int y, int c) { value = image[(size_t(y) * w + size_t(x)) * n + size_t(c)]; });
@@ -47,15 +47,15 @@ Apart measure(const Change& change, const std::vector<Field>& here, const std::v
   Apart apart{Field(w, h, kColors), Field(w, h, 1)};
   for (size_t k = 0; k < here.size(); ++k) {
     for_rows(h, [&](int y) {
-      change.links[k].for_runs(y, [&](int begin, int end, int dx, int dy) {
+      change.correspondence[k].for_runs(y, [&](int begin, int end, int dx, int dy) {
         for (int c = 0; c < kColors; ++c) {
           const float *from = here[k].row(y, c), *to = next[k].row(y + dy, c) + dx, *difference = change.difference[k].row(y, c);
           float* sum = apart.colours.row(y, c);
           for (int i = begin; i < end; ++i) sum[i] += to[i] - from[i] - difference[i];
         }
         const float *e = error.row(y), *e_next = next_error.row(y + dy) + dx;
-        float* most = apart.error.row(y);
-        for (int i = begin; i < end; ++i) most[i] = std::max(most[i], e[i] + e_next[i]);
+        float* maximum = apart.error.row(y);
+        for (int i = begin; i < end; ++i) maximum[i] = std::max(maximum[i], e[i] + e_next[i]);
       });
     });
   }
@@ -97,7 +97,7 @@ Reconstructed to_picture(std::vector<Field> components, size_t brightest) {
 
 }  // namespace
 
-void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelTest& cancel, SolveReport* report, const Take& take) {
+void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelCheck& cancel, SolveReport* report, const Take& take) {
   estimates_.erase(estimates_.begin(), estimates_.lower_bound(frames.first));
   std::vector<const Estimate*> window;
   for (int frame = frames.first; frame <= frames.last && !cancel(); ++frame) {
@@ -113,7 +113,7 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelTest&
   for (size_t k = 0; k < window[0]->pictures.size(); ++k) {
     std::vector<TrackStep> steps;
     for (size_t t = 0; t + 1 < window.size(); ++t) {
-      steps.push_back({window[t]->change->links[k], window[t]->change->difference[k], couplings[t]});
+      steps.push_back({window[t]->change->correspondence[k], window[t]->change->difference[k], couplings[t]});
     }
     std::vector<Field> pictures, weights;
     for (const Estimate* estimate : window) {
@@ -126,9 +126,9 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelTest&
   for (size_t t = 0; t < window.size(); ++t) take(int(t), to_picture(std::exchange(solved[t], {}), window[t]->brightest));
 }
 
-const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const CancelTest& cancel, SolveReport* report) {
+const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const CancelCheck& cancel, SolveReport* report) {
   auto known = estimates_.find(frame);
-  if (known == estimates_.end()) known = estimates_.emplace(frame, still(*open_(frame, cancel), cancel, report)).first;
+  if (known == estimates_.end()) known = estimates_.emplace(frame, estimate_single_frame(*open_(frame, cancel), cancel, report)).first;
   Estimate& estimate = known->second;
   if (!changes || estimate.change) return estimate;
   const ComponentSources sources = differences_(frame, cancel);
@@ -138,7 +138,7 @@ const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, boo
   return estimate;
 }
 
-RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, const CancelTest& cancel, SolveReport* report) {
+RegularizedWindows::Estimate RegularizedWindows::estimate_single_frame(const Film& samples, const CancelCheck& cancel, SolveReport* report) {
   Estimate estimate;
   estimate.features = filter_features(read_features(samples));
   const Reconstructed picture = regularize(samples, estimate.features, samples.components.size() > 1, cancel, report);
@@ -146,9 +146,9 @@ RegularizedWindows::Estimate RegularizedWindows::still(const Frame& samples, con
   for (const std::vector<float>& image : picture.components) estimate.pictures.push_back(to_field(samples, image, samples.channels));
   estimate.brightest = brightest(estimate.pictures);
   estimate.error = to_field(samples, picture.error, 1);
-  const float scale = scale_of(estimate.pictures), least = kLeastError * scale * scale;
+  const float scale = scale_of(estimate.pictures), minimum = kMinError * scale * scale;
   estimate.weight = make_field(samples.region.width(), samples.region.height(),
-                               [&](int x, int y) { return track_weight(estimate.error.row(y)[x] + least); });
+                               [&](int x, int y) { return track_weight(estimate.error.row(y)[x] + minimum); });
   return estimate;
 }
 

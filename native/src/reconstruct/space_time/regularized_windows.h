@@ -22,15 +22,15 @@ namespace gradus {
 class RegularizedWindows {
  public:
   // All samples of a frame, replays too, with features: asked for once, and not kept. Both throw the Error CANCELLED.
-  using OpenFrame = std::function<std::shared_ptr<const Frame>(int frame, const CancelTest& cancel)>;
+  using OpenFilm = std::function<std::shared_ptr<const Film>(int frame, const CancelCheck& cancel)>;
   // Of each component a window of a frame and the next one, of which rows of pixels over time are read; after the frame itself.
-  using OpenDifferences = std::function<ComponentSources(int frame, const CancelTest& cancel)>;
-  RegularizedWindows(OpenFrame open, OpenDifferences differences) : open_(std::move(open)), differences_(std::move(differences)) {}
+  using OpenDifferences = std::function<ComponentSources(int frame, const CancelCheck& cancel)>;
+  RegularizedWindows(OpenFilm open, OpenDifferences differences) : open_(std::move(open)), differences_(std::move(differences)) {}
 
   // Takes the pictures of a window's frames, in order, t counted from its first. Windows come in order: what two of them share is computed
   // once. Nothing is taken when cancelled.
   using Take = std::function<void(int t, Reconstructed picture)>;
-  void reconstruct(const FrameRange& frames, const CancelTest& cancel, SolveReport* report, const Take& take);
+  void reconstruct(const FrameRange& frames, const CancelCheck& cancel, SolveReport* report, const Take& take);
 
  private:
   struct Estimate {
@@ -42,10 +42,10 @@ class RegularizedWindows {
     std::optional<Change> change;  // to the next frame, where that is in the same window
   };
   // changes: the next frame is in the window, too.
-  const Estimate& estimated(int frame, bool changes, const CancelTest& cancel, SolveReport* report);
-  static Estimate still(const Frame& samples, const CancelTest& cancel, SolveReport* report);
+  const Estimate& estimated(int frame, bool changes, const CancelCheck& cancel, SolveReport* report);
+  static Estimate estimate_single_frame(const Film& samples, const CancelCheck& cancel, SolveReport* report);
 
-  OpenFrame open_;
+  OpenFilm open_;
   OpenDifferences differences_;
   std::map<int, Estimate> estimates_;  // by frame
 };

@@ -19,18 +19,18 @@ constexpr int kTaps = 4;
 constexpr int kShareRadius = 7;
 constexpr int kColors = 3;
 
-struct Ways {
+struct Displacements {
   std::vector<Vec2> off_centre, whole;
   std::vector<bool> linked;
 };
 
-Ways read_ways(const Links& links, const HalvedWindowSource& source, int t) {
-  const auto width = size_t(links.width()), pixels = width * size_t(links.height());
-  Ways ways{std::vector<Vec2>(pixels), std::vector<Vec2>(pixels), std::vector<bool>(pixels, false)};
-  for (int y = 0; y < links.height(); ++y) {
+Displacements read_displacements(const CorrespondenceMap& correspondence, const HalvedWindowSource& source, int t) {
+  const auto width = size_t(correspondence.width()), pixels = width * size_t(correspondence.height());
+  Displacements ways{std::vector<Vec2>(pixels), std::vector<Vec2>(pixels), std::vector<bool>(pixels, false)};
+  for (int y = 0; y < correspondence.height(); ++y) {
     const size_t first = size_t(y) * width;
     source.read_off_centre(t, y, ways.off_centre.data() + first);
-    links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+    correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
       for (size_t i = first + size_t(begin); i < first + size_t(end); ++i) {
         ways.whole[i] = Vec2(float(dx), float(dy)) + ways.off_centre[i];
         ways.linked[i] = true;
@@ -46,7 +46,7 @@ struct Lookup {
   std::array<float, kTaps * kTaps> weight{};
 };
 
-Lookup look_up(const Ways& ways, int x, int y, int width, int height) {
+Lookup look_up(const Displacements& ways, int x, int y, int width, int height) {
   const size_t here = size_t(y) * size_t(width) + size_t(x);
   const Vec2 from = -ways.off_centre[here], before = glm::floor(from);
   const std::array<float, kTaps> wx = cubic_weights(from.x - before.x), wy = cubic_weights(from.y - before.y);
@@ -66,9 +66,9 @@ Lookup look_up(const Ways& ways, int x, int y, int width, int height) {
 
 }  // namespace
 
-Field change_by_rounding(const Field& picture, const Links& links, const HalvedWindowSource& source, int t) {
+Field rounding_change(const Field& picture, const CorrespondenceMap& correspondence, const HalvedWindowSource& source, int t) {
   const int width = picture.width(), height = picture.height();
-  const Ways ways = read_ways(links, source, t);
+  const Displacements ways = read_displacements(correspondence, source, t);
   Field change(width, height, picture.channels());
   for_rows(height, [&](int y) {
     for (int x = 0; x < width; ++x) {

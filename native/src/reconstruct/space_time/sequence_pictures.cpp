@@ -20,7 +20,7 @@ bool SequencePictures::has(int frame) const {
          (*next_window_ <= grid_.last_with(frame) && blend_.has_begun(frame));
 }
 
-Reconstructed SequencePictures::take(int frame, const CancelTest& cancel, SolveReport* report) {
+Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, SolveReport* report) {
   if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
   if (!next_window_) next_window_ = grid_.first_with(frame);
   while (ready_.count(frame) == 0) {
@@ -32,7 +32,7 @@ Reconstructed SequencePictures::take(int frame, const CancelTest& cancel, SolveR
   return picture;
 }
 
-void SequencePictures::solve_next(const CancelTest& cancel, SolveReport* report) {
+void SequencePictures::solve_next(const CancelCheck& cancel, SolveReport* report) {
   const int window = (*next_window_)++;
   const FrameRange frames = grid_.frames(window);
   const auto take = [&](int t, Reconstructed picture) { blend_.add(window, frames.first + t, std::move(picture)); };

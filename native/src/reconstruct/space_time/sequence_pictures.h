@@ -24,9 +24,9 @@ struct SequenceMethod {
 // Where a sequence comes from. Its frames are of one size.
 struct SequenceSource {
   // The frames of a window, for all but REGULARIZED. Windows come in order. Throws the Error CANCELLED.
-  std::function<std::unique_ptr<HalvedWindowSource>(const FrameRange& frames, const CancelTest& cancel)> window;
+  std::function<std::unique_ptr<HalvedWindowSource>(const FrameRange& frames, const CancelCheck& cancel)> window;
   // For REGULARIZED.
-  RegularizedWindows::OpenFrame frame;
+  RegularizedWindows::OpenFilm frame;
   RegularizedWindows::OpenDifferences differences;
 };
 
@@ -43,10 +43,10 @@ class SequencePictures {
   bool has(int frame) const;
   // Channels interleaved. Each picture is taken once, in order, with gaps as the caller likes; the first one may be any. Empty, or
   // the Error CANCELLED where a frame was being read: cancelled, and no picture can be taken any more.
-  Reconstructed take(int frame, const CancelTest& cancel, SolveReport* report);
+  Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report);
 
  private:
-  void solve_next(const CancelTest& cancel, SolveReport* report);
+  void solve_next(const CancelCheck& cancel, SolveReport* report);
 
   WindowGrid grid_;
   SequenceSource source_;

@@ -9,7 +9,7 @@ namespace gradus {
 namespace {
 
 // Black has room for quotients and their squares.
-constexpr float kLeastLight = 1e-15f;
+constexpr float kMinLight = 1e-15f;
 
 Frames to_fields(const std::vector<WeightPlane>& planes) {
   Frames fields;
@@ -21,7 +21,7 @@ Frames to_fields(const std::vector<WeightPlane>& planes) {
 }
 
 // Of the channel that changes most.
-void least_ratios(const Field& light, const Field& next, int y, int begin, int end, int dx, int dy, float* ratio) {
+void min_ratios(const Field& light, const Field& next, int y, int begin, int end, int dx, int dy, float* ratio) {
   std::fill(ratio + begin, ratio + end, 1.0f);
   for (int c = 0; c < light.channels(); ++c) {
     const float *a = light.row(y, c), *b = next.row(y + dy, c) + dx;
@@ -30,12 +30,12 @@ void least_ratios(const Field& light, const Field& next, int y, int begin, int e
 }
 
 // c, 0 where nothing is linked.
-Field weigh_links(const Links& links, const Field& light, const Field& next) {
+Field weigh_correspondence(const CorrespondenceMap& correspondence, const Field& light, const Field& next) {
   Field weights(light.width(), light.height(), 1);
   for_rows(light.height(), [&](int y) {
     float* weight = weights.row(y);
-    links.for_runs(y, [&](int begin, int end, int dx, int dy) {
-      least_ratios(light, next, y, begin, end, dx, dy, weight);
+    correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
+      min_ratios(light, next, y, begin, end, dx, dy, weight);
       for (int x = begin; x < end; ++x) weight[x] *= weight[x] * std::min(mean_of(light, x, y), mean_of(next, x + dx, y + dy));
     });
   });
@@ -44,10 +44,10 @@ Field weigh_links(const Links& links, const Field& light, const Field& next) {
 
 }  // namespace
 
-void ShareSmoothing::add_frame(Field light, const Links* links) {
-  for_values(&light, [](float& value, int, int, int) { value = std::max(value, kLeastLight); });
+void ShareSmoothing::add_frame(Field light, const CorrespondenceMap* correspondence) {
+  for_values(&light, [](float& value, int, int, int) { value = std::max(value, kMinLight); });
   lights_.push_back(to_plane(make_field(light.width(), light.height(), [&](int x, int y) { return mean_of(light, x, y); })));
-  if (lights_.size() > 1) couplings_.push_back(to_plane(weigh_links(*links, last_, light)));
+  if (lights_.size() > 1) couplings_.push_back(to_plane(weigh_correspondence(*correspondence, last_, light)));
   last_ = std::move(light);
 }
 
@@ -60,7 +60,7 @@ void ShareSmoothing::apply(const SpaceTimeSystem& system, float data_weight, Fra
   }
   const Field no_difference;
   std::vector<TrackStep> steps;
-  for (size_t t = 0; t < couplings.size(); ++t) steps.push_back({system.links(int(t)), no_difference, couplings[t]});
+  for (size_t t = 0; t < couplings.size(); ++t) steps.push_back({system.correspondence(int(t)), no_difference, couplings[t]});
   solve_tracks(steps, values, &weights);
   for (size_t t = 0; t < lights.size(); ++t) {
     for_values(&(*values)[t], [&](float& value, int x, int y, int) { value *= lights[t].row(y)[x]; });

@@ -11,7 +11,7 @@ namespace gradus {
 class ShareSmoothing {
  public:
   // The next frame's light, by channels, and the links that lead to it; those of the first frame are not read.
-  void add_frame(Field light, const Links* links);
+  void add_frame(Field light, const CorrespondenceMap* correspondence);
   void apply(const SpaceTimeSystem& system, float data_weight, Frames* values) const;
 
  private:

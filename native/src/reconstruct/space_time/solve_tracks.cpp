@@ -14,7 +14,7 @@ const float* differences(const TrackStep& step, int y, int channel, const std::v
 void carry_forth(const TrackStep& step, const Field& values, const Field& weights, Field* next_values, Field* next_weights) {
   const std::vector<float> zeros(size_t(values.width()), 0.0f);
   for_rows(values.height(), [&](int y) {
-    step.links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+    step.correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
       const float *w = weights.row(y), *c = step.weight.row(y);
       float* total = next_weights->row(y + dy) + dx;
       const auto carried = [&](int i) { return w[i] * (c[i] / (w[i] + c[i])); };
@@ -32,7 +32,7 @@ void carry_forth(const TrackStep& step, const Field& values, const Field& weight
 void carry_back(const TrackStep& step, const Field& next, const Field& weights, Field* values) {
   const std::vector<float> zeros(size_t(values->width()), 0.0f);
   for_rows(values->height(), [&](int y) {
-    step.links.for_runs(y, [&](int begin, int end, int dx, int dy) {
+    step.correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
       const float *w = weights.row(y), *c = step.weight.row(y);
       for (int channel = 0; channel < values->channels(); ++channel) {
         const float *x = next.row(y + dy, channel) + dx, *d = differences(step, y, channel, zeros);

@@ -12,7 +12,7 @@ namespace gradus {
 
 // From a frame to the next.
 struct TrackStep {
-  const Links& links;
+  const CorrespondenceMap& correspondence;
   const Field& difference;  // d; 0 in channels that it lacks
   const Field& weight;      // c; one channel
 };

@@ -86,9 +86,9 @@ struct Steps {
 
 }  // namespace
 
-CgReport solve_window(const SpaceTimeSystem& system, TimeLadder* preconditioner, const CgGoal& goal, int most_steps,
-                      const CancelTest& cancel, WindowFields* fields, Frames* x) {
-  return run_conjugate_gradient(Steps{system, preconditioner, *fields, x}, goal, kDivergence, most_steps, cancel);
+CgReport solve_window(const SpaceTimeSystem& system, TimeLadder* preconditioner, const CgGoal& goal, int max_steps,
+                      const CancelCheck& cancel, WindowFields* fields, Frames* x) {
+  return run_conjugate_gradient(Steps{system, preconditioner, *fields, x}, goal, kDivergence, max_steps, cancel);
 }
 
 }  // namespace gradus

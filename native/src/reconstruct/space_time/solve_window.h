@@ -12,8 +12,8 @@ struct WindowFields {
   Frames r, p, z;
 };
 
-// Improves x until the goal is reached or `most_steps` are done. fields->r: the right side, which is overwritten.
-CgReport solve_window(const SpaceTimeSystem& system, TimeLadder* preconditioner, const CgGoal& goal, int most_steps,
-                      const CancelTest& cancel, WindowFields* fields, Frames* x);
+// Improves x until the goal is reached or `max_steps` are done. fields->r: the right side, which is overwritten.
+CgReport solve_window(const SpaceTimeSystem& system, TimeLadder* preconditioner, const CgGoal& goal, int max_steps,
+                      const CancelCheck& cancel, WindowFields* fields, Frames* x);
 
 }  // namespace gradus

@@ -6,9 +6,9 @@
 namespace gradus {
 namespace {
 
-std::vector<Links> read_all_links(const WindowSource& source) {
-  std::vector<Links> result;
-  for (int t = 0; t + 1 < source.size().frames; ++t) result.push_back(read_links(source, t));
+std::vector<CorrespondenceMap> read_all_correspondences(const WindowSource& source) {
+  std::vector<CorrespondenceMap> result;
+  for (int t = 0; t + 1 < source.size().frames; ++t) result.push_back(read_correspondence(source, t));
   return result;
 }
 
@@ -67,7 +67,7 @@ void add(Sums* sums, const RowSums& rows) {
 SpaceTimeSystem::SpaceTimeSystem(const WindowSource& source)
     : frames_(size_t(source.size().frames), ScreenedLaplacian(source.size().width, source.size().height)),
       couplings_(frames_.begin() + 1, frames_.end()),
-      links_(read_all_links(source)) {}
+      correspondence_(read_all_correspondences(source)) {}
 
 WeightPlane& SpaceTimeSystem::weights(RowKind kind, int t) {
   ScreenedLaplacian& of = is_temporal(kind) ? couplings_[size_t(t)] : frames_[size_t(t)];
@@ -89,11 +89,11 @@ void SpaceTimeSystem::set_weights(RowKind kind, int t, int y, float* values) {
   if (to_right) values[w - 1] = 0.0f;
   if (upwards && y + 1 == height()) std::fill_n(values, w, 0.0f);
   if (is_temporal(kind)) {
-    const Links::Shift* here = links(t).row(y);
-    const Links::Shift* other = to_right ? here + 1 : upwards && y + 1 < height() ? links(t).row(y + 1) : here;
+    const CorrespondenceMap::Shift* here = correspondence(t).row(y);
+    const CorrespondenceMap::Shift* other = to_right ? here + 1 : upwards && y + 1 < height() ? correspondence(t).row(y + 1) : here;
     for (int x = 0; x < w; ++x) {
       if (to_right && x + 1 == w) break;
-      if (here[x] == Links::kNone || other[x] != here[x]) values[x] = 0.0f;
+      if (here[x] == CorrespondenceMap::kNone || other[x] != here[x]) values[x] = 0.0f;
     }
   }
   weights(kind, t).write_row(y, values);
@@ -127,10 +127,10 @@ RowSums SpaceTimeSystem::multiply_frame(int t, const Field& x, Field* out) const
 RowSums SpaceTimeSystem::multiply_coupling(int t, const Field& x, const Field& next, Field* out, Field* next_out) const {
   const int w = width(), channels = x.channels();
   RowSums sums(height(), channels);
-  const auto subtract = [&](int y, RollingRows* rows) { subtract_row(links(t), y, x, next, rows); };
+  const auto subtract = [&](int y, RollingRows* rows) { subtract_row(correspondence(t), y, x, next, rows); };
   for_product_rows(coupling(t), channels, subtract, [&](int y, RollingRows* differences, const float* products) {
     subtract_from_row(products, y, out);
-    scatter_row(links(t), y, products, next_out);
+    scatter_row(correspondence(t), y, products, next_out);
     for (int c = 0; c < channels; ++c) sums.at(y, c) = dot_row(differences->row(y, c), products + ptrdiff_t(c) * w, w);
   });
   return sums;
@@ -146,7 +146,7 @@ void SpaceTimeSystem::right_side(const WindowSource& source, int first_channel, 
     for_right_side(coupling(t), source, {RowKind::kDt, RowKind::kDxDt, RowKind::kDyDt}, t, first_channel, channels,
                    [&](int y, const float* products) {
                      subtract_from_row(products, y, &(*out)[size_t(t)]);
-                     scatter_row(links(t), y, products, &(*out)[size_t(t) + 1]);
+                     scatter_row(correspondence(t), y, products, &(*out)[size_t(t) + 1]);
                    });
   }
 }

@@ -31,7 +31,7 @@ class SpaceTimeSystem {
   // From frame t to the next.
   ScreenedLaplacian& coupling(int t) { return couplings_[size_t(t)]; }
   const ScreenedLaplacian& coupling(int t) const { return couplings_[size_t(t)]; }
-  const Links& links(int t) const { return links_[size_t(t)]; }
+  const CorrespondenceMap& correspondence(int t) const { return correspondence_[size_t(t)]; }
 
   // The plane that holds the weights of a kind of rows.
   WeightPlane& weights(RowKind kind, int t);
@@ -48,7 +48,7 @@ class SpaceTimeSystem {
   RowSums multiply_coupling(int t, const Field& x, const Field& next, Field* out, Field* next_out) const;
 
   std::vector<ScreenedLaplacian> frames_, couplings_;
-  std::vector<Links> links_;
+  std::vector<CorrespondenceMap> correspondence_;
 };
 
 }  // namespace gradus

@@ -33,14 +33,14 @@ void add(const ScreenedLaplacian& more, Stencil* matrix) {
 }
 
 // What a frame of matrix B leaves to the next: Fᵀ (B : K) F.
-void eliminate(const Stencil& matrix, const ScreenedLaplacian& coupling, const Links& links, Stencil* next) {
+void eliminate(const Stencil& matrix, const ScreenedLaplacian& coupling, const CorrespondenceMap& correspondence, Stencil* next) {
   clear(next);
   for_pieces(coupling.height(), [&](int begin, int end) {
     LaplacianRow row(coupling.width());
     for (int y = begin; y < end; ++y) {
       row.load(coupling, y);
       const float *screen = matrix.diagonal.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y);
-      links.for_runs(y, [&](int first, int last, int dx, int dy) {
+      correspondence.for_runs(y, [&](int first, int last, int dx, int dy) {
         // A mixed row couples pixels that stay neighbours, so its edge is one of the next frame, too.
         float *to_screen = next->diagonal.row(y + dy) + dx, *to_right = next->right.row(y + dy) + dx, *to_up = next->up.row(y + dy) + dx;
         for (int x = first; x < last; ++x) {
@@ -105,7 +105,7 @@ void TimeLadder::update() {
     Stencil& matrix = schur_[t].matrix();
     add(system_.frame(int(t)), &matrix);
     if (t + 1 < schur_.size()) {
-      eliminate(matrix, system_.coupling(int(t)), system_.links(int(t)), &schur_[t + 1].matrix());
+      eliminate(matrix, system_.coupling(int(t)), system_.correspondence(int(t)), &schur_[t + 1].matrix());
       add(system_.coupling(int(t)), &matrix);
     }
     add_edges_to_diagonal(&matrix);
@@ -132,7 +132,7 @@ void TimeLadder::carry_forth(int t, const Field& b, const Field& z, Field* next)
         apply_row(s, z, y, c, product.data());
         for (int x = 0; x < w; ++x) to[x] += guess[size_t(x)] * (from[x] - product[size_t(x)]);
       }
-      scatter_row(system_.links(t), y, carried.data(), next);
+      scatter_row(system_.correspondence(t), y, carried.data(), next);
     }
   });
 }
@@ -144,7 +144,7 @@ struct CarriedBack {
   void make(int y) {
     for (int c = 0; c < next.channels(); ++c) std::fill_n(values.row(y, c), s.width(), 0.0f);
     if (y >= 0 && y < s.height()) {
-      gather_row(links, y, next, &values);
+      gather_row(correspondence, y, next, &values);
       guesses.read_row(y, guess.data());
     }
     for (int c = 0; c < next.channels(); ++c) {
@@ -165,7 +165,7 @@ struct CarriedBack {
   const ScreenedLaplacian& k;
   const Stencil& s;
   const WeightPlane& guesses;
-  const Links& links;
+  const CorrespondenceMap& correspondence;
   const Field& next;
   Field* b;
   RollingRows values{s.width(), next.channels()}, guessed{s.width(), next.channels()};
@@ -178,7 +178,7 @@ struct CarriedBack {
 // The transpose, but for what is added after the cycle.
 void TimeLadder::carry_back(int t, const Field& next, Field* b) const {
   const Stencil& s = schur_[size_t(t)].matrix();
-  roll_over_rows(s.height(), [&] { return CarriedBack{system_.coupling(t), s, guesses_[size_t(t)], system_.links(t), next, b}; });
+  roll_over_rows(s.height(), [&] { return CarriedBack{system_.coupling(t), s, guesses_[size_t(t)], system_.correspondence(t), next, b}; });
 }
 
 // z += Θ F next
@@ -187,7 +187,7 @@ void TimeLadder::add_guess(int t, const Field& next, Field* z) const {
     std::vector<float> guess(size_t(z->width()));
     for (int y = begin; y < end; ++y) {
       guesses_[size_t(t)].read_row(y, guess.data());
-      system_.links(t).for_runs(y, [&](int first, int last, int dx, int dy) {
+      system_.correspondence(t).for_runs(y, [&](int first, int last, int dx, int dy) {
         for (int c = 0; c < z->channels(); ++c) {
           const float* from = next.row(y + dy, c) + dx;
           float* to = z->row(y, c);

@@ -6,6 +6,6 @@
 namespace gradus {
 
 // A row is there if its value is, in all channels. Which are there must not depend on the samples; then L2 is unbiased.
-void weigh_alike(const WindowSource& source, float alpha, SpaceTimeSystem* system);
+void weigh_uniformly(const WindowSource& source, float alpha, SpaceTimeSystem* system);
 
 }  // namespace gradus

@@ -88,7 +88,7 @@ void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha
     weigh(source, {RowKind::kPrimal, RowKind::kDx, RowKind::kDy}, t, channels, norm.of_pixels(alpha), norm, copy, system);
   }
   for (int t = 0; t + 1 < system->frames(); ++t) {
-    const auto subtract = [&](int y, RollingRows* rows) { subtract_row(system->links(t), y, x[size_t(t)], x[size_t(t) + 1], rows); };
+    const auto subtract = [&](int y, RollingRows* rows) { subtract_row(system->correspondence(t), y, x[size_t(t)], x[size_t(t) + 1], rows); };
     weigh(source, {RowKind::kDt, RowKind::kDxDt, RowKind::kDyDt}, t, channels, norm, norm, subtract, system);
   }
 }

@@ -16,19 +16,19 @@ namespace gradus {
 class WindowSolver {
  public:
   // reconstruction: L2 or L1, whose weights come from the first three channels of `source`. alpha 0: what measures best (chosen_alpha()).
-  WindowSolver(const WindowSource& source, uint32_t reconstruction, float alpha, const CancelTest& cancel, SolveReport* report);
+  WindowSolver(const WindowSource& source, uint32_t reconstruction, float alpha, const CancelCheck& cancel, SolveReport* report);
 
   // The channels that the constructor has solved for, the first three at most, by frames.
   const Frames& solution() const { return solution_; }
   Frames take_solution() { return std::move(solution_); }
 
   // x = W(planes) for some channels, three at most, of a source with the same frames.
-  Frames apply(const WindowSource& planes, int first_channel, int channels, const CancelTest& cancel, SolveReport* report) const;
+  Frames apply(const WindowSource& planes, int first_channel, int channels, const CancelCheck& cancel, SolveReport* report) const;
 
  private:
-  Frames solve(const WindowSource& planes, int first_channel, int channels, const CgGoal& goal, int most_steps, const CancelTest& cancel,
+  Frames solve(const WindowSource& planes, int first_channel, int channels, const CgGoal& goal, int max_steps, const CancelCheck& cancel,
                SolveReport* report) const;
-  Frames minimise_l1(const WindowSource& source, float alpha, const CancelTest& cancel, SolveReport* report);
+  Frames minimise_l1(const WindowSource& source, float alpha, const CancelCheck& cancel, SolveReport* report);
 
   SpaceTimeSystem system_;
   std::unique_ptr<const WindowTwicing> twicing_;  // of L1

@@ -27,8 +27,8 @@ class WindowSource {
   // beyond the border, temporal rows without a link, and mixed ones between pixels that do not stay neighbours; whatever is read for these.
   // Temporal rows are read of all frames but the last. Called from several threads.
   virtual void read_row(RowKind kind, int t, int y, float* out) const = 0;
-  // The pixels of frame t + 1 that those of row y of frame t are linked to, as y·width + x, or kNoLink. One-to-one.
-  virtual void read_links(int t, int y, int32_t* out) const = 0;
+  // The pixels of frame t + 1 that those of row y of frame t are linked to, as y·width + x, or kNoCorrespondence. One-to-one.
+  virtual void read_correspondence(int t, int y, int32_t* out) const = 0;
 };
 
 // With the noise of every channel.
@@ -36,7 +36,7 @@ class HalvedWindowSource : public WindowSource {
  public:
   // (A − B)/2 of the two halves of what read_row() gives.
   virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
-  // Where ways to linked pixels end, from the middle of these (PixelLinks::off_centre). By default there.
+  // Where ways to linked pixels end, from the middle of these (PixelCorrespondence::off_centre). By default there.
   virtual void read_off_centre(int t, int y, Vec2* out) const;
 };
 

@@ -37,7 +37,7 @@ WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate,
     : dct_(source.size().width, source.size().height), data_weight_(alpha * alpha) {
   for (size_t t = 0; t < estimate.size(); ++t) {
     Field kept = squared_residuals(source, int(t), estimate[t]);
-    limit_squares(&kept);
+    limit_blocks(&kept);
     kept_.push_back(to_plane(kept));
     const Field& frame = estimate[t];
     Field light = smooth_frame(frame.channels(), [&](int y, float* row) {
@@ -45,7 +45,7 @@ WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate,
         std::transform(frame.row(y, c), frame.row(y, c) + frame.width(), row, [](float value) { return std::fabs(value); });
       }
     });
-    along_tracks_.add_frame(std::move(light), t > 0 ? &system.links(int(t) - 1) : nullptr);
+    along_tracks_.add_frame(std::move(light), t > 0 ? &system.correspondence(int(t) - 1) : nullptr);
   }
 }
 

@@ -16,11 +16,11 @@ struct KnownMotion {
   std::vector<float> tracked;
 };
 
-KnownMotion known_motion(const MadeFrame& made, size_t component, Side side) {
-  const ComponentPlanes& planes = made.frame->components[component];
-  const auto pixels = size_t(made.delivered().area());
+KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side side) {
+  const ComponentPlanes& planes = developed.film->components[component];
+  const auto pixels = size_t(developed.delivered().area());
   KnownMotion known{std::vector<Vec2>(pixels), std::vector<float>(pixels)};
-  for_pixels(*made.frame, made.delivered(), [&](size_t i, size_t out) {
+  for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
     const Vec4& motion = planes.motion[i];
     known.vectors[out] = side == Side::Previous ? Vec2(motion) : -Vec2(motion.z, motion.w);
     known.tracked[out] = planes.tracked[i];
@@ -29,14 +29,14 @@ KnownMotion known_motion(const MadeFrame& made, size_t component, Side side) {
 }
 
 // Without the film's exposure, which may change from frame to frame.
-std::vector<Rgb> light_of(const MadeFrame& made, const FlowKind& kind) {
-  const Region& region = made.delivered();
+std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind) {
+  const Region& region = developed.delivered();
   const uint32_t pass = kind.domain == FlowDomain::Logarithmic ? GRADUS_COMPONENT_IRRADIANCE : GRADUS_COMPONENT_COLOR;
   std::vector<float> values(3 * size_t(region.area()));
-  read_component_pass(*made.frame, int(kind.component), pass, region, made.components[kind.component], values.data());
-  const float exposure = made.frame->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
+  read_component_pass(*developed.film, int(kind.component), pass, region, developed.components[kind.component], values.data());
+  const float exposure = developed.film->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
   std::vector<Rgb> light(values.size() / 3);
-  for_pixels(*made.frame, region, [&](size_t, size_t out) {
+  for_pixels(*developed.film, region, [&](size_t, size_t out) {
     const float* const value = &values[3 * out];
     light[out] = factor * Rgb(value[0], value[1], value[2]);
   });
@@ -45,10 +45,10 @@ std::vector<Rgb> light_of(const MadeFrame& made, const FlowKind& kind) {
 
 class FlowInput {
  public:
-  FlowInput(const MadeFrame& made, const FlowKind& kind, Side side)
-      : light_(light_of(made, kind)), known_(known_motion(made, kind.component, side)), object_(light_.size()), depth_(light_.size()) {
-    const std::vector<ShownPoint>& shown = made.frame->components[kind.component].shown;
-    for_pixels(*made.frame, made.delivered(), [&](size_t i, size_t out) {
+  FlowInput(const DevelopedFrame& developed, const FlowKind& kind, Side side)
+      : light_(light_of(developed, kind)), known_(known_motion(developed, kind.component, side)), object_(light_.size()), depth_(light_.size()) {
+    const std::vector<ShownPoint>& shown = developed.film->components[kind.component].shown;
+    for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
       object_[out] = int32_t(shown[i].object);
       depth_[out] = shown[i].depth;
     });
@@ -63,20 +63,20 @@ class FlowInput {
 };
 
 // The end of the list: it has none.
-size_t place_of(const std::vector<FlowKind>& kinds, const MadeFrame& made, const std::string& component, FlowDomain domain) {
+size_t place_of(const std::vector<FlowKind>& kinds, const DevelopedFrame& developed, const std::string& component, FlowDomain domain) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const FlowKind& kind) {
-    return kind.domain == domain && made.frame->components[kind.component].name == component;
+    return kind.domain == domain && developed.film->components[kind.component].name == component;
   });
   return size_t(found - kinds.begin());
 }
 
 }  // namespace
 
-std::vector<FlowKind> wanted_flows(const Frame& frame) {
+std::vector<FlowKind> wanted_flows(const Film& frame) {
   std::vector<FlowKind> kinds;
   const uint32_t passes = frame.settings.component_passes;
-  const bool of_irradiance = wants_any(passes, is_irradiance_motion);
-  const bool of_residual = wants(passes, GRADUS_COMPONENT_MOTION) || wants(passes, GRADUS_COMPONENT_TRACKED);
+  const bool of_irradiance = any_wanted(passes, is_irradiance_motion);
+  const bool of_residual = has_bit(passes, GRADUS_COMPONENT_MOTION) || has_bit(passes, GRADUS_COMPONENT_TRACKED);
   for (size_t c = 0; c < frame.components.size(); ++c) {
     if (of_residual && frame.components[c].name == kResidual) kinds.push_back({c, FlowDomain::Linear});
     if (of_irradiance) kinds.push_back({c, FlowDomain::Logarithmic});
@@ -84,12 +84,12 @@ std::vector<FlowKind> wanted_flows(const Frame& frame) {
   return kinds;
 }
 
-std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const MadeFrame& first, const MadeFrame& second) {
-  const std::vector<FlowKind> kinds = wanted_flows(*first.frame), others = wanted_flows(*second.frame);
+std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const DevelopedFrame& first, const DevelopedFrame& second) {
+  const std::vector<FlowKind> kinds = wanted_flows(*first.film), others = wanted_flows(*second.film);
   std::array<FrameFlows, 2> flows{FrameFlows(kinds.size()), FrameFlows(others.size())};
   const Region& region = first.delivered();
   for (size_t k = 0; k < kinds.size(); ++k) {
-    const std::string& name = first.frame->components[kinds[k].component].name;
+    const std::string& name = first.film->components[kinds[k].component].name;
     const size_t other = place_of(others, second, name, kinds[k].domain);
     if (other == others.size()) continue;
     const FlowInput a(first, kinds[k], Side::Next), b(second, others[other], Side::Previous);
@@ -100,8 +100,8 @@ std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const MadeFr
   return flows;
 }
 
-void complete_flows(const MadeFrame& frame, Side side, Tracking cause, FrameFlows* flows) {
-  const std::vector<FlowKind> kinds = wanted_flows(*frame.frame);
+void complete_flows(const DevelopedFrame& frame, Side side, Tracking cause, FrameFlows* flows) {
+  const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
   flows->resize(kinds.size());
   for (size_t k = 0; k < kinds.size(); ++k) {
     if (!(*flows)[k].vectors.empty()) continue;
@@ -111,13 +111,13 @@ void complete_flows(const MadeFrame& frame, Side side, Tracking cause, FrameFlow
   }
 }
 
-std::vector<FlowPass> join_flows(const MadeFrame& frame, const FrameFlows& previous, const FrameFlows& next) {
+std::vector<FlowPass> join_flows(const DevelopedFrame& frame, const FrameFlows& previous, const FrameFlows& next) {
   std::vector<FlowPass> passes;
-  const std::vector<FlowKind> kinds = wanted_flows(*frame.frame);
+  const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
   for (size_t k = 0; k < kinds.size(); ++k) {
     const PixelMotion &before = previous[k], &after = next[k];
     FlowPass pass{kinds[k], std::vector<Vec4>(before.vectors.size()), before.tracked};
-    for_pixels(*frame.frame, frame.delivered(), [&](size_t, size_t out) {
+    for_pixels(*frame.film, frame.delivered(), [&](size_t, size_t out) {
       pass.vectors[out] = Vec4(before.vectors[out], -after.vectors[out]);
       if (pass.tracked[out] == kTracked) pass.tracked[out] = after.tracked[out];
     });

@@ -16,9 +16,9 @@ namespace {
 
 constexpr const char* kNotDelivered = "the frame was not delivered: ";
 
-bool has_flow(const MadeFrame& made) { return wants_flow(made.frame->settings) && !made.frame->components[0].shown.empty(); }
+bool has_flow(const DevelopedFrame& developed) { return needs_flow(developed.film->settings) && !developed.film->components[0].shown.empty(); }
 
-bool can_flow(const MadeFrame& from, const MadeFrame& to) { return has_flow(from) && has_flow(to) && from.delivered() == to.delivered(); }
+bool can_flow(const DevelopedFrame& from, const DevelopedFrame& to) { return has_flow(from) && has_flow(to) && from.delivered() == to.delivered(); }
 
 // A frame as another one is changed. Numbers may have keys: those that the other is asked for as it was sampled for are its own.
 GradusSettings as_changed(GradusSettings frame, const GradusSettings& other, const GradusSettings& changed) {
@@ -42,106 +42,106 @@ void FrameDelivery::render() {
     const std::lock_guard lock(mutex_);
     phase_ = GRADUS_PHASE_RECONSTRUCTING;
   }
-  const std::shared_ptr<const MadeFrame> previous = make();
+  const std::shared_ptr<const DevelopedFrame> previous = make();
   double seconds_ahead = 0.0, cpu_ahead = 0.0;
-  if (sequence_->settings_.with_flow && has_flow(*made_)) find_flow(previous.get(), &seconds_ahead, &cpu_ahead);
-  stop_if_asked();
+  if (sequence_->settings_.with_flow && has_flow(*developed_)) find_flow(previous.get(), &seconds_ahead, &cpu_ahead);
+  check_cancelled();
   sequence_->forget_before(sequence_->needs(number_).first);
   const std::lock_guard lock(mutex_);
-  made_->record.stats.total_seconds += seconds() - seconds_ahead;
-  made_->record.stats.process_cpu += process_cpu_seconds() - cpu_ahead;
+  developed_->record.stats.total_seconds += seconds() - seconds_ahead;
+  developed_->record.stats.process_cpu += process_cpu_seconds() - cpu_ahead;
 }
 
-std::shared_ptr<const MadeFrame> FrameDelivery::make() {
-  FrameMaker maker(sequence_.get(), number_, changed_, cancel_);
-  std::shared_ptr<MadeFrame> own = std::exchange(sequence_->ahead_, nullptr);
-  const bool is_made = own && maker.would_make(*own);
-  std::shared_ptr<const MadeFrame> previous;
-  if (!is_made) {
+std::shared_ptr<const DevelopedFrame> FrameDelivery::make() {
+  FrameDeveloper developer(sequence_.get(), number_, changed_, cancel_);
+  std::shared_ptr<DevelopedFrame> own = std::exchange(sequence_->ahead_, nullptr);
+  const bool is_developed = own && developer.would_develop(*own);
+  std::shared_ptr<const DevelopedFrame> previous;
+  if (!is_developed) {
     sequence_->back_.clear();
     if (leads_to(sequence_->place_of(number_)) == Tracking::Tracked)
-      previous = make_beside(number_ - 1);  // first: pictures are taken in order
-    own = maker.load();
+      previous = develop_neighbour(number_ - 1);  // first: pictures are taken in order
+    own = developer.load();
   }
   {
     const std::lock_guard lock(mutex_);
-    made_ = own;
+    developed_ = own;
   }
-  if (!is_made) maker.make_picture(own.get());
+  if (!is_developed) developer.develop_picture(own.get());
   return previous;
 }
 
-GradusSettings FrameDelivery::own_settings(int32_t number) const {
+GradusSettings FrameDelivery::sampled_settings(int32_t number) const {
   const std::optional<GradusSettings> stored = sequence_->folder_.settings(number);
-  return stored ? *stored : sequence_->form_at(sequence_->place_of(number)).settings;
+  return stored ? *stored : sequence_->traits_at(sequence_->place_of(number)).settings;
 }
 
-std::shared_ptr<MadeFrame> FrameDelivery::make_beside(int32_t number) const {
-  std::optional<GradusSettings> asked;  // nothing: what the folder knows
-  if (changed_) asked = as_changed(own_settings(number), own_settings(number_), *changed_);
-  FrameMaker maker(sequence_.get(), number, asked, cancel_);
-  std::shared_ptr<MadeFrame> made = maker.load();
-  maker.make_picture(made.get());
-  return made;
+std::shared_ptr<DevelopedFrame> FrameDelivery::develop_neighbour(int32_t number) const {
+  std::optional<GradusSettings> requested;  // nothing: what the folder knows
+  if (changed_) requested = as_changed(sampled_settings(number), sampled_settings(number_), *changed_);
+  FrameDeveloper developer(sequence_.get(), number, requested, cancel_);
+  std::shared_ptr<DevelopedFrame> developed = developer.load();
+  developer.develop_picture(developed.get());
+  return developed;
 }
 
 Tracking FrameDelivery::leads_to(int place) {
   if (!sequence_->settings_.with_flow) return Tracking::NoNeighbour;
-  const GradusSettings settings = sequence_->form_at(sequence_->place_of(number_)).settings;
-  if (!wants_flow(settings)) return Tracking::NoNeighbour;
+  const GradusSettings settings = sequence_->traits_at(sequence_->place_of(number_)).settings;
+  if (!needs_flow(settings)) return Tracking::NoNeighbour;
   const bool is_other = changed_ && changed_->reconstruction != GRADUS_RECONSTRUCTION_AUTO;
   const Tracking found = sequence_->flows_to(place, is_other ? changed_->reconstruction : settings.reconstruction);
   const bool has_library = sequence_->flow_library(&warnings_) != nullptr;
   return found == Tracking::Tracked && !has_library ? Tracking::NoFlowLibrary : found;
 }
 
-void FrameDelivery::find_flow(const MadeFrame* previous, double* seconds_ahead, double* cpu_ahead) {
+void FrameDelivery::find_flow(const DevelopedFrame* previous, double* seconds_ahead, double* cpu_ahead) {
   const int place = sequence_->place_of(number_);
   const Tracking leads_here = leads_to(place), leads_on = leads_to(place + 1);
-  std::shared_ptr<MadeFrame> next;
+  std::shared_ptr<DevelopedFrame> next;
   if (leads_on == Tracking::Tracked) {
-    const Bill bill(seconds_ahead, cpu_ahead);
-    next = make_beside(number_ + 1);
+    const ScopedTimer timer(seconds_ahead, cpu_ahead);
+    next = develop_neighbour(number_ + 1);
   }
   if (next) {
     next->record.stats.total_seconds += *seconds_ahead;
     next->record.stats.process_cpu += *cpu_ahead;
   }
-  RenderStats& stats = made_->record.stats;
-  const Bill bill(&stats.seconds.links, &stats.cpu_seconds.links);
-  const uint32_t threads = threads_of(changed_ ? *changed_ : own_settings(number_), sequence_->device_.get());
+  RenderStats& stats = developed_->record.stats;
+  const ScopedTimer timer(&stats.seconds.correspondence, &stats.cpu_seconds.correspondence);
+  const uint32_t threads = threads_of(changed_ ? *changed_ : sampled_settings(number_), sequence_->device_.get());
   tbb::task_arena(arena_size(threads)).execute([&] { join(previous, leads_here, std::move(next), leads_on); });
   stats.warnings.insert(stats.warnings.end(), warnings_.begin(), warnings_.end());
 }
 
-void FrameDelivery::join(const MadeFrame* previous, Tracking leads_here, std::shared_ptr<MadeFrame> next, Tracking leads_on) {
+void FrameDelivery::join(const DevelopedFrame* previous, Tracking leads_here, std::shared_ptr<DevelopedFrame> next, Tracking leads_on) {
   const FlowLibrary* library = sequence_->flow_library(&warnings_);
   FrameFlows back = std::exchange(sequence_->back_, {});
-  if (back.empty() && previous && can_flow(*previous, *made_)) back = flows_between(*library, *previous, *made_)[1];
-  complete_flows(*made_, Side::Previous, or_no_neighbour(leads_here), &back);
-  stop_if_asked();
+  if (back.empty() && previous && can_flow(*previous, *developed_)) back = flows_between(*library, *previous, *developed_)[1];
+  complete_flows(*developed_, Side::Previous, or_no_neighbour(leads_here), &back);
+  check_cancelled();
   FrameFlows forth;
-  if (next && can_flow(*made_, *next)) {
-    std::array<FrameFlows, 2> both = flows_between(*library, *made_, *next);
+  if (next && can_flow(*developed_, *next)) {
+    std::array<FrameFlows, 2> both = flows_between(*library, *developed_, *next);
     forth = std::move(both[0]);
     sequence_->back_ = std::move(both[1]);
   }
-  complete_flows(*made_, Side::Next, or_no_neighbour(leads_on), &forth);
+  complete_flows(*developed_, Side::Next, or_no_neighbour(leads_on), &forth);
   sequence_->ahead_ = std::move(next);
-  flows_ = join_flows(*made_, back, forth);
+  flows_ = join_flows(*developed_, back, forth);
 }
 
-std::shared_ptr<const MadeFrame> FrameDelivery::made(const char* what) const {
+std::shared_ptr<const DevelopedFrame> FrameDelivery::developed(const char* what) const {
   const std::lock_guard lock(mutex_);
-  require_frame(made_ ? made_->frame : nullptr, what, kNotDelivered);
-  return made_;
+  require_film(developed_ ? developed_->film : nullptr, what, kNotDelivered);
+  return developed_;
 }
 
-const Region& FrameDelivery::delivered() const { return made("its passes come")->delivered(); }
+const Region& FrameDelivery::delivered() const { return developed("its passes come")->delivered(); }
 
 void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
-  const std::shared_ptr<const MadeFrame> own = made("its passes come");
-  const MadeFrame& frame = *own;
+  const std::shared_ptr<const DevelopedFrame> own = developed("its passes come");
+  const DevelopedFrame& frame = *own;
   const std::vector<float>* plane = pass == GRADUS_PASS_COMBINED          ? &frame.combined
                                     : pass == GRADUS_PASS_ERROR           ? &frame.error
                                     : pass == GRADUS_PASS_GRADIENT_T      ? &frame.difference
@@ -157,20 +157,20 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
     std::fill_n(pixels, size_t(region.area()), 0.0f);
     return;
   }
-  const uint32_t threads = threads_of(frame.frame->settings, sequence_->device_.get());
-  tbb::task_arena(arena_size(threads)).execute([&] { read_frame_pass(*frame.frame, pass, region, pixels); });
+  const uint32_t threads = threads_of(frame.film->settings, sequence_->device_.get());
+  tbb::task_arena(arena_size(threads)).execute([&] { read_film_pass(*frame.film, pass, region, pixels); });
 }
 
 void FrameDelivery::read_component(const std::string& name, uint32_t pass, float* pixels) const {
-  const std::shared_ptr<const MadeFrame> own = made("its passes come");
-  const MadeFrame& frame = *own;
-  check_component(frame.frame->settings, name);
+  const std::shared_ptr<const DevelopedFrame> own = developed("its passes come");
+  const DevelopedFrame& frame = *own;
+  check_component(frame.film->settings, name);
   const Region& region = frame.delivered();
-  const int place = find_component(*frame.frame, name);
+  const int place = find_component(*frame.film, name);
   const bool has_picture = place >= 0 && size_t(place) < frame.components.size();
   if (place < 0 || (is_of_picture(pass) && !has_picture)) return read_absent_component(pass, region, pixels);
   if (is_by_flow(name, pass) && read_flow(size_t(place), pass, pixels)) return;
-  read_component_pass(*frame.frame, place, pass, region, has_picture ? frame.components[size_t(place)] : std::vector<float>(), pixels);
+  read_component_pass(*frame.film, place, pass, region, has_picture ? frame.components[size_t(place)] : std::vector<float>(), pixels);
 }
 
 bool FrameDelivery::read_flow(size_t component, uint32_t pass, float* pixels) const {
@@ -186,14 +186,14 @@ bool FrameDelivery::read_flow(size_t component, uint32_t pass, float* pixels) co
 }
 
 std::string FrameDelivery::stats() const {
-  const std::shared_ptr<const MadeFrame> own = made("its stats come");
-  return stats_json(own->record.stats, own->record.plan, *own->frame);
+  const std::shared_ptr<const DevelopedFrame> own = developed("its stats come");
+  return stats_json(own->record.stats, own->record.plan, *own->film);
 }
 
-std::shared_ptr<const Frame> FrameDelivery::frame() const { return made("its frame comes")->frame; }
+std::shared_ptr<const Film> FrameDelivery::film() const { return developed("its frame comes")->film; }
 
 uint64_t FrameDelivery::memory_bytes() const {
-  return made_ ? made_->frame->memory_bytes() + 4 * uint64_t(made_->delivered().area()) * sizeof(float) : 0;
+  return developed_ ? developed_->film->memory_bytes() + 4 * uint64_t(developed_->delivered().area()) * sizeof(float) : 0;
 }
 
 }  // namespace gradus

@@ -19,11 +19,11 @@ struct Delivery {
   bool operator==(const Delivery&) const = default;
 };
 
-struct MadeFrame {
+struct DevelopedFrame {
   int32_t number = 0;
   Delivery by;
   FrameRecord record;
-  std::shared_ptr<Frame> frame;                // all of its samples
+  std::shared_ptr<Film> film;                // all of its samples
   std::vector<float> combined, error;          // of the region: RGBA, and pass Error where it is asked for
   std::vector<std::vector<float>> components;  // RGB of each, where some pass or flow is made of it
   LightPasses light;

@@ -27,10 +27,10 @@ uint32_t integrator_of(const GradusSettings& settings) {
 }
 
 // Whether a stored frame is what the sequence would sample of the snapshot.
-bool is_frame_of(const FrameHeader& stored, const Snapshot& snapshot, GradusSettings settings) {
+bool is_frame_of(const FilmHeader& stored, const Snapshot& snapshot, GradusSettings settings) {
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = stored.settings.integrator;  // what it came to
-  return stored.scene_key == snapshot.content_key && are_alike(stored.settings, settings) &&
-         has_as_many(stored, FramePart::kBase, settings);
+  return stored.scene_key == snapshot.content_key && are_equivalent(stored.settings, settings) &&
+         has_as_many(stored, FrameSamples::kFresh, settings);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
 Sequence::Sequence(std::shared_ptr<Device> device, const SequenceSettings& settings, IntegratorFactory factory)
     : device_(std::move(device)), settings_(settings), factory_(std::move(factory)), folder_(settings.folder), last_(settings.last) {
   if (settings.step < 1) throw invalid_argument("a sequence has a step of at least 1");
-  WindowGrid(own_places(), settings.windows);  // which looks at them
+  WindowGrid(job_places(), settings.windows);  // which looks at them
 }
 
 int Sequence::place_of(int32_t frame) const {
@@ -63,7 +63,7 @@ int32_t Sequence::frame_at(int place) const {
   return int32_t(settings_.first + (int64_t(place) - place_of(settings_.first)) * int64_t(settings_.step));
 }
 
-FrameRange Sequence::own_places() const {
+FrameRange Sequence::job_places() const {
   if (settings_.last < settings_.first) throw invalid_argument("a sequence ends before it begins");
   FrameRange range{place_of(settings_.first), 0};
   range.last = range.first + int((int64_t(settings_.last) - settings_.first) / settings_.step);
@@ -74,7 +74,7 @@ void Sequence::warn_of_needs(const Plan& plan, std::vector<std::string>* warning
   if (needs_are_checked_) return;
   needs_are_checked_ = true;
   const WindowShape& windows = settings_.windows;
-  const int all = own_places().count(), at_a_time = std::min(all, 2 * windows.frames - windows.overlap);
+  const int all = job_places().count(), at_a_time = std::min(all, 2 * windows.frames - windows.overlap);
   const std::string memory = memory_warning(estimated_memory(plan, windows), machine_memory_bytes());
   const std::string disk = disk_warning(estimated_files(plan, folder_.is_temporary() ? at_a_time : all), folder_.path());
   for (const std::string& warning : {memory, disk}) {
@@ -83,32 +83,32 @@ void Sequence::warn_of_needs(const Plan& plan, std::vector<std::string>* warning
 }
 
 FrameRange Sequence::places_with_neighbours() const {
-  FrameRange range = own_places();
+  FrameRange range = job_places();
   if (folder_.is_temporary()) return range;
-  const int most = settings_.windows.frames;  // more have no share
-  for (int i = 0; i < most && folder_.holds(frame_at(range.first - 1)); ++i) --range.first;
-  for (int i = 0; i < most && last_ == settings_.last && folder_.holds(frame_at(range.last + 1)); ++i) ++range.last;
+  const int maximum = settings_.windows.frames;  // more have no share
+  for (int i = 0; i < maximum && folder_.holds(frame_at(range.first - 1)); ++i) --range.first;
+  for (int i = 0; i < maximum && last_ == settings_.last && folder_.holds(frame_at(range.last + 1)); ++i) ++range.last;
   return range;
 }
 
-const FrameForm& Sequence::form_at(int place) {
+const FrameTraits& Sequence::traits_at(int place) {
   const int32_t frame = frame_at(place);
-  const auto known = forms_.find(frame);
-  if (known != forms_.end()) return known->second;
-  return forms_[frame] = read_or_name_the_way_out(
-             [&] { return form_of(folder_.header(frame, FramePart::kBase), folder_.header(frame, FramePart::kOffset)); });
+  const auto known = traits_.find(frame);
+  if (known != traits_.end()) return known->second;
+  return traits_[frame] = read_with_advice(
+             [&] { return traits_of(folder_.header(frame, FrameSamples::kFresh), folder_.header(frame, FrameSamples::kReplayed)); });
 }
 
-bool Sequence::goes_on_at(int place, uint32_t reconstruction) {
+bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
   if (passed_by_.count(frame_at(place)) > 0 || passed_by_.count(frame_at(place - 1)) > 0) return false;
-  const FrameForm &here = form_at(place), &before = form_at(place - 1);
-  const FrameRange own = own_places();
+  const FrameTraits &here = traits_at(place), &before = traits_at(place - 1);
+  const FrameRange own = job_places();
   const bool one_job = own.contains(place) && own.contains(place - 1);  // its settings may change from frame to frame
-  return (one_job || are_alike(before.settings, here.settings)) && share_windows(before, here, reconstruction);
+  return (one_job || are_equivalent(before.settings, here.settings)) && share_windows(before, here, reconstruction);
 }
 
 FrameRange Sequence::needs(int32_t frame) const {
-  const FrameRange own = own_places();
+  const FrameRange own = job_places();
   const WindowGrid grid(own, settings_.windows);
   FrameRange places = grid.around(place_of(frame));
   if (settings_.with_flow) places.last = std::max(places.last, grid.around(std::min(place_of(frame) + 1, own.last)).last);
@@ -139,12 +139,12 @@ void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSet
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
   if (settings.frame >= settings_.first && settings.frame <= settings_.last) passed_by_.insert(settings.frame);
-  std::optional<FrameHeader> base;  // that of another part of the job
-  if (folder_.holds(settings.frame)) base = folder_.header(settings.frame, FramePart::kBase);
-  if (base && !is_frame_of(*base, *snapshot, resolved)) base.reset();
-  auto before = make_before(std::move(snapshot), resolved, base ? &*base : nullptr);
-  if (base && has_counts(settings)) {
-    before->counts = samples_of_pixels(*folder_.load(settings.frame, FramePart::kBase, StoredContent::kSamples));
+  std::optional<FilmHeader> fresh;  // that of another part of the job
+  if (folder_.holds(settings.frame)) fresh = folder_.header(settings.frame, FrameSamples::kFresh);
+  if (fresh && !is_frame_of(*fresh, *snapshot, resolved)) fresh.reset();
+  auto before = make_previous_frame(std::move(snapshot), resolved, fresh ? &*fresh : nullptr);
+  if (fresh && has_counts(settings)) {
+    before->counts = samples_of_pixels(*folder_.load(settings.frame, FrameSamples::kFresh, StoredContent::kSamples));
   }
   before_ = std::move(before);
 }
@@ -153,42 +153,42 @@ std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSetting
   return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
 }
 
-LoadPart Sequence::load_part(FramePart part, const std::vector<std::string>& components) const {
-  return [this, part, components](int place, const CancelTest& cancel) {
-    return read_or_name_the_way_out([&] {
-      if (components.size() == 1) return folder_.load_component(frame_at(place), part, components[0], cancel);
-      const std::shared_ptr<Frame> frame = folder_.load(frame_at(place), part, StoredContent::kAll, cancel);
-      keep_components(components, frame.get());
+LoadSamples Sequence::load_samples(FrameSamples kind, const std::vector<std::string>& components) const {
+  return [this, kind, components](int place, const CancelCheck& cancel) {
+    return read_with_advice([&] {
+      if (components.size() == 1) return folder_.load_component(frame_at(place), kind, components[0], cancel);
+      const std::shared_ptr<Film> frame = folder_.load(frame_at(place), kind, StoredContent::kAll, cancel);
+      select_components(components, frame.get());
       return frame;
     });
   };
 }
 
-void Sequence::merge(int32_t number, Frame* base, const Frame& offset) const {
-  const KeptOfComponents of_base = kept_of_components(*base), of_offset = kept_of_components(offset);
-  if (of_base.rough != of_offset.rough || of_base.details != of_offset.details || base->count[0].size() != offset.count[0].size() ||
-      base->channels != offset.channels || base->gradients != offset.gradients || base->passes.size() != offset.passes.size() ||
-      !same_components(*base, offset) || sampling_key(base->settings) != sampling_key(offset.settings)) {
-    throw invalid_argument("stored frame " + folder_.path(number, FramePart::kBase) + " and its offset do not belong together");
+void Sequence::merge(int32_t number, Film* fresh, const Film& replayed) const {
+  const ComponentContent of_base = component_content(*fresh), of_offset = component_content(replayed);
+  if (of_base.non_specular != of_offset.non_specular || of_base.details != of_offset.details || fresh->count[0].size() != replayed.count[0].size() ||
+      fresh->channels != replayed.channels || fresh->gradients != replayed.gradients || fresh->passes.size() != replayed.passes.size() ||
+      !same_components(*fresh, replayed) || sampling_key(fresh->settings) != sampling_key(replayed.settings)) {
+    throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) + " and its offset do not belong together");
   }
-  add_sums(base, offset);
-  base->frame_number = number;
-  base->settings.frame = number;
-  base->settings.samples += offset.settings.samples;
-  base->shared = {};
+  add_sums(fresh, replayed);
+  fresh->frame_number = number;
+  fresh->settings.frame = number;
+  fresh->settings.samples += replayed.settings.samples;
+  fresh->shared = {};
 }
 
 SequenceSource Sequence::source(const SequenceMethod& method, const std::vector<std::string>& components) const {
-  const LoadPart base = load_part(FramePart::kBase, components), offset = load_part(FramePart::kOffset, components);
-  const auto merged = [this](int place, std::shared_ptr<Frame> frame, const Frame& replay) {
+  const LoadSamples fresh = load_samples(FrameSamples::kFresh, components), replayed = load_samples(FrameSamples::kReplayed, components);
+  const auto merged = [this](int place, std::shared_ptr<Film> frame, const Film& replay) {
     merge(frame_at(place), frame.get(), replay);
     return frame;
   };
-  const auto spooled = std::make_shared<SpooledFrames>(base, offset, TemporalContent{.halves = method.with_error});
-  const auto streamed = std::make_shared<StreamedFrames>(base, offset, merged);
-  return {[spooled](const FrameRange& window, const CancelTest& cancel) { return spooled->window(window.first, window.last, cancel); },
-          [streamed](int place, const CancelTest& cancel) { return streamed->frame(place, cancel); },
-          [streamed](int place, const CancelTest& cancel) { return streamed->differences(place, cancel); }};
+  const auto spooled = std::make_shared<SpooledFrames>(fresh, replayed, TemporalContent{.halves = method.with_error});
+  const auto streamed = std::make_shared<StreamedFrames>(fresh, replayed, merged);
+  return {[spooled](const FrameRange& window, const CancelCheck& cancel) { return spooled->window(window.first, window.last, cancel); },
+          [streamed](int place, const CancelCheck& cancel) { return streamed->frame(place, cancel); },
+          [streamed](int place, const CancelCheck& cancel) { return streamed->differences(place, cancel); }};
 }
 
 SequencePictures* Sequence::pictures(const std::vector<std::string>& components, const SequenceMethod& method, int32_t frame) {
@@ -198,19 +198,19 @@ SequencePictures* Sequence::pictures(const std::vector<std::string>& components,
     FrameRange places = places_with_neighbours();
     const int begin = WindowGrid(places, settings_.windows).around(place).first;
     int first = place;
-    while (first > begin && goes_on_at(first, method.reconstruction)) --first;
+    while (first > begin && shares_window_with_previous(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
     pictures = std::make_unique<SequencePictures>(places, settings_.windows, source(method, components), method);
     if (last_ < settings_.last) pictures->end_at(place_of(last_));
   }
   int last = place;
   const int end = pictures->around(place).last;
-  while (last < end && goes_on_at(last + 1, method.reconstruction)) ++last;
+  while (last < end && shares_window_with_previous(last + 1, method.reconstruction)) ++last;
   if (last < end) pictures->end_at(last);
   return pictures.get();
 }
 
-void Sequence::keep_pictures(const std::vector<std::vector<std::string>>& groups) {
+void Sequence::retain_pictures(const std::vector<std::vector<std::string>>& groups) {
   std::erase_if(pictures_, [&](const auto& entry) { return std::find(groups.begin(), groups.end(), entry.first) == groups.end(); });
 }
 
@@ -218,11 +218,11 @@ Tracking Sequence::flows_to(int place, uint32_t reconstruction) {
   if (!settings_.with_flow || settings_.step != 1) return Tracking::NoNeighbour;  // the surfaces' motion is that from frame to frame
   const int32_t frame = frame_at(place);
   const bool comes = last_ == settings_.last || frame <= last_;
-  if (!comes || !folder_.holds(frame) || !folder_.holds(frame - 1) || !goes_on_at(place, reconstruction)) return Tracking::NoNeighbour;
+  if (!comes || !folder_.holds(frame) || !folder_.holds(frame - 1) || !shares_window_with_previous(place, reconstruction)) return Tracking::NoNeighbour;
   const WindowGrid grid(places_with_neighbours(), settings_.windows);
   if (!folder_.holds(frame_at(grid.around(place - 1).first))) return Tracking::NoNeighbour;  // forgotten: it was delivered before
-  const FrameForm &before = form_at(place - 1), &here = form_at(place);
-  return here.stream == before.stream || here.replayed_stream == before.stream ? Tracking::Tracked : Tracking::Cut;
+  const FrameTraits &before = traits_at(place - 1), &here = traits_at(place);
+  return here.stream == before.stream || here.replayed_stream == before.stream ? Tracking::Tracked : Tracking::ShotChange;
 }
 
 const FlowLibrary* Sequence::flow_library(std::vector<std::string>* warnings) {
@@ -239,7 +239,7 @@ void Sequence::forget_before(int32_t frame) {
     folder_.forget(records_.begin()->first);
     records_.erase(records_.begin());
   }
-  forms_.erase(forms_.begin(), forms_.lower_bound(frame));
+  traits_.erase(traits_.begin(), traits_.lower_bound(frame));
   passed_by_.erase(passed_by_.begin(), passed_by_.lower_bound(frame));
 }
 

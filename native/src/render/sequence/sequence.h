@@ -59,29 +59,29 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
  private:
   friend class FrameSampling;
   friend class FrameDelivery;
-  friend class FrameMaker;
+  friend class FrameDeveloper;
 
   // Frames are counted in steps, so that those of one grid are next to each other whatever part of a job they are rendered in.
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
-  FrameRange own_places() const;
+  FrameRange job_places() const;
   // Warns once where the machine may have less memory, or the disk less room, than the animation takes.
   void warn_of_needs(const Plan& plan, std::vector<std::string>* warnings);
   // The frames that are rendered, and those beside them that the folder holds.
   FrameRange places_with_neighbours() const;
   // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
-  bool goes_on_at(int place, uint32_t reconstruction);
-  const FrameForm& form_at(int place);
+  bool shares_window_with_previous(int place, uint32_t reconstruction);
+  const FrameTraits& traits_at(int place);
   // Of these components, in this order.
-  LoadPart load_part(FramePart part, const std::vector<std::string>& components) const;
+  LoadSamples load_samples(FrameSamples kind, const std::vector<std::string>& components) const;
   // All samples of a frame, in the place of its own half.
-  void merge(int32_t frame, Frame* base, const Frame& offset) const;
+  void merge(int32_t frame, Film* fresh, const Film& replayed) const;
   SequenceSource source(const SequenceMethod& method, const std::vector<std::string>& components) const;
   // Of components that are reconstructed together, that have the picture of `frame`: begun anew where it was taken before, or by another
   // method.
   SequencePictures* pictures(const std::vector<std::string>& components, const SequenceMethod& method, int32_t frame);
   // Of these groups of components alone: others are of a set that has changed.
-  void keep_pictures(const std::vector<std::vector<std::string>>& groups);
+  void retain_pictures(const std::vector<std::vector<std::string>>& groups);
   // Whether flow leads from the frame before to the one at `place`; if not, why. reconstruction: of their pictures.
   Tracking flows_to(int place, uint32_t reconstruction);
   // nullptr: there is none, which is told once.
@@ -95,12 +95,12 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   const SequenceFolder folder_;
   int32_t last_;
   bool needs_are_checked_ = false;
-  std::unique_ptr<const FrameBefore> before_;
+  std::unique_ptr<const PreviousFrame> before_;
   std::map<int32_t, FrameRecord> records_;
-  std::map<int32_t, FrameForm> forms_;  // of frames that were sampled or looked at
+  std::map<int32_t, FrameTraits> traits_;  // of frames that were sampled or looked at
   std::set<int32_t> passed_by_;
   std::map<std::vector<std::string>, std::unique_ptr<SequencePictures>> pictures_;
-  std::shared_ptr<MadeFrame> ahead_;                                // made for the frame before it, by flow, and not delivered yet
+  std::shared_ptr<DevelopedFrame> ahead_;                                // made for the frame before it, by flow, and not delivered yet
   FrameFlows back_;                                                 // of `ahead_` to the frame before it
   std::optional<std::shared_ptr<const FlowLibrary>> flow_library_;  // once it was looked for
 };

@@ -31,30 +31,30 @@ SequenceFolder::SequenceFolder(const std::string& path)
 
 std::string SequenceFolder::path(int32_t frame, const char* ending) const { return path_ + "/" + frame_name(frame, ending); }
 
-std::string SequenceFolder::path(int32_t frame, FramePart part) const {
-  return path(frame, part == FramePart::kBase ? "base.exr" : "offset.exr");
+std::string SequenceFolder::path(int32_t frame, FrameSamples kind) const {
+  return path(frame, kind == FrameSamples::kFresh ? "base.exr" : "offset.exr");
 }
 
 bool SequenceFolder::holds(int32_t frame) const {
   std::error_code error;
-  return fs::exists(path(frame, FramePart::kBase), error) && fs::exists(path(frame, FramePart::kOffset), error);
+  return fs::exists(path(frame, FrameSamples::kFresh), error) && fs::exists(path(frame, FrameSamples::kReplayed), error);
 }
 
-FrameHeader SequenceFolder::header(int32_t frame, FramePart part) const { return load_header(path(frame, part)); }
+FilmHeader SequenceFolder::header(int32_t frame, FrameSamples kind) const { return load_header(path(frame, kind)); }
 
-std::shared_ptr<Frame> SequenceFolder::load(int32_t frame, FramePart part, StoredContent content, const CancelTest& cancel) const {
+std::shared_ptr<Film> SequenceFolder::load(int32_t frame, FrameSamples kind, StoredContent content, const CancelCheck& cancel) const {
   ++loads_;
-  return load_frame(path(frame, part), content, cancel);
+  return load_film(path(frame, kind), content, cancel);
 }
 
-std::shared_ptr<Frame> SequenceFolder::load_component(int32_t frame, FramePart part, const std::string& component,
-                                                      const CancelTest& cancel) const {
+std::shared_ptr<Film> SequenceFolder::load_component(int32_t frame, FrameSamples kind, const std::string& component,
+                                                      const CancelCheck& cancel) const {
   ++loads_;
-  return gradus::load_component(path(frame, part), component, StoredContent::kAll, cancel);
+  return gradus::load_component(path(frame, kind), component, StoredContent::kAll, cancel);
 }
 
-void SequenceFolder::save(const Frame& content, int32_t frame, FramePart part, const CancelTest& cancel) const {
-  save_frame(content, path(frame, part), {durable(), cancel});
+void SequenceFolder::save(const Film& content, int32_t frame, FrameSamples kind, const CancelCheck& cancel) const {
+  save_film(content, path(frame, kind), {durable(), cancel});
 }
 
 std::optional<GradusSettings> SequenceFolder::settings(int32_t frame) const {
@@ -76,16 +76,16 @@ void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame
 }
 
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
-  for (const FramePart part : {FramePart::kOffset, FramePart::kBase}) {
-    const std::string source = path(from, part), target = path(to, part);
-    if (!link_file(source, target)) copy_file(source, target, durable());
+  for (const FrameSamples kind : {FrameSamples::kReplayed, FrameSamples::kFresh}) {
+    const std::string source = path(from, kind), target = path(to, kind);
+    if (!hard_link_file(source, target)) copy_file(source, target, durable());
   }
 }
 
 void SequenceFolder::forget(int32_t frame) const {
   std::error_code ignored;
   if (!temporary_) return;
-  for (const FramePart part : {FramePart::kBase, FramePart::kOffset}) fs::remove(path(frame, part), ignored);
+  for (const FrameSamples kind : {FrameSamples::kFresh, FrameSamples::kReplayed}) fs::remove(path(frame, kind), ignored);
   fs::remove(path(frame, kSettings), ignored);
 }
 

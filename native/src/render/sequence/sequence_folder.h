@@ -13,7 +13,7 @@
 namespace gradus {
 
 // What a frame of a sequence is sampled in: with random numbers of its own, and with those of the frame before.
-enum class FramePart { kBase, kOffset };
+enum class FrameSamples { kFresh, kReplayed };
 
 class SequenceFolder {
  public:
@@ -22,17 +22,17 @@ class SequenceFolder {
 
   bool is_temporary() const { return temporary_ != nullptr; }
   const std::string& path() const { return path_; }
-  std::string path(int32_t frame, FramePart part) const;
+  std::string path(int32_t frame, FrameSamples kind) const;
   // Whether both parts of a frame are there.
   bool holds(int32_t frame) const;
   // Both throw invalid_argument with path and cause. The second by the threads of the caller's arena; so does save(). `cancel`: as of
   // frame/store.h.
-  FrameHeader header(int32_t frame, FramePart part) const;
-  std::shared_ptr<Frame> load(
-      int32_t frame, FramePart part, StoredContent content = StoredContent::kAll, const CancelTest& cancel = [] { return false; }) const;
+  FilmHeader header(int32_t frame, FrameSamples kind) const;
+  std::shared_ptr<Film> load(
+      int32_t frame, FrameSamples kind, StoredContent content = StoredContent::kAll, const CancelCheck& cancel = [] { return false; }) const;
   // Of one component alone (frame/store.h).
-  std::shared_ptr<Frame> load_component(int32_t frame, FramePart part, const std::string& component, const CancelTest& cancel) const;
-  void save(const Frame& content, int32_t frame, FramePart part, const CancelTest& cancel) const;
+  std::shared_ptr<Film> load_component(int32_t frame, FrameSamples kind, const std::string& component, const CancelCheck& cancel) const;
+  void save(const Film& content, int32_t frame, FrameSamples kind, const CancelCheck& cancel) const;
   // Of delivery (exposure and the like): frames that are alike share their files, and may differ in these. Throws invalid_argument with the
   // path; nothing: those of its files.
   std::optional<GradusSettings> settings(int32_t frame) const;

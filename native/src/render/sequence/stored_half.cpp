@@ -16,7 +16,7 @@ namespace {
 std::string names_of_missing(uint64_t passes, uint64_t others) {
   std::string names;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (wants(passes & ~others, pass)) add_item(&names, pass_info(pass).name);
+    if (has_bit(passes & ~others, pass)) add_item(&names, pass_info(pass).name);
   }
   return names;
 }
@@ -28,20 +28,20 @@ std::string region_text(const uint32_t* r) {
   return text;
 }
 
-bool lacks_surfaces(const KeptOfComponents& held, const GradusSettings& settings) {
+bool lacks_surfaces(const ComponentContent& held, const GradusSettings& settings) {
   if (settings.use_decomposition == 0) return false;
-  return (!held.rough && wants_any(settings.component_passes, is_of_rough_vertices)) ||
-         (!held.details && wants_any(settings.component_passes, is_of_rough_details));
+  return (!held.non_specular && any_wanted(settings.component_passes, is_of_non_specular_vertices)) ||
+         (!held.details && any_wanted(settings.component_passes, is_of_non_specular_details));
 }
 
 // What makes a stored frame another one than is asked for; "" if it fits.
-std::string difference(const FrameHeader& stored, FramePart part, const GradusSettings& settings, uint64_t scene_key) {
+std::string difference(const FilmHeader& stored, FrameSamples kind, const GradusSettings& settings, uint64_t scene_key) {
   const GradusSettings& other = stored.settings;
   if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
   const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
   if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
   if (lacks_surfaces(stored.of_components, settings)) return "was sampled without the surfaces of components";
-  if (part == FramePart::kBase && wants_flow(settings) && !stored.of_components.shown)
+  if (kind == FrameSamples::kFresh && needs_flow(settings) && !stored.of_components.shown)
     return "was sampled without the motion of components";
   if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
   if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
@@ -52,14 +52,14 @@ std::string difference(const FrameHeader& stored, FramePart part, const GradusSe
 
 }  // namespace
 
-void require_same(const FrameHeader& stored, FramePart part, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
-  const std::string why = difference(stored, part, settings, scene_key);
-  if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kWayOut);
+void require_same(const FilmHeader& stored, FrameSamples kind, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
+  const std::string why = difference(stored, kind, settings, scene_key);
+  if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kAdvice);
 }
 
-void require_features(const FrameHeader& stored, const std::string& path) {
+void require_features(const FilmHeader& stored, const std::string& path) {
   if (has_features(stored)) return;
-  throw invalid_argument("stored frame " + path + " lacks the features that reconstruction regularized reads" + kWayOut);
+  throw invalid_argument("stored frame " + path + " lacks the features that reconstruction regularized reads" + kAdvice);
 }
 
 }  // namespace gradus

@@ -9,20 +9,20 @@
 
 namespace gradus {
 
-inline constexpr const char* kWayOut = ": remove it, or choose another frame store";
+inline constexpr const char* kAdvice = ": remove it, or choose another frame store";
 
 // Throws invalid_argument that says what differs, where a half was sampled otherwise than these settings ask for, but for its samples.
-void require_same(const FrameHeader& stored, FramePart part, const std::string& path, const GradusSettings& settings, uint64_t scene_key);
+void require_same(const FilmHeader& stored, FrameSamples kind, const std::string& path, const GradusSettings& settings, uint64_t scene_key);
 // Throws invalid_argument where it lacks what REGULARIZED reads.
-void require_features(const FrameHeader& stored, const std::string& path);
+void require_features(const FilmHeader& stored, const std::string& path);
 
 template <class Read>
-auto read_or_name_the_way_out(const Read& read) {
+auto read_with_advice(const Read& read) {
   try {
     return read();
   } catch (const Error& e) {
     if (e.code() == GRADUS_ERROR_CANCELLED) throw;
-    throw Error(e.code(), e.what() + std::string(kWayOut));
+    throw Error(e.code(), e.what() + std::string(kAdvice));
   }
 }
 

@@ -9,7 +9,7 @@
 namespace gradus {
 namespace {
 
-constexpr int kLongestChain = 64;
+constexpr int kMaxChainLength = 64;
 constexpr float kTolerance = 1e-4f;
 
 bool is_direction(const GraphNode& n) {
@@ -60,7 +60,7 @@ std::optional<Mat3> rotation_of(const Graph& graph, const GraphNode& n, size_t v
 std::optional<Mat3> rotation_to(const Graph& graph, const GraphValue& v) {
   Mat3 all(1.0f);
   GraphValue at = v;
-  for (int i = 0; i < kLongestChain && !at.is_constant(); ++i) {
+  for (int i = 0; i < kMaxChainLength && !at.is_constant(); ++i) {
     const GraphNode& n = graph.nodes[size_t(at.node)];
     if (is_direction(n)) return all;
     const std::optional<size_t> variable = single_variable(n);

@@ -38,52 +38,52 @@ struct Shot {
   bool gradients = false;
   float replay_sigma = 0.02f;  // how far replays are from having the noise of what they replay
 
-  FeatureFrame description(int t) const {
-    FeatureFrame room = test::room(kWidth, kHeight);
+  FeatureFilm description(int t) const {
+    FeatureFilm room = test::room(kWidth, kHeight);
     for (float& v : room.truth) v *= light(t);
     room.gradients = gradients;
     room.sigma = [](size_t) { return 0.0f; };
     return room;
   }
   // The samples of frame t whose random numbers are those of frame `stream`.
-  Frame sampled(int t, int stream) const {
-    Frame frame = make_feature_frame(description(t), channels);
+  Film sampled(int t, int stream) const {
+    Film film = make_feature_film(description(t), channels);
     std::mt19937 random(unsigned(stream) + 11), other(unsigned(1000 + t));
     std::normal_distribution<float> noise(0.0f, 0.4f), apart(0.0f, replay_sigma);
-    for (auto& half : frame.components[0].primal) {
+    for (auto& half : film.components[0].primal) {
       for (Radiance& pixel : half) {
         for (int c = 0; c < 3; ++c) pixel[c] += light(t) * noise(random) + (t != stream ? apart(other) : 0.0f);
         if (channels == 4) pixel[3] = pixel[0] / 8.0f;
       }
     }
-    for (int half = halves; half < kHalves; ++half) remove(half, &frame);
-    return frame;
+    for (int half = halves; half < kHalves; ++half) remove(half, &film);
+    return film;
   }
-  static void remove(int half, Frame* frame) {
-    std::fill(frame->count[half].begin(), frame->count[half].end(), 0);
-    std::fill(frame->components[0].primal[half].begin(), frame->components[0].primal[half].end(), Radiance(0.0f));
-    for (PassPlane& pass : frame->passes) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
+  static void remove(int half, Film* film) {
+    std::fill(film->count[half].begin(), film->count[half].end(), 0);
+    std::fill(film->components[0].primal[half].begin(), film->components[0].primal[half].end(), Radiance(0.0f));
+    for (PassPlane& pass : film->passes) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
   }
-  std::shared_ptr<const Frame> merged(int t) const {
-    auto frame = std::make_shared<Frame>(sampled(t, t));
-    merge_frames(frame.get(), sampled(t, t - 1));
-    return frame;
+  std::shared_ptr<const Film> merged(int t) const {
+    auto film = std::make_shared<Film>(sampled(t, t));
+    merge_films(film.get(), sampled(t, t - 1));
+    return film;
   }
   std::shared_ptr<const TemporalFrame> temporal(int t) const {
-    auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
-    frame->stream = t;
-    frame->replayed = {t - 1, {std::vector<int32_t>(size_t(kWidth) * kHeight)}};
-    for (int i = 0; i < kWidth * kHeight; ++i) frame->replayed.links.pixel[size_t(i)] = linked(i) ? i : kNoLink;
-    return frame;
+    auto film = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
+    film->stream = t;
+    film->replayed = {t - 1, {std::vector<int32_t>(size_t(kWidth) * kHeight)}};
+    for (int i = 0; i < kWidth * kHeight; ++i) film->replayed.correspondence.pixel[size_t(i)] = linked(i) ? i : kNoCorrespondence;
+    return film;
   }
   std::unique_ptr<HalvedWindowSource> pair(int t) const {
     return std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{temporal(t), temporal(t + 1)});
   }
-  RegularizedWindows::OpenFrame open() const {
-    return [this](int t, const CancelTest&) { return merged(t); };
+  RegularizedWindows::OpenFilm open() const {
+    return [this](int t, const CancelCheck&) { return merged(t); };
   }
   RegularizedWindows::OpenDifferences differences() const {
-    return [this](int t, const CancelTest&) { return alone(pair(t)); };
+    return [this](int t, const CancelCheck&) { return alone(pair(t)); };
   }
   RegularizedWindows windows() const { return {open(), differences()}; }
   FrameRange all() const { return {0, frames - 1}; }
@@ -138,8 +138,8 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
     };
     std::vector<Field> values = random_fields(frames, 2), weights = random_fields(frames, 1);
     const std::vector<Field> differences = random_fields(frames - 1, 1), couplings = random_fields(frames - 1, 1);
-    std::vector<Links> links;
-    for (int t = 0; t + 1 < frames; ++t) links.push_back(read_links(window, t));
+    std::vector<CorrespondenceMap> correspondence;
+    for (int t = 0; t + 1 < frames; ++t) correspondence.push_back(read_correspondence(window, t));
     for (const int channel : {0, 1}) {  // of the second one there are no differences: they are 0
       Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
       Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
@@ -148,8 +148,8 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
         const double weight = weights[size_t(t)].row(y)[x];
         matrix(i, i) += weight;
         right[i] += weight * values[size_t(t)].row(y, channel)[x];
-        const int there = window.links[size_t(t)][size_t(i % pixels)];
-        if (t + 1 == frames || there == kNoLink) continue;
+        const int there = window.correspondence[size_t(t)][size_t(i % pixels)];
+        if (t + 1 == frames || there == kNoCorrespondence) continue;
         const int j = (t + 1) * pixels + there;
         const double c = couplings[size_t(t)].row(y)[x], d = channel == 0 ? differences[size_t(t)].row(y)[x] : 0.0;
         matrix(i, i) += c;
@@ -162,7 +162,7 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
       const Eigen::VectorXd expected = matrix.ldlt().solve(right);
       std::vector<Field> x = values, used = weights;
       std::vector<TrackStep> steps;
-      for (size_t t = 0; t + 1 < frames; ++t) steps.push_back({links[t], differences[t], couplings[t]});
+      for (size_t t = 0; t + 1 < frames; ++t) steps.push_back({correspondence[t], differences[t], couplings[t]});
       solve_tracks(steps, &x, &used);
       for (int i = 0; i < unknowns; ++i) {
         ASSERT_NEAR(x[size_t(i / pixels)].row(i % pixels / w, channel)[i % w], expected[i], 1e-4) << i << ", motion " << int(motion);
@@ -230,7 +230,7 @@ class Blind final : public HalvedWindowSource {
   WindowSize size() const override { return window_->size(); }
   void read_row(RowKind, int, int, float* out) const override { read(out); }
   void read_half_differences(RowKind, int, int, float* out) const override { read(out); }
-  void read_links(int t, int y, int32_t* out) const override { window_->read_links(t, y, out); }
+  void read_correspondence(int t, int y, int32_t* out) const override { window_->read_correspondence(t, y, out); }
 
  private:
   void read(float* out) const { std::fill_n(out, size_t(size().width) * size_t(size().channels), 0.0f); }
@@ -242,7 +242,7 @@ TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
   Shot shot;
   shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
   SolveReport report;
-  RegularizedWindows windows(shot.open(), [&](int t, const CancelTest&) { return alone(std::make_unique<Blind>(shot.pair(t))); });
+  RegularizedWindows windows(shot.open(), [&](int t, const CancelCheck&) { return alone(std::make_unique<Blind>(shot.pair(t))); });
   windows.reconstruct(shot.all(), never, &report, [&](int t, const Reconstructed& picture) {
     EXPECT_NEAR(mean(picture.image) / mean(shot.description(t).truth), 1.0, 0.05) << t;
   });
@@ -271,7 +271,7 @@ TEST(B2_RegularizedWindow, AlphaBesideHolesGoesThroughTheSameWeights) {
   }
 }
 
-// Lamps of any strength.
+// Lights of any strength.
 TEST(B2_RegularizedWindow, ScalesWithTheLight) {
   Shot shot;
   shot.frames = 3;
@@ -308,11 +308,11 @@ TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
   std::map<int, int> opened;
   std::map<int, int> changes;
   RegularizedWindows both(
-      [&](int t, const CancelTest&) {
+      [&](int t, const CancelCheck&) {
         ++opened[t];
         return shot.merged(t);
       },
-      [&](int t, const CancelTest&) {
+      [&](int t, const CancelCheck&) {
         ++changes[t];
         return alone(shot.pair(t));
       });
@@ -357,12 +357,12 @@ TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
 // The light of a shot in two components, the second brighter to the right.
 struct TakenApart {
   Shot shot;
-  bool second_is_linked = true;
+  bool second_has_correspondence = true;
 
-  static void take_apart(Frame* frame) {
-    frame->components.push_back(frame->components[0]);
+  static void take_apart(Film* film) {
+    film->components.push_back(film->components[0]);
     for (size_t k = 0; k < 2; ++k) {
-      for (auto& half : frame->components[k].primal) {
+      for (auto& half : film->components[k].primal) {
         for (size_t i = 0; i < half.size(); ++i) {
           const float second = 0.1f + 0.3f * float(i % kWidth) / kWidth;
           half[i] *= k == 1 ? second : 1.0f - second;
@@ -370,24 +370,24 @@ struct TakenApart {
       }
     }
   }
-  std::shared_ptr<const Frame> merged(int t) const {
-    auto frame = std::make_shared<Frame>(*shot.merged(t));
-    take_apart(frame.get());
-    return frame;
+  std::shared_ptr<const Film> merged(int t) const {
+    auto film = std::make_shared<Film>(*shot.merged(t));
+    take_apart(film.get());
+    return film;
   }
   std::shared_ptr<const TemporalFrame> temporal(int t, int component) const {
-    Frame base = shot.sampled(t, t), replay = shot.sampled(t, t - 1);
+    Film base = shot.sampled(t, t), replay = shot.sampled(t, t - 1);
     take_apart(&base);
     take_apart(&replay);
-    auto frame = std::make_shared<TemporalFrame>(make_temporal_frame(base, replay, {}, component));
-    frame->stream = t;
-    frame->replayed = shot.temporal(t)->replayed;
-    if (component == 1 && !second_is_linked) std::ranges::fill(frame->replayed.links.pixel, kNoLink);
-    return frame;
+    auto film = std::make_shared<TemporalFrame>(make_temporal_frame(base, replay, {}, component));
+    film->stream = t;
+    film->replayed = shot.temporal(t)->replayed;
+    if (component == 1 && !second_has_correspondence) std::ranges::fill(film->replayed.correspondence.pixel, kNoCorrespondence);
+    return film;
   }
   RegularizedWindows windows() const {
-    return {[this](int t, const CancelTest&) { return merged(t); },
-            [this](int t, const CancelTest&) {
+    return {[this](int t, const CancelCheck&) { return merged(t); },
+            [this](int t, const CancelCheck&) {
               ComponentSources sources;
               for (int k = 0; k < 2; ++k) {
                 sources.push_back(
@@ -419,7 +419,7 @@ TEST(B2_RegularizedWindow, ComponentsThatGoTheSameWayAreWhatTheirSumBecomes) {
 TEST(B2_RegularizedWindow, EveryComponentGoesItsOwnWay) {
   TakenApart apart;
   apart.shot.frames = 5;
-  apart.second_is_linked = false;
+  apart.second_has_correspondence = false;
   RegularizedWindows windows = apart.windows();
   const std::vector<Reconstructed> parts = solve(&windows, apart.shot.all());
   double linked = 0.0, still = 0.0;

@@ -37,10 +37,10 @@ class Way : public HalvedWindowSource {
   void read_half_differences(RowKind, int, int y, float* out) const override {
     for (int i = 0; i < 3 * kWidth; ++i) out[i] = (i + y) % 2 == 0 ? kNoise : -kNoise;
   }
-  void read_links(int, int y, int32_t* out) const override {
+  void read_correspondence(int, int y, int32_t* out) const override {
     for (int x = 0; x < kWidth; ++x) {
       const int there = x + int(std::lround(shift(x))), row = y + int(std::lround(shift(x)));
-      out[x] = there < kWidth && row < kHeight && shift(x) == shift(0) ? row * kWidth + there : kNoLink;
+      out[x] = there < kWidth && row < kHeight && shift(x) == shift(0) ? row * kWidth + there : kNoCorrespondence;
     }
   }
   void read_off_centre(int, int, Vec2* out) const override {
@@ -61,11 +61,11 @@ Field picture_at(float off) {
   return field;
 }
 
-TEST(B2_RoundedWays, ChangeAPictureByWhatLiesBesideThePixels) {
+TEST(B2_RoundedDisplacements, ChangeAPictureByWhatLiesBesideThePixels) {
   for (const float shift : {0.25f, 0.5f, 1.625f, 2.75f}) {
     const Way way(shift, false);
     const float off = shift - float(std::lround(shift));
-    const Field here = picture_at(0.0f), moved = picture_at(off), change = change_by_rounding(here, read_links(way, 0), way, 0);
+    const Field here = picture_at(0.0f), moved = picture_at(off), change = rounding_change(here, read_correspondence(way, 0), way, 0);
     double error = 0.0, squares = 0.0;
     for (int y = 3; y < kHeight - 6; ++y)
       for (int c = 0; c < 3; ++c)
@@ -78,30 +78,30 @@ TEST(B2_RoundedWays, ChangeAPictureByWhatLiesBesideThePixels) {
   }
 }
 
-TEST(B2_RoundedWays, ChangeNothingWhereTheyEndInTheMiddle) {
+TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInTheMiddle) {
   for (const float shift : {0.0f, 2.0f}) {
     const Way way(shift, false);
-    const Field change = change_by_rounding(picture_at(0.0f), read_links(way, 0), way, 0);
+    const Field change = rounding_change(picture_at(0.0f), read_correspondence(way, 0), way, 0);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 1)[x], 0.0f);
   }
 }
 
 // What goes elsewhere, or nowhere, is not looked up: its light would come over the edge.
-TEST(B2_RoundedWays, TakeNothingFromNeighboursThatPart) {
+TEST(B2_RoundedDisplacements, TakeNothingFromNeighboursThatPart) {
   const Way way(0.25f, true);
   Field dark(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y)
     for (int x = kWidth / 2; x < kWidth; ++x) dark.row(y, 0)[x] = 1000.0f;
-  const Field change = change_by_rounding(dark, read_links(way, 0), way, 0);
+  const Field change = rounding_change(dark, read_correspondence(way, 0), way, 0);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 0)[x], 0.0f) << x << ' ' << y;
 }
 
 // A mirror moves and what it shows rests: the picture does not go with the surface, however this goes.
-TEST(B2_RoundedWays, CountOnlyWhereTheSamplesChangeSo) {
+TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
   const Way way(0.375f, false);
-  const Field rounding = change_by_rounding(picture_at(0.0f), read_links(way, 0), way, 0);
+  const Field rounding = rounding_change(picture_at(0.0f), read_correspondence(way, 0), way, 0);
   Field sampled = rounding, kept = rounding;
   for (int y = 0; y < kHeight; ++y)
     for (int c = 0; c < 3; ++c)
@@ -113,9 +113,9 @@ TEST(B2_RoundedWays, CountOnlyWhereTheSamplesChangeSo) {
   }
 }
 
-TEST(B2_RoundedWays, AreNeverTakenForMoreThanTheyMake) {
+TEST(B2_RoundedDisplacements, AreNeverTakenForMoreThanTheyMake) {
   const Way way(0.375f, false);
-  const Field rounding = change_by_rounding(picture_at(0.0f), read_links(way, 0), way, 0);
+  const Field rounding = rounding_change(picture_at(0.0f), read_correspondence(way, 0), way, 0);
   for (const float factor : {-3.0f, 0.5f, 1e6f}) {
     Field sampled = rounding, kept = rounding;
     for_values(&sampled, [&](float& value, int, int, int) { value *= factor; });
@@ -126,10 +126,10 @@ TEST(B2_RoundedWays, AreNeverTakenForMoreThanTheyMake) {
 }
 
 // No feature tells what lies beside the pixels: by regression alone it would be noise.
-TEST(B2_RoundedWays, AreInTheRegressedChange) {
+TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   ComponentSources sources;
   sources.push_back(std::make_unique<Way>(0.375f, false));
-  const Features features = filter_features(read_features(make_feature_frame(test::room(kWidth, kHeight), 3)));
+  const Features features = filter_features(read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
   const Change change = regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
   double error = 0.0, squares = 0.0;
   std::vector<float> truth(3 * kWidth);
@@ -145,16 +145,16 @@ TEST(B2_RoundedWays, AreInTheRegressedChange) {
 }
 
 // The same surface, and what it shows rests.
-class RestingLight : public Way {
+class StaticLight : public Way {
  public:
   using Way::Way;
   void read_row(RowKind, int, int, float* out) const override { std::fill_n(out, 3 * kWidth, 0.0f); }
 };
 
-TEST(B2_RoundedWays, AreNotInAChangeThatWasNotSampled) {
+TEST(B2_RoundedDisplacements, AreNotInAChangeThatWasNotSampled) {
   ComponentSources sources;
-  sources.push_back(std::make_unique<RestingLight>(0.375f, false));
-  const Features features = filter_features(read_features(make_feature_frame(test::room(kWidth, kHeight), 3)));
+  sources.push_back(std::make_unique<StaticLight>(0.375f, false));
+  const Features features = filter_features(read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
   const Change change = regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.difference[0].row(y, 1)[x], 0.0f);

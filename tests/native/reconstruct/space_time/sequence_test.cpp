@@ -71,7 +71,7 @@ std::unique_ptr<Window> open_static(const FrameRange& frames) {
 }
 
 SequencePictures static_sequence(const FrameRange& range, bool with_error = false) {
-  return SequencePictures(range, {}, {[](const FrameRange& frames, const CancelTest&) { return open_static(frames); }, {}, {}},
+  return SequencePictures(range, {}, {[](const FrameRange& frames, const CancelCheck&) { return open_static(frames); }, {}, {}},
                           {GRADUS_RECONSTRUCTION_L2, 0.0f, with_error});
 }
 
@@ -126,13 +126,13 @@ TEST(B2_Windows, HaveTheGridOfTheirSettings) {
 
 // Twice the overlap was beyond the integers, and so was the end of the last window.
 TEST(B2_Windows, OfAnySizeAreRefusedOrRight) {
-  constexpr int most = std::numeric_limits<int>::max();
+  constexpr int maximum = std::numeric_limits<int>::max();
   EXPECT_THROW(WindowGrid({0, 9}, {10, 1 << 30}), Error);
-  EXPECT_THROW(WindowGrid({0, 9}, {most, 1 << 30}), Error);
-  const WindowGrid wide({-5, 9}, {most, most / 2});
+  EXPECT_THROW(WindowGrid({0, 9}, {maximum, 1 << 30}), Error);
+  const WindowGrid wide({-5, 9}, {maximum, maximum / 2});
   EXPECT_EQ(wide.frames(wide.last()).last, 9);
-  const WindowGrid late({most - 7, most});
-  EXPECT_EQ(late.frames(late.last()).last, most);
+  const WindowGrid late({maximum - 7, maximum});
+  EXPECT_EQ(late.frames(late.last()).last, maximum);
 }
 
 // A frame in the middle of its window and of the next: half of each.
@@ -170,7 +170,7 @@ TEST(K2_Cancel, SequencesDeliverNothingHalfDone) {
 TEST(B2_Windows, TellTheErrorOfTheirPictures) {
   double told = 0.0, found = 0.0;
   for (unsigned seed = 0; seed < 24; ++seed) {
-    const auto noisy = [&](const FrameRange& frames, const CancelTest&) {
+    const auto noisy = [&](const FrameRange& frames, const CancelCheck&) {
       auto window = std::make_unique<Window>(16, 12, 3, frames.count());
       link(window.get(), Motion::kStatic);
       for (int t = 0; t < frames.count(); ++t) {

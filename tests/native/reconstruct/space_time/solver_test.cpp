@@ -273,7 +273,7 @@ TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
     Field light = make_field(w, h, [&](int, int) { return std::exp(normal(random)); });
     for_values(&values[size_t(t)], [&](float& value, int x, int y, int c) { value = c == 0 ? normal(random) : 0.3f * light.row(y)[x]; });
     sum += sum_rows(h, 1, [&](int y, int) { return std::accumulate(values[size_t(t)].row(y), values[size_t(t)].row(y) + w, 0.0); })[0];
-    smoothing.add_frame(std::move(light), t > 0 ? &system.links(t - 1) : nullptr);
+    smoothing.add_frame(std::move(light), t > 0 ? &system.correspondence(t - 1) : nullptr);
   }
   const Frames before = values;
   smoothing.apply(system, 0.04f, &values);
@@ -295,11 +295,11 @@ TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
 
 TEST(B2_SpaceTime, LinksThatAreNotOneToOneAreRefused) {
   Window window = measured(8, 8, 1, 2, Motion::kStatic);
-  window.links[0][3] = 4;
+  window.correspondence[0][3] = 4;
   EXPECT_THROW(SpaceTimeSystem{window}, Error);
-  window.links[0][3] = 64;
+  window.correspondence[0][3] = 64;
   EXPECT_THROW(SpaceTimeSystem{window}, Error);
-  window.links[0][3] = kNoLink;
+  window.correspondence[0][3] = kNoCorrespondence;
   EXPECT_NO_THROW(SpaceTimeSystem{window});
 }
 

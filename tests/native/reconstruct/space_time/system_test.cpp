@@ -139,14 +139,14 @@ struct Solved {
   Frames x;
   CgReport report;
 };
-Solved solve(const Window& window, SpaceTimeSystem* system, float residual, int most_steps = 100) {
+Solved solve(const Window& window, SpaceTimeSystem* system, float residual, int max_steps = 100) {
   const int channels = window.size_.channels;
   TimeLadder ladder(*system, channels);
   ladder.update();
   Solved solved{system->make_fields(channels), {}};
   WindowFields fields(solved.x);
   system->right_side(window, 0, &fields.r);
-  solved.report = solve_window(*system, &ladder, {.residual = residual}, most_steps, never, &fields, &solved.x);
+  solved.report = solve_window(*system, &ladder, {.residual = residual}, max_steps, never, &fields, &solved.x);
   return solved;
 }
 
@@ -155,7 +155,7 @@ TEST(B2_SpaceTime, SolverMeetsTheDenseSolution) {
     for (const bool alike : {true, false}) {
       const Window window = random_window(11, 8, 3, 4, motion);
       SpaceTimeSystem system(window);
-      alike ? weigh_alike(window, 0.2f, &system) : weigh_at_random(&system);
+      alike ? weigh_uniformly(window, 0.2f, &system) : weigh_at_random(&system);
       const Dense dense = write_down(window, &system);
       const Eigen::LLT<Eigen::MatrixXd> factors(dense.matrix);
       EXPECT_EQ(factors.info(), Eigen::Success) << "not positive definite";
@@ -172,7 +172,7 @@ TEST(B2_SpaceTime, FewStepsWhateverTheMotion) {
   for (const Motion motion : kMotions) {
     const Window window = random_window(320, 180, 1, 10, motion);
     SpaceTimeSystem system(window);
-    weigh_alike(window, 0.4f, &system);
+    weigh_uniformly(window, 0.4f, &system);
     const int coarse = solve(window, &system, 1e-4f).report.steps, fine = solve(window, &system, 1e-6f).report.steps;
     EXPECT_LE(coarse, 8) << int(motion);
     EXPECT_LE(fine, 14) << int(motion);

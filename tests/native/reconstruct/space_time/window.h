@@ -18,7 +18,7 @@ struct Window final : HalvedWindowSource {
     for (auto& kind : planes) kind.assign(size_t(frames), std::vector<float>(pixels * size_t(channels), 0.0f));
     for (auto& kind : halves) kind.assign(size_t(frames), std::vector<float>(pixels * size_t(channels), 0.0f));
     for (auto& kind : deviations) kind.assign(size_t(frames), std::vector<float>(pixels, std::numeric_limits<float>::quiet_NaN()));
-    links.assign(size_t(frames), std::vector<int32_t>(pixels, kNoLink));
+    correspondence.assign(size_t(frames), std::vector<int32_t>(pixels, kNoCorrespondence));
   }
   WindowSize size() const override { return size_; }
   void read_row(RowKind kind, int t, int y, float* out) const override {
@@ -29,8 +29,8 @@ struct Window final : HalvedWindowSource {
     const size_t row = size_t(size_.width) * size_t(size_.channels);
     std::copy_n(halves[size_t(kind)][size_t(t)].begin() + ptrdiff_t(size_t(y) * row), row, out);
   }
-  void read_links(int t, int y, int32_t* out) const override {
-    std::copy_n(links[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
+  void read_correspondence(int t, int y, int32_t* out) const override {
+    std::copy_n(correspondence[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
   }
   std::vector<float>& plane(RowKind kind, int t) { return planes[size_t(kind)][size_t(t)]; }
   const std::vector<float>& plane(RowKind kind, int t) const { return planes[size_t(kind)][size_t(t)]; }
@@ -56,7 +56,7 @@ struct Window final : HalvedWindowSource {
 
   WindowSize size_;
   std::vector<std::vector<float>> planes[6], halves[6], deviations[6];
-  std::vector<std::vector<int32_t>> links;
+  std::vector<std::vector<int32_t>> correspondence;
 };
 
 inline Window::Terms Window::row(RowKind kind, int t, int x, int y) const {
@@ -66,10 +66,10 @@ inline Window::Terms Window::row(RowKind kind, int t, int x, int y) const {
   const int j = i + right + up * w, at = t * n;
   if (!is_temporal(kind)) return i == j ? Terms{{at + i, 1.0f}} : Terms{{at + i, -1.0f}, {at + j, 1.0f}};
   if (t + 1 == size_.frames) return {};
-  const int there = links[size_t(t)][size_t(i)], other = links[size_t(t)][size_t(j)];
-  if (there == kNoLink) return {};
+  const int there = correspondence[size_t(t)][size_t(i)], other = correspondence[size_t(t)][size_t(j)];
+  if (there == kNoCorrespondence) return {};
   if (i == j) return {{at + i, -1.0f}, {at + n + there, 1.0f}};
-  if (other == kNoLink || other % w != there % w + right || other / w != there / w + up) return {};
+  if (other == kNoCorrespondence || other % w != there % w + right || other / w != there / w + up) return {};
   return {{at + i, 1.0f}, {at + j, -1.0f}, {at + n + there, -1.0f}, {at + n + other, 1.0f}};
 }
 
@@ -96,7 +96,7 @@ inline void link(Window* window, const std::function<std::pair<float, float>(int
         const int tx = int(std::lround(fx)), ty = int(std::lround(fy));
         if (tx < 0 || ty < 0 || tx >= w || ty >= h || hole(x, y, t) || taken[size_t(ty * w + tx)]) continue;
         taken[size_t(ty * w + tx)] = true;
-        window->links[size_t(t)][size_t(y * w + x)] = ty * w + tx;
+        window->correspondence[size_t(t)][size_t(y * w + x)] = ty * w + tx;
       }
     }
   }

@@ -56,7 +56,7 @@ Pictures rendered(uint32_t reconstruction, const char* components, Scenario scen
     if (components == nullptr) continue;
     std::vector<float> sum(3 * kSide * kSide), part(sum);
     pictures.light.clear();
-    for (const ComponentPlanes& planes : task->frame()->components) {
+    for (const ComponentPlanes& planes : task->film()->components) {
       task->read_component(planes.name, GRADUS_COMPONENT_COLOR, part.data());
       double light = 0.0;
       for (size_t i = 0; i < sum.size(); ++i) light += part[i];
@@ -81,7 +81,7 @@ TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
     const auto sequence = make_sequence(0, 2, folder.path());
     for (int32_t frame = 0; frame <= 2; ++frame) sample(sequence.get(), pan.at(frame), settings_with(frame, GRADUS_COMPONENT_FACE_INDEX));
     const auto task = delivered(sequence.get(), 1);
-    const Frame& frame = *task->frame();
+    const Film& frame = *task->film();
     const auto& details = frame.components[size_t(find_component(frame, "Diffuse"))].details;
     const size_t middle = size_t(kSide) * kSide / 2 + kSide / 2;
     ASSERT_EQ(details.size(), size_t(kSide) * kSide);
@@ -175,25 +175,25 @@ TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
   const Folder folder;
   const auto sequence = make_sequence(0, 1, folder.path());
   for (int32_t frame = 0; frame <= 1; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, GRADUS_RECONSTRUCTION_L2, ""));
-  const auto offset = SequenceFolder(folder.path()).load(1, FramePart::kOffset);
-  const SampleSources& sources = offset->replayed;
-  const int diffuse = find_component(*offset, "Diffuse");
-  EXPECT_FALSE(sources.has_own(diffuse));
+  const auto replayed = SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed);
+  const ReplayMap& replay_map = replayed->replayed;
+  const int diffuse = find_component(*replayed, "Diffuse");
+  EXPECT_FALSE(replay_map.has_component_map(diffuse));
   size_t apart = 0;
   for (const char* name : {"Reflection", "Transmission"}) {
-    const int component = find_component(*offset, name);
-    ASSERT_TRUE(sources.has_own(component)) << name;
-    const std::vector<int32_t>& own = sources.of_component[size_t(component)].pixel;
+    const int component = find_component(*replayed, name);
+    ASSERT_TRUE(replay_map.has_component_map(component)) << name;
+    const std::vector<int32_t>& own = replay_map.of_component[size_t(component)].pixel;
     std::set<int32_t> taken;
     for (size_t i = 0; i < own.size(); ++i) {
-      apart += own[i] != kNoLink && own[i] != sources.links.pixel[i] ? 1 : 0;
-      EXPECT_TRUE(own[i] == kNoLink || taken.insert(own[i]).second) << name;
+      apart += own[i] != kNoCorrespondence && own[i] != replay_map.correspondence.pixel[i] ? 1 : 0;
+      EXPECT_TRUE(own[i] == kNoCorrespondence || taken.insert(own[i]).second) << name;
     }
   }
   EXPECT_GT(apart, 50u);
   const auto whole =
-      load_component(SequenceFolder(folder.path()).path(1, FramePart::kOffset), "Transmission", StoredContent::kAll, [] { return false; });
-  EXPECT_EQ(whole->replayed.links, sources.of_component[size_t(find_component(*offset, "Transmission"))]);
+      load_component(SequenceFolder(folder.path()).path(1, FrameSamples::kReplayed), "Transmission", StoredContent::kAll, [] { return false; });
+  EXPECT_EQ(whole->replayed.correspondence, replay_map.of_component[size_t(find_component(*replayed, "Transmission"))]);
 }
 
 TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
@@ -205,7 +205,7 @@ TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
     settings.component_replays = 0;
     sample(sequence.get(), pan.at(frame), settings);
   }
-  EXPECT_TRUE(SequenceFolder(folder.path()).load(1, FramePart::kOffset)->replayed.of_component.empty());
+  EXPECT_TRUE(SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed)->replayed.of_component.empty());
 }
 
 // Whatever the links say, a replay is a sample of its pixel.
@@ -219,18 +219,18 @@ TEST(ComponentsOfSequences, ReplaysAlongOwnWaysHaveTheLightOfPlainSamples) {
     plain.frame = frame;
     sample(sequence.get(), pan.at(frame), plain);
   }
-  const auto light = [&](FramePart part, const char* name) {
+  const auto light = [&](FrameSamples part, const char* name) {
     const auto frame = load_component(SequenceFolder(folder.path()).path(1, part), name, StoredContent::kAll, [] { return false; });
     double sum = 0.0;
     for (const float value : read_images(*frame, 0).primal) sum += value;
     return sum;
   };
-  // Reflections of the lamp come by few samples.
+  // Reflections of the light come by few samples.
   const std::pair<const char*, double> bounds[] = {{"Reflection", 0.12}, {"Transmission", 0.03}, {"Diffuse", 0.03}};
   for (const auto& [name, bound] : bounds) {
-    const double base = light(FramePart::kBase, name), offset = light(FramePart::kOffset, name);
+    const double base = light(FrameSamples::kFresh, name), replayed = light(FrameSamples::kReplayed, name);
     EXPECT_GT(base, 1.0) << name;
-    EXPECT_NEAR(offset, base, bound * base) << name;
+    EXPECT_NEAR(replayed, base, bound * base) << name;
   }
 }
 

@@ -237,7 +237,7 @@ TEST(SequenceFlow, UnderACutNothingIsTracked) {
   test::run(sequence->sample(scene.at(1, 0.7f), flow_settings(1)).get());
   const Flow flow = read_flow(*delivered(sequence.get(), 1), "Diffuse");
   EXPECT_EQ(flow.count(kTracked), 0u);
-  EXPECT_EQ(flow.count(float(Tracking::Cut)), kPixels);
+  EXPECT_EQ(flow.count(float(Tracking::ShotChange)), kPixels);
 }
 
 // Those that are on one side alone are not tracked there.
@@ -247,7 +247,7 @@ TEST(SequenceFlow, AMirrorThatAppearsTakesNoFlowFromOthers) {
   for (const int32_t frame : {0, 1, 2, 3}) test::run(sequence->sample(scene.at(frame, 0.0f, frame >= 2), flow_settings(frame)).get());
   for (const int32_t frame : {0, 1, 2}) {
     const auto task = delivered(sequence.get(), frame);
-    ASSERT_EQ(find_component(*task->frame(), "Reflection") >= 0, frame == 2) << frame;
+    ASSERT_EQ(find_component(*task->film(), "Reflection") >= 0, frame == 2) << frame;
     if (frame == 0) continue;
     EXPECT_GT(read_flow(*task, "Diffuse").count(kTracked), kPixels / 2) << frame;
     if (frame == 1) continue;
@@ -319,8 +319,8 @@ TEST(SequenceFlow, FramesOfAnotherExposureAreMadeOnce) {
 TEST(SequenceFlow, AKeyedAlphaIsThatOfTheFrameItself) { EXPECT_EQ(loads_by(0.2f, as_it_is, true), loads_by(0.2f, as_it_is, false)); }
 
 TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
-  const Folder asked, not_asked;
-  const auto with = flow_sequence(2, true, GRADUS_BINARY_DIR "/native", asked.path());
+  const Folder requested, not_asked;
+  const auto with = flow_sequence(2, true, GRADUS_BINARY_DIR "/native", requested.path());
   const auto without = flow_sequence(2, true, GRADUS_BINARY_DIR "/native", not_asked.path());
   sample_all(with.get(), 0, 2);
   sample_all(without.get(), 0, 2, 1u << GRADUS_COMPONENT_COLOR);
@@ -330,7 +330,7 @@ TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
     return sequence->folder().loads() - before;
   };
   EXPECT_EQ(loads(with.get()), loads(without.get()) + 2);
-  const auto frame = SequenceFolder(not_asked.path()).load(1, FramePart::kBase);
+  const auto frame = SequenceFolder(not_asked.path()).load(1, FrameSamples::kFresh);
   EXPECT_TRUE(frame->components[0].shown.empty());
   EXPECT_TRUE(frame->components[0].motion.empty());
 }

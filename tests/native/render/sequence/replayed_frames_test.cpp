@@ -8,7 +8,7 @@ namespace {
 
 using Plane = std::vector<Radiance>;
 
-const Plane& plane_of(const Frame& frame) { return frame.components[0].primal[0]; }
+const Plane& plane_of(const Film& frame) { return frame.components[0].primal[0]; }
 
 double energy_of_difference(const Plane& a, const Plane& b) {
   double sum = 0.0;
@@ -32,8 +32,8 @@ TEST(C4_ReplayedFrames, ReplaysHaveTheSeedOfTheFrameBeforeWhereItIsKeyed) {
   for (uint32_t t = 1; t <= 3; ++t) sample(sequence.get(), still.at(int32_t(t)), with_seed(int32_t(t), t));
   const SequenceFolder files(folder.path());
   for (int32_t t = 2; t <= 3; ++t) {
-    const auto before = files.load(t - 1, FramePart::kBase), own = files.load(t, FramePart::kBase);
-    const auto replay = files.load(t, FramePart::kOffset);
+    const auto before = files.load(t - 1, FrameSamples::kFresh), own = files.load(t, FrameSamples::kFresh);
+    const auto replay = files.load(t, FrameSamples::kReplayed);
     EXPECT_TRUE(plane_of(*replay) == plane_of(*before)) << t;
     EXPECT_FALSE(plane_of(*own) == plane_of(*before)) << t;
     EXPECT_EQ(own->frame_number, t);
@@ -91,7 +91,7 @@ TEST(C4_ReplayedFrames, ReplaysHaveTheJitterOfTheFrameBeforeWhereBlurStartsOrSto
       sample(sequence.get(), scene.context(settings).snapshot, settings);
     }
     const SequenceFolder files(folder.path());
-    const auto before = files.load(1, FramePart::kBase), own = files.load(2, FramePart::kBase), replay = files.load(2, FramePart::kOffset);
+    const auto before = files.load(1, FrameSamples::kFresh), own = files.load(2, FrameSamples::kFresh), replay = files.load(2, FrameSamples::kReplayed);
     const double replayed = energy_of_difference(plane_of(*replay), plane_of(*before));
     EXPECT_LT(replayed, 0.01 * energy_of_difference(plane_of(*own), plane_of(*before))) << "frame " << blurred << " is blurred";
   }

@@ -77,15 +77,15 @@ TEST(C3_Sequence, FramesAreMadeByAsManyThreadsAsTheirSettingsSay) {
   Pan pan(1.3f);
   const auto sequence = make_sequence(1, 1);  // of a device with two threads
   GradusSettings settings = settings_of(1);
-  const auto threads_of_maker = [&](const std::optional<GradusSettings>& asked) {
+  const auto threads_of_maker = [&](const std::optional<GradusSettings>& requested) {
     std::set<int> threads;
     std::mutex mutex;
-    const CancelTest listen = [&] {
+    const CancelCheck listen = [&] {
       const std::lock_guard lock(mutex);
       threads.insert(tbb::this_task_arena::max_concurrency());
       return false;
     };
-    FrameMaker(sequence.get(), 1, asked, listen).load();
+    FrameDeveloper(sequence.get(), 1, requested, listen).load();
     return threads;
   };
   settings.threads = 1;
@@ -286,8 +286,8 @@ TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
   sequence->pass_by(pan.at(4), with_passes(adaptive(4, 8)));
   for (int32_t t = 5; t <= 6; ++t) sample(sequence.get(), pan.at(t), adaptive(t, 8));
   const std::vector<int32_t> sources =
-      SequenceFolder(folder.path()).load(5, FramePart::kOffset, StoredContent::kSamples)->replayed.links.pixel;
-  EXPECT_GT(size_t(std::count_if(sources.begin(), sources.end(), [](int32_t i) { return i != kNoLink; })), sources.size() / 2);
+      SequenceFolder(folder.path()).load(5, FrameSamples::kReplayed, StoredContent::kSamples)->replayed.correspondence.pixel;
+  EXPECT_GT(size_t(std::count_if(sources.begin(), sources.end(), [](int32_t i) { return i != kNoCorrespondence; })), sources.size() / 2);
 }
 
 // Frames beside a job's own that another one has left in the folder.
@@ -440,7 +440,7 @@ void expect_alone(const SettingsOf& settings, const std::map<int32_t, Delivered>
 }
 
 // Of ten frames, those before the fourth and those from it on.
-void expect_cut_at_4(const SettingsOf& settings) {
+void expect_shot_change_at_4(const SettingsOf& settings) {
   const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9);
   expect_alone(settings, whole, 0, 3);
   expect_alone(settings, whole, 4, 9);
@@ -454,11 +454,11 @@ GradusSettings with_film(int32_t frame, int32_t first_transparent) {
 
 // They ended the animation: "has another size or other planes than those beside it".
 TEST(C8_Sequence, FramesWithAnotherNumberOfChannelsAreACut) {
-  expect_cut_at_4([](int32_t frame) { return with_film(frame, 4); });
+  expect_shot_change_at_4([](int32_t frame) { return with_film(frame, 4); });
 }
 
 TEST(C8_Sequence, FramesWithAndWithoutDifferencesAreACut) {
-  expect_cut_at_4([](int32_t frame) {
+  expect_shot_change_at_4([](int32_t frame) {
     GradusSettings s = settings_of(frame);
     s.integrator = GRADUS_INTEGRATOR_AUTO;
     s.reconstruction = frame < 4 ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_REGULARIZED;
@@ -510,8 +510,8 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   const auto task = sequence->deliver(0, &settings);
   run(task.get());
   const std::vector<float> difference = read(*task, GRADUS_PASS_GRADIENT_T, 3), link = read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3);
-  const auto base = SequenceFolder(folder.path()).load(0, FramePart::kBase),
-             next = SequenceFolder(folder.path()).load(1, FramePart::kOffset);
+  const auto base = SequenceFolder(folder.path()).load(0, FrameSamples::kFresh),
+             next = SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed);
   const GradientImages from = read_images(*base, 0), to = read_images(*next, 0);
   size_t linked = 0, k = 0;
   for (int32_t y = border.y0; y < border.y1; ++y) {
@@ -540,7 +540,7 @@ TEST(Sequence, GradientTOfLightThatGrowsIsWhatItGrowsBy) {
     sample(sequence.get(), scene.context(settings_of(t)).snapshot, settings_of(t));
   }
   const Delivered frame = deliver(sequence.get(), 0);
-  const GradientImages before = read_images(*SequenceFolder(folder.path()).load(0, FramePart::kBase), 0);
+  const GradientImages before = read_images(*SequenceFolder(folder.path()).load(0, FrameSamples::kFresh), 0);
   for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
     ASSERT_EQ(frame.link[3 * i + 2], 1.0f);
     for (size_t c = 0; c < 3; ++c) {
@@ -609,16 +609,16 @@ TEST(A8_Sequence, ReplaysTakeTheCountsOfWhatTheyReplay) {
   };
   for (int32_t t = 0; t <= 1; ++t) sample(sequence.get(), pan.at(t), adaptive(t));
   const SequenceFolder files(folder.path());
-  const auto base = files.load(0, FramePart::kBase), offset = files.load(1, FramePart::kOffset);
-  uint32_t least = UINT32_MAX, most = 0;
-  for (size_t q = 0; q < offset->replayed.links.pixel.size(); ++q) {
-    const int32_t source = offset->replayed.links.pixel[q];
-    if (source == kNoLink) continue;
+  const auto base = files.load(0, FrameSamples::kFresh), offset = files.load(1, FrameSamples::kReplayed);
+  uint32_t minimum = UINT32_MAX, maximum = 0;
+  for (size_t q = 0; q < offset->replayed.correspondence.pixel.size(); ++q) {
+    const int32_t source = offset->replayed.correspondence.pixel[q];
+    if (source == kNoCorrespondence) continue;
     EXPECT_EQ(samples_at(*offset, q), samples_at(*base, size_t(source)));
-    least = std::min(least, samples_at(*offset, q));
-    most = std::max(most, samples_at(*offset, q));
+    minimum = std::min(minimum, samples_at(*offset, q));
+    maximum = std::max(maximum, samples_at(*offset, q));
   }
-  EXPECT_LT(least, most) << "the test says something";
+  EXPECT_LT(minimum, maximum) << "the test says something";
   EXPECT_GT(deliver(sequence.get(), 0).stats["spp_offset"], 1.0);
 }
 
@@ -704,7 +704,7 @@ TEST(K1_Sequence, ACancelledDeliveryReadsNoWholeFile) {
   const Folder folder;
   const auto sequence = make_sequence(1, 1, folder.path());
   run(sequence->sample(pan.at(1), settings_of(1)).get());
-  const std::string path = SequenceFolder(folder.path()).path(1, FramePart::kBase);
+  const std::string path = SequenceFolder(folder.path()).path(1, FrameSamples::kFresh);
   fs::resize_file(path, fs::file_size(path) / 2);
   const auto outcome = [&](bool is_cancelled) {
     const auto task = sequence->deliver(1, nullptr);
@@ -737,7 +737,7 @@ TEST(K1_Sequence, ACancelledDeliveryReadsNoMoreFrames) {
   const Folder folder;
   const auto sequence = make_sequence(1, 4, folder.path());
   for (int32_t t = 1; t <= 4; ++t) run(sequence->sample(pan.at(t), settings_of(t)).get());
-  fs::resize_file(SequenceFolder(folder.path()).path(3, FramePart::kBase), 100);
+  fs::resize_file(SequenceFolder(folder.path()).path(3, FrameSamples::kFresh), 100);
   const auto outcome = [&](bool is_cancelled) {
     const auto task = sequence->deliver(1, nullptr);
     if (is_cancelled) task->cancel();
@@ -834,10 +834,10 @@ TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
   Pan pan(1.3f);
   const Folder folder, whole;
   sample(make_sequence(1, 1, whole.path()).get(), pan.at(1), settings_of(1));
-  const auto size_of = [&](FramePart part) { return fs::file_size(SequenceFolder(whole.path()).path(1, part)); };
-  for (const FramePart part : {FramePart::kOffset, FramePart::kBase}) {
+  const auto size_of = [&](FrameSamples part) { return fs::file_size(SequenceFolder(whole.path()).path(1, part)); };
+  for (const FrameSamples part : {FrameSamples::kReplayed, FrameSamples::kFresh}) {
     const std::string size =
-        std::to_string(part == FramePart::kOffset ? size_of(part) / 2 : size_of(FramePart::kOffset) + size_of(part) / 2);
+        std::to_string(part == FrameSamples::kReplayed ? size_of(part) / 2 : size_of(FrameSamples::kReplayed) + size_of(part) / 2);
     const auto what = failure_of([&] { return mount_disk(folder.path(), size.c_str()); },
                                  [&] {
                                    const auto sequence = make_sequence(1, 4, folder.path());
@@ -849,7 +849,7 @@ TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
     EXPECT_NE(what->find("cannot write " + name + ": No space left on device"), std::string::npos) << *what;
     EXPECT_EQ(what->find("base.exr, left"), std::string::npos) << *what;
     EXPECT_EQ(what->find(".part"), std::string::npos) << *what << ": half a file";
-    EXPECT_EQ(what->find("left: ") != std::string::npos, part == FramePart::kBase) << *what << ": a whole offset alone";
+    EXPECT_EQ(what->find("left: ") != std::string::npos, part == FrameSamples::kFresh) << *what << ": a whole offset alone";
   }
 }
 

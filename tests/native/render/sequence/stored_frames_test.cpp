@@ -46,10 +46,10 @@ TEST(C7_StoredFrames, ProgressAndCancelDoNotWaitForAFileThatIsRead) {
   const auto sequence = make_sequence(1, 1, folder.path());
   const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
   run(task.get());
-  const std::string path = sequence->folder().path(1, FramePart::kBase);
+  const std::string path = sequence->folder().path(1, FrameSamples::kFresh);
   fs::remove(path);
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
-  auto reading = std::async(std::launch::async, [&] { return refusal_of([&] { task->frame(); }); });
+  auto reading = std::async(std::launch::async, [&] { return refusal_of([&] { task->film(); }); });
   const int writer = open_for_reader(path);
   ASSERT_GE(writer, 0);
   auto asking = std::async(std::launch::async, [&] {
@@ -131,13 +131,13 @@ TEST(C7_StoredFrames, StillAdaptiveFramesAreFoundAgain) {
 }
 
 // Of frames 1 to 3, all alike, twice: all of what a folder has, or from a frame on.
-struct StillJob {
+struct StaticJob {
   uint32_t samples;
   float threshold = 0.0f;
   int32_t first = 1;
 };
 
-std::vector<Delivered> run_still(const StillJob& job, const std::string& folder) {
+std::vector<Delivered> run_static(const StaticJob& job, const std::string& folder) {
   Pan pan(0.0f);
   const auto sequence = make_sequence(job.first, 3, folder);
   for (int32_t t = job.first; t <= 3; ++t) {
@@ -154,29 +154,29 @@ std::vector<Delivered> run_still(const StillJob& job, const std::string& folder)
 // of their own frame, beside the base of the first: "do not belong together".
 TEST(C7_StoredFrames, StillFramesWhoseCellsStopAreFoundAgain) {
   const Folder folder;
-  const auto once = run_still({256, 0.1f}, folder.path());
-  const Frame offset = *SequenceFolder(folder.path()).load(1, FramePart::kOffset);
+  const auto once = run_static({256, 0.1f}, folder.path());
+  const Film offset = *SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed);
   ASSERT_LT(mean_samples(offset), 100.0);
-  const auto again = run_still({256, 0.1f}, folder.path());
+  const auto again = run_static({256, 0.1f}, folder.path());
   expect_same(again, once);
   for (const Delivered& frame : again) EXPECT_EQ(frame.stats["stopped"], "stored");
-  expect_same(run_still({256, 0.1f, 2}, folder.path()), {once.begin() + 1, once.end()});
+  expect_same(run_static({256, 0.1f, 2}, folder.path()), {once.begin() + 1, once.end()});
 }
 
 // One half of theirs had enough samples, the other had not.
 TEST(C7_StoredFrames, StillFramesGetASampleMoreInBothHalves) {
   for (const uint32_t samples : {4u, 5u}) {
     const Folder folder, fresh;
-    run_still({samples}, folder.path());
-    expect_same(run_still({samples + 1}, folder.path()), run_still({samples + 1}, fresh.path()));
+    run_static({samples}, folder.path());
+    expect_same(run_static({samples + 1}, folder.path()), run_static({samples + 1}, fresh.path()));
   }
 }
 
 TEST(C7_StoredFrames, AJobThatBeginsInAStillStretchGetsASampleMoreInBothHalves) {
   for (const uint32_t samples : {4u, 5u}) {
     const Folder folder;
-    run_still({samples}, folder.path());
-    const auto frames = run_still({samples + 1, 0.0f, 2}, folder.path());
+    run_static({samples}, folder.path());
+    const auto frames = run_static({samples + 1, 0.0f, 2}, folder.path());
     EXPECT_EQ(frames.front().noisy, frames.back().noisy) << samples;
   }
 }
@@ -204,10 +204,10 @@ TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesThatItsRunTook) {
       settings.time_limit = t == 1 ? first_limit : limit;
       sample(sequence.get(), pan.at(t), settings);
     }
-    return mean_samples(*files.load(2, FramePart::kBase));
+    return mean_samples(*files.load(2, FrameSamples::kFresh));
   };
   const double before = sample_both(0.5f, 0.25f), after = sample_both(1.5f, 0.3f);
-  const double offset = mean_samples(*files.load(2, FramePart::kOffset));
+  const double offset = mean_samples(*files.load(2, FrameSamples::kReplayed));
   EXPECT_GT(after, before) << "it goes on";
   EXPECT_LT(offset, 1.5 * 1.2 * (after - before));
 }
@@ -230,11 +230,11 @@ TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
 }
 
 // As if a time limit had ended it: how many samples it was asked for does not tell how many it has.
-void say_that_time_ended_it(const SequenceFolder& files, int32_t frame) {
-  const auto base = files.load(frame, FramePart::kBase);
+void mark_ended_by_time(const SequenceFolder& files, int32_t frame) {
+  const auto base = files.load(frame, FrameSamples::kFresh);
   base->settings.time_limit = 1.0f;
   base->settings.samples = 1u << 20;
-  files.save(*base, frame, FramePart::kBase, [] { return false; });
+  files.save(*base, frame, FrameSamples::kFresh, [] { return false; });
 }
 
 GradusSettings with_threshold(int32_t frame, uint32_t samples, float threshold) {
@@ -249,14 +249,14 @@ TEST(C7_StoredFrames, AdaptiveFramesOfATimeLimitHaveTheSamplesOfTheirMean) {
   const Folder folder;
   const SequenceFolder files(folder.path());
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_threshold(1, 120, 1e-3f));
-  say_that_time_ended_it(files, 1);
-  const auto limited = files.load(1, FramePart::kBase);
-  const auto most = uint32_t(limited->samples.total());
+  mark_ended_by_time(files, 1);
+  const auto limited = files.load(1, FrameSamples::kFresh);
+  const auto maximum = uint32_t(limited->samples.total());
   ASSERT_EQ(limited->shared.mean, 60u);
-  ASSERT_GT(most, 66u) << "cells that had more than the mean";
+  ASSERT_GT(maximum, 66u) << "cells that had more than the mean";
   const auto sequence = make_sequence(1, 1, folder.path());
   sample(sequence.get(), pan.at(1), with_threshold(1, 132, 1e-3f));
-  EXPECT_EQ(files.load(1, FramePart::kBase)->shared.mean, 66u);
+  EXPECT_EQ(files.load(1, FrameSamples::kFresh)->shared.mean, 66u);
   EXPECT_EQ(deliver(sequence.get(), 1).stats["stopped"], "samples");
 }
 
@@ -267,8 +267,8 @@ TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIs) {
   const Folder folder;
   const SequenceFolder files(folder.path());
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_threshold(1, 1000, 0.5f));
-  say_that_time_ended_it(files, 1);
-  const double taken = mean_samples(*files.load(1, FramePart::kBase));
+  mark_ended_by_time(files, 1);
+  const double taken = mean_samples(*files.load(1, FrameSamples::kFresh));
   ASSERT_LT(taken, 400.0) << "its noise ended it";
   const auto stopped = [&](float threshold, float time_limit) {
     const auto sequence = make_sequence(1, 1, folder.path());
@@ -280,7 +280,7 @@ TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIs) {
   EXPECT_EQ(stopped(0.5f, 0.0f), "stored");
   EXPECT_EQ(stopped(0.5f, 2.0f), "stored");
   EXPECT_NE(stopped(0.02f, 2.0f), "stored");
-  EXPECT_GT(mean_samples(*files.load(1, FramePart::kBase)), taken);
+  EXPECT_GT(mean_samples(*files.load(1, FrameSamples::kFresh)), taken);
 }
 
 // The files of frames that do not change are those of the first, and so was their exposure.
@@ -344,18 +344,18 @@ TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsRepeatedOnlyIfItIsOfTheJob) {
     settings.seed = seed;
     return settings;
   };
-  const auto base_of = [&](const std::shared_ptr<const Snapshot>& stored, const GradusSettings& its_settings) {
+  const auto fresh_of = [&](const std::shared_ptr<const Snapshot>& stored, const GradusSettings& its_settings) {
     const Folder folder;
     sample(make_sequence(1, 4, folder.path()).get(), stored, its_settings);
     const auto sequence = make_sequence(5, 6, folder.path());
     sequence->pass_by(pan.at(4), with_passes(of_seed(4, 1, 8)));
     sample(sequence.get(), pan.at(5), of_seed(5, 1, 8));
-    return SequenceFolder(folder.path()).load(5, FramePart::kBase)->frame_number;
+    return SequenceFolder(folder.path()).load(5, FrameSamples::kFresh)->frame_number;
   };
-  EXPECT_EQ(base_of(pan.at(4), of_seed(4, 1, 8)), 4);
-  EXPECT_EQ(base_of(pan.at(4), of_seed(4, 2, 8)), 5) << "another seed";
-  EXPECT_EQ(base_of(pan.at(4), of_seed(4, 1, 4)), 5) << "fewer samples";
-  EXPECT_EQ(base_of(other.at(4), of_seed(4, 1, 8)), 5) << "another scene";
+  EXPECT_EQ(fresh_of(pan.at(4), of_seed(4, 1, 8)), 4);
+  EXPECT_EQ(fresh_of(pan.at(4), of_seed(4, 2, 8)), 5) << "another seed";
+  EXPECT_EQ(fresh_of(pan.at(4), of_seed(4, 1, 4)), 5) << "fewer samples";
+  EXPECT_EQ(fresh_of(other.at(4), of_seed(4, 1, 8)), 5) << "another scene";
 }
 
 void sample_frames(Sequence* sequence, Pan* pan, int32_t first, int32_t last) {
