@@ -46,8 +46,8 @@ def save(library: native.Library, render: int, folder: str, scene: Any, layer: A
     except OSError as error:
         raise Failure(f"frame store {path.parent}: {error.strerror}") from error
     frame = ctypes.c_uint64()
-    library.render_frame(render, byref(frame))
+    library.render_film(render, byref(frame))
     try:
-        library.frame_save(frame.value, native.text(str(path)))
+        library.film_save(frame.value, native.text(str(path)))
     finally:
-        library.frame_release(frame.value)
+        library.film_release(frame.value)

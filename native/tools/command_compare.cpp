@@ -6,7 +6,7 @@
 
 #include "common.h"
 #include "compare/metrics.h"
-#include "frame/image_exr.h"
+#include "film_io/image_exr.h"
 
 namespace gradus::tool {
 namespace {

@@ -6,9 +6,9 @@
 #include "api/recorder.h"
 #include "base/error.h"
 #include "common.h"
-#include "frame/image_exr.h"
-#include "frame/store.h"
-#include "settings/options.h"
+#include "film_io/image_exr.h"
+#include "film_io/store.h"
+#include "schema/options.h"
 #include "stored_sequence.h"
 
 namespace gradus::tool {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"
-#include "base/bill.h"
+#include "base/scoped_timer.h"
 #include "scene/device.h"
 #include "base/error.h"
 #include "common.h"

@@ -3,10 +3,10 @@
 
 #include "api/objects.h"
 #include "component_layers.h"
-#include "frame/image_exr.h"
+#include "film_io/image_exr.h"
 #include "reconstruct.h"
-#include "render/pass_read.h"
-#include "settings/pass_table.h"
+#include "output/pass_read.h"
+#include "schema/pass_table.h"
 
 namespace gradus::tool {
 namespace {

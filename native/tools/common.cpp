@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "component_layers.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 namespace gradus::tool {
 namespace {

@@ -1,9 +1,9 @@
 #include "component_layers.h"
 
 #include "common.h"
-#include "path/components.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "lpe/components.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 
 namespace gradus::tool {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "frame/frame_header.h"
-#include "frame/image_exr.h"
+#include "film/film_header.h"
+#include "film_io/image_exr.h"
 #include "gradus/gradus.hpp"
 
 namespace gradus::tool {

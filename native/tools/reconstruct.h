@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common.h"
-#include "frame/frame.h"
+#include "film/film.h"
 
 namespace gradus::tool {
 

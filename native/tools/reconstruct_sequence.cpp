@@ -10,11 +10,11 @@
 #include <set>
 
 #include "component_layers.h"
-#include "frame/image_exr.h"
-#include "frame/store.h"
+#include "film_io/image_exr.h"
+#include "film_io/store.h"
 #include "reconstruct/space_time/window_grid.h"
-#include "render/sequence/sequence_folder.h"
-#include "settings/pass_table.h"
+#include "animation/sequence_folder.h"
+#include "schema/pass_table.h"
 #include "stored_sequence.h"
 
 namespace gradus::tool {

@@ -9,9 +9,9 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "common.h"
-#include "frame/frame_name.h"
-#include "frame/store.h"
-#include "render/sequence/sequence_folder.h"
+#include "film_io/frame_file_name.h"
+#include "film_io/store.h"
+#include "animation/sequence_folder.h"
 
 namespace gradus::tool {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render/sequence/frame_record.h"
+#include "animation/frame_record.h"
 
 namespace gradus::tool {
 

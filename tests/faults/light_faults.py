@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fault import Fault, native
 
-PARTITION = "native/src/reconstruct/partition.cpp"
-LIGHT_PASSES = "native/src/render/light_passes.cpp"
-FRAME = "native/src/api/frame.cpp"
+PARTITION = "native/src/reconstruct/picture_terms.cpp"
+LIGHT_PASSES = "native/src/output/light_passes.cpp"
+FRAME = "native/src/api/film.cpp"
 
 APART = "light passes apart"
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from fault import Fault, Test, native, statistics
 
-CAMERA = "native/src/scene/camera.cpp"
-EMITTERS = "native/src/scene/emitters.cpp"
-MESH = "native/src/scene/mesh.cpp"
-OFFSET_RAYS = "native/src/integrator/gradient/offset_rays.cpp"
+CAMERA = "native/src/camera/camera.cpp"
+EMITTERS = "native/src/light/light_sampling.cpp"
+MESH = "native/src/geometry/mesh.cpp"
+OFFSET_RAYS = "native/src/gradient/offset_rays.cpp"
 SEGMENT = "native/src/path/segment.cpp"
-SHUTTER = "native/src/scene/shutter.cpp"
-STEREO = "native/src/scene/spherical_stereo.cpp"
+SHUTTER = "native/src/camera/shutter.cpp"
+STEREO = "native/src/camera/spherical_stereo.cpp"
 EXPORTED_MOTION = "addon/gradus/export/motion.py"
 EXPORTED_SHUTTER = "addon/gradus/export/shutter.py"
 EXPORTER = "addon/gradus/export/exporter.py"

@@ -7,7 +7,7 @@ from fault import Fault, native
 REGULARIZED = "native/src/reconstruct/regularized.cpp"
 HALVED_IMAGE = "native/src/reconstruct/halved_image.h"
 FUSED = "native/src/reconstruct/fused_differences.cpp"
-LINEAR_PARTS = "native/src/reconstruct/linear_parts.h"
+LINEAR_PARTS = "native/src/reconstruct/linear_terms.h"
 REGRESS_CHANGE = "native/src/reconstruct/space_time/regress_change.cpp"
 REGULARIZED_WINDOWS = "native/src/reconstruct/space_time/regularized_windows.cpp"
 FEATURE_REGRESSION = "native/src/reconstruct/feature_regression.cpp"
@@ -16,8 +16,8 @@ LOCAL_REGRESSION = "native/src/reconstruct/local_regression.cpp"
 TILE = "native/src/reconstruct/regression_tile.h"
 ERROR_ESTIMATE = "native/src/reconstruct/error_estimate.cpp"
 FEATURE_FILTER = "native/src/reconstruct/feature_filter.cpp"
-FEATURES = "native/src/frame/features.cpp"
-READ = "native/src/frame/read.cpp"
+FEATURES = "native/src/film/features.cpp"
+READ = "native/src/film/read.cpp"
 
 OF_FEATURES = (native("Features.HalvesAverageToThePass"),)
 OF_FILTER = (native("FeatureFilter.DifferencesCountByTheVariance"),)

@@ -7,7 +7,7 @@
 #include "memory/allocations.h"
 #include "render/fake_integrator.h"
 #include "render/memory_estimate.h"
-#include "render/sequence/sequence.h"
+#include "animation/sequence.h"
 
 namespace gradus::memory {
 namespace {

@@ -6,7 +6,7 @@
 #include "memory/allocations.h"
 #include "render/fake_integrator.h"
 #include "render/memory_estimate.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 namespace gradus::memory {
 namespace {

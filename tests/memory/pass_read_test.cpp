@@ -3,7 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include "memory/allocations.h"
-#include "render/pass_read.h"
+#include "output/pass_read.h"
 
 namespace gradus::memory {
 namespace {

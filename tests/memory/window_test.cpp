@@ -11,7 +11,7 @@
 #include "reconstruct/space_time/window.h"
 #include "reconstruct/space_time/window_solver.h"
 #include "support/statistics.h"
-#include "temporal/spooled_frames.h"
+#include "animation/spooled_frames.h"
 
 namespace gradus::memory {
 namespace {

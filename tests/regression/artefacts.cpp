@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "color/color.h"
-#include "frame/image_exr.h"
+#include "image/color.h"
+#include "film_io/image_exr.h"
 #include "regression/pictures.h"
 #include "support/image_files.h"
 

@@ -1,7 +1,7 @@
 #include "regression/pictures.h"
 
 #include "render/render.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 namespace gradus::regression {
 

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "frame/image_exr.h"
+#include "film_io/image_exr.h"
 #include "regression/artefacts.h"
 #include "regression/pictures.h"
 #include "support/statistics.h"

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
-#include "render/combine.h"
+#include "output/combine.h"
 #include "render/render.h"
-#include "settings/options.h"
+#include "schema/options.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "frame/pass_planes.h"
-#include "reconstruct/reconstruct_frame.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "film/pass_planes.h"
+#include "reconstruct/reconstruct_film.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "gradus/gradus_nodes.h"
-#include "plan/plan.h"
-#include "sampling/lattice.h"
+#include "render/plan.h"
+#include "film/pixel_block.h"
 #include "shading/program_builder.h"
 #include "support/difference_statistics.h"
 #include "support/path_scene.h"

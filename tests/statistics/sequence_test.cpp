@@ -10,7 +10,7 @@
 
 #include "scene/device.h"
 #include "render/render.h"
-#include "render/sequence/sequence.h"
+#include "animation/sequence.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 

@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "sampling/lattice.h"
+#include "film/pixel_block.h"
 #include "shading/program_builder.h"
 #include "support/bsdf_only.h"
 #include "support/path_scene.h"

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "frame/features.h"
-#include "frame/pass_planes.h"
+#include "film/features.h"
+#include "film/pass_planes.h"
 #include "reconstruct/solver.h"
-#include "render/cell_noise.h"
+#include "render/block_noise.h"
 #include "render/render.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 

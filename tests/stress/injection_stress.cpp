@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "frame/gate.h"
-#include "render/combine.h"
+#include "film/finite_check.h"
+#include "output/combine.h"
 #include "render/fake_integrator.h"
 #include "stress/stress.h"
 

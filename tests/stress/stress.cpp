@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <sstream>
 
-#include "render/combine.h"
+#include "output/combine.h"
 #include "render/render.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 #include "support/double_image.h"
 
 namespace gradus::stress {

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frame/frame.h"
+#include "film/film.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 

@@ -37,7 +37,7 @@ def outputs(schema: model.Schema) -> Iterator[tuple[str, str]]:
     yield "native/include/gradus/gradus_nodes.h", node_files.header(schema, NOTE.format("nodes.toml"))
     native = "native/src/schema/"
     yield native + "layout_table.cpp", native_tables.layout(schema, NOTE.format("structs.toml"))
-    yield native + "archive_records.h", native_tables.archive(schema, NOTE.format("structs.toml"))
+    yield "native/src/api/archive_records.h", native_tables.archive(schema, NOTE.format("structs.toml"))
     yield native + "option_table.cpp", native_tables.options(schema, NOTE.format("options.toml"))
     yield native + "pass_rows.cpp", native_tables.passes(schema, NOTE.format("passes.toml"))
     yield "addon/gradus/nodes/ops.py", node_files.module(schema, NOTE.format("nodes.toml"))

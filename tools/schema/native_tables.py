@@ -33,7 +33,7 @@ def layout(schema: Schema, note: str) -> str:
     body += [*(f'    {{"{item.name}", k{item.name}Values}},' for item in schema.enums), "};", "", "}  // namespace", ""]
     body += ["std::span<const StructLayout> struct_layouts() { return kStructs; }"]
     body += ["std::span<const EnumLayout> enum_layouts() { return kEnums; }", ""]
-    includes = ['#include "api/layout.h"', "", '#include "gradus/gradus.h"']
+    includes = ['#include "schema/layout.h"', "", '#include "gradus/gradus.h"']
     return _file(note, "Layouts of the public structs and values of the public enums.", includes, "gradus::api", body)
 
 
@@ -118,7 +118,7 @@ def archive(schema: Schema, note: str) -> str:
             body += ["  s.struct_size = sizeof(s);"] if item.sized else []
             body += [*_values(item), *_texts(item), *_arrays(schema, item), "}", ""]
     purpose = "visit() for every struct of the scene calls; see api/archive.h. A change needs another kSceneFormat."
-    includes = ['#include "gradus/gradus.h"', '#include "scene/mesh.h"']
+    includes = ['#include "gradus/gradus.h"', '#include "geometry/mesh.h"']
     return _file(note, purpose, includes, "gradus::api", body, guard=True)
 
 
@@ -179,7 +179,7 @@ def options(schema: Schema, note: str) -> str:
     body += ["  {#field, type, offsetof(GradusSettings, field), value, low, high, choices, sampling, doc}", ""]
     body += ["constexpr Option kOptions[] = {", *(_option(schema, item) for item in schema.native_options), "};"]
     body += ["", "}  // namespace", "", "std::span<const Option> options() { return kOptions; }", ""]
-    return _file(note, "The options of GradusSettings.", ['#include "settings/options.h"'], "gradus", body)
+    return _file(note, "The options of GradusSettings.", ['#include "schema/options.h"'], "gradus", body)
 
 
 def _pass(item: Pass) -> str:
@@ -201,5 +201,5 @@ def passes(schema: Schema, note: str) -> str:
     body += ["};", "", "}  // namespace", "", "std::span<const PassInfo> all_passes() { return kPasses; }"]
     body += ["std::span<const ComponentPassInfo> all_component_passes() { return kComponentPasses; }", ""]
     purpose = "The passes of a picture and of its components."
-    return _file(note, purpose, ['#include "settings/pass_table.h"'], "gradus", body)
+    return _file(note, purpose, ['#include "schema/pass_table.h"'], "gradus", body)
 

@@ -1,7 +1,7 @@
 // The records of a scene file: those of the public structs, which are generated, and the list of lights.
 #pragma once
 
-#include "schema/archive_records.h"
+#include "api/archive_records.h"
 
 namespace gradus::api {
 

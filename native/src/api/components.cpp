@@ -1,5 +1,5 @@
 // gradus_components_*
-#include "path/components.h"
+#include "lpe/components.h"
 
 #include "api/guard.h"
 #include "base/text_list.h"

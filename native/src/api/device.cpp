@@ -5,7 +5,7 @@
 #include "api/guard.h"
 #include "api/objects.h"
 #include "api/structs.h"
-#include "color/color.h"
+#include "image/color.h"
 
 using namespace gradus;
 

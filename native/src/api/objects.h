@@ -8,10 +8,10 @@
 
 #include "api/registry.h"
 #include "scene/device.h"
-#include "frame/frame.h"
-#include "render/light_passes.h"
+#include "film/film.h"
+#include "output/light_passes.h"
 #include "render/render.h"
-#include "render/sequence/sequence.h"
+#include "animation/sequence.h"
 #include "scene/scene.h"
 
 namespace gradus::api {

@@ -1,11 +1,11 @@
 // gradus_option*, gradus_settings_*, gradus_pass_info, gradus_component_pass_info
-#include "settings/options.h"
+#include "schema/options.h"
 
 #include <map>
 
 #include "api/guard.h"
 #include "api/structs.h"
-#include "settings/pass_table.h"
+#include "schema/pass_table.h"
 
 using namespace gradus;
 

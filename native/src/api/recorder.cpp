@@ -7,8 +7,8 @@
 #include "api/archive.h"
 #include "api/archive_structs.h"
 #include "api/scene_file.h"
-#include "frame/file_writer.h"
-#include "settings/options.h"
+#include "film_io/file_writer.h"
+#include "schema/options.h"
 
 namespace gradus::api {
 namespace {

@@ -5,7 +5,7 @@
 #include "api/guard.h"
 #include "api/objects.h"
 #include "api/structs.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 using namespace gradus;
 

@@ -6,7 +6,7 @@
 #include "api/recorder.h"
 #include "api/scene_args.h"
 #include "api/structs.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 using namespace gradus;
 

@@ -1,7 +1,7 @@
 #include "api/scene_args.h"
 
 #include "api/arrays.h"
-#include "scene/mesh.h"
+#include "geometry/mesh.h"
 
 namespace gradus::api {
 namespace {

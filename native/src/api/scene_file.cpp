@@ -9,7 +9,7 @@
 #include "api/recorder.h"
 #include "api/scene_args.h"
 #include "scene/scene.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 namespace gradus::api {
 namespace {

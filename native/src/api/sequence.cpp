@@ -1,11 +1,11 @@
 // gradus_sequence_*
-#include "render/sequence/sequence.h"
+#include "animation/sequence.h"
 
 #include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
 #include "api/structs.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 using namespace gradus;
 

@@ -3,7 +3,7 @@
 
 #include "api/error_slot.h"
 #include "api/guard.h"
-#include "api/layout.h"
+#include "schema/layout.h"
 
 #ifndef GRADUS_COMMIT
 #define GRADUS_COMMIT "unknown"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bsdf/frame.h"
+#include "bsdf/shading_frame.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
 #include "bsdf/shading_normal.h"

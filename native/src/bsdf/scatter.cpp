@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bsdf/closures.h"
-#include "bsdf/frame.h"
+#include "bsdf/shading_frame.h"
 #include "bsdf/lobe.h"
 #include "bsdf/shading_normal.h"
 

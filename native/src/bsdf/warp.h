@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/angles.h"
+#include "base/trigonometry.h"
 #include "base/types.h"
 
 namespace gradus {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/types.h"
-#include "color/color.h"
+#include "image/color.h"
 
 namespace gradus {
 namespace {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "frame/frame.h"
-#include "frame/sample_sources.h"
-#include "path/components.h"
-#include "scene/camera.h"
+#include "film/film.h"
+#include "film/replay_map.h"
+#include "lpe/components.h"
+#include "camera/camera.h"
 #include "scene/snapshot.h"
 
 namespace gradus {

@@ -1,9 +1,9 @@
 // From units of work to samples of pixels; the same for all camera-path integrators.
 #pragma once
 
-#include "frame/cells.h"
-#include "frame/gate.h"
-#include "integrator/camera_vertices.h"
+#include "film/pixel_blocks.h"
+#include "film/finite_check.h"
+#include "path/camera_vertices.h"
 #include "integrator/integrator.h"
 #include "path/trace.h"
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "base/cancel_test.h"
+#include "base/cancel_check.h"
 #include "motion/specular_chain.h"
-#include "temporal/pixel_links.h"
+#include "motion/pixel_matching.h"
 
 namespace gradus {
 

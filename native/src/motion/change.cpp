@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "motion/snapshot_motion.h"
-#include "scene/mesh.h"
+#include "geometry/mesh.h"
 
 namespace gradus {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scene/ray_box.h"
+#include "geometry/ray_box.h"
 #include "scene/snapshot.h"
 
 namespace gradus {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "scene/turn.h"
+#include "base/minimal_rotation.h"
 
 namespace gradus {
 

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "motion/aim.h"
+#include "motion/target_miss.h"
 #include "motion/specular_chain.h"
 
 namespace gradus {

@@ -1,6 +1,6 @@
 #include "motion/flow_frame.h"
 
-#include "motion/each_pixel.h"
+#include "motion/for_each_pixel.h"
 #include "motion/silhouettes.h"
 
 namespace gradus {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/each_pixel.h"
+#include "motion/for_each_pixel.h"
 
 namespace gradus {
 namespace {

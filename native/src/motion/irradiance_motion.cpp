@@ -2,8 +2,8 @@
 
 #include <tbb/parallel_invoke.h>
 
-#include "motion/each_pixel.h"
-#include "motion/rest_flow.h"
+#include "motion/for_each_pixel.h"
+#include "motion/flow_vectors.h"
 
 namespace gradus {
 namespace {

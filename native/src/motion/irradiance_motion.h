@@ -5,7 +5,7 @@
 #include <array>
 
 #include "motion/flow_levels.h"
-#include "motion/tracked.h"
+#include "motion/tracking.h"
 
 namespace gradus {
 
@@ -20,7 +20,7 @@ struct ComponentFrame {
 
 struct PixelMotion {
   std::vector<Vec2> vectors;   // to the other frame, in pixels; where not tracked: the surface's
-  std::vector<float> tracked;  // kTracked or a cause (motion/tracked.h)
+  std::vector<float> tracked;  // kTracked or a cause (motion/tracking.h)
 };
 
 // Of the first frame to the second, and of the second to the first. Vectors are finite and no longer than the film for any input. Without a

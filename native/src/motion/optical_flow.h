@@ -7,7 +7,7 @@
 
 #include "base/types.h"
 #include "base/warnings.h"
-#include "flow/flow.h"
+#include "motion/opencv/flow.h"
 
 namespace gradus {
 

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "motion/each_pixel.h"
+#include "motion/for_each_pixel.h"
 
 namespace gradus {
 namespace {
@@ -136,7 +136,7 @@ class Refinement {
   }
 
   // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each other. Apart from what
-  // calls it, as of motion/each_pixel.h.
+  // calls it, as of motion/for_each_pixel.h.
   [[gnu::noinline]] void relax(int y, int colour) {
     for (int x = (y + colour) & 1; x < width_; x += 2) {
       const size_t p = index(x, y), row = size_t(width_);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/types.h"
-#include "motion/each_pixel.h"
+#include "motion/for_each_pixel.h"
 
 namespace gradus {
 namespace {

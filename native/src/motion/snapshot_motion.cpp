@@ -2,7 +2,7 @@
 
 #include <unordered_map>
 
-#include "scene/mesh.h"
+#include "geometry/mesh.h"
 
 namespace gradus {
 

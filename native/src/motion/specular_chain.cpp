@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/hash.h"
-#include "bsdf/frame.h"
+#include "bsdf/shading_frame.h"
 #include "bsdf/lobe.h"
 #include "path/scatter.h"
 #include "shading/material.h"

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "motion/change.h"
-#include "path/components.h"
+#include "lpe/components.h"
 #include "path/segment.h"
-#include "scene/camera.h"
+#include "camera/camera.h"
 #include "scene/snapshot.h"
 
 namespace gradus {

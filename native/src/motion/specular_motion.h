@@ -7,7 +7,7 @@
 
 #include "motion/chain_view.h"
 #include "motion/film_search.h"
-#include "motion/tracked.h"
+#include "motion/tracking.h"
 
 namespace gradus {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "motion/aim.h"
+#include "motion/target_miss.h"
 #include "motion/specular_chain.h"
 
 namespace gradus {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/emitter_table.h"
+#include "light/light_table.h"
 #include "shading/material.h"
 
 namespace gradus {

@@ -1,12 +1,12 @@
 // What all samples of a render share: the scene and the settings in the form in which paths need them.
 #pragma once
 
-#include "frame/frame.h"
+#include "film/film.h"
 #include "gradus/gradus.h"
-#include "path/components.h"
-#include "path/film_filter.h"
-#include "sampling/sampler.h"
-#include "scene/camera.h"
+#include "lpe/components.h"
+#include "camera/film_filter.h"
+#include "path/sampler.h"
+#include "camera/camera.h"
 #include "scene/snapshot.h"
 
 namespace gradus {

@@ -1,6 +1,6 @@
 #include "path/light.h"
 
-#include "scene/shadow_terminator.h"
+#include "geometry/shadow_terminator.h"
 
 namespace gradus {
 

@@ -6,7 +6,7 @@
 
 #include "path/context.h"
 #include "path/vertex.h"
-#include "sampling/sampler.h"
+#include "path/sampler.h"
 
 namespace gradus {
 

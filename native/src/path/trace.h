@@ -9,7 +9,7 @@
 
 #include "path/camera_vertex.h"
 #include "path/contribution.h"
-#include "path/recorder.h"
+#include "path/pass_recorder.h"
 
 namespace gradus {
 

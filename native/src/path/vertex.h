@@ -1,8 +1,8 @@
 // A surface vertex of a path.
 #pragma once
 
-#include "scene/emitter_table.h"
-#include "scene/surface.h"
+#include "light/light_table.h"
+#include "geometry/surface.h"
 #include "shading/shade.h"
 
 namespace gradus {

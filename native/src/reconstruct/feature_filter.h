@@ -4,7 +4,7 @@
 // Denoising using Feature and Color Information", §4): pixels count that differ by no more than their noise, so that clean features stay.
 #pragma once
 
-#include "frame/features.h"
+#include "film/features.h"
 
 namespace gradus {
 

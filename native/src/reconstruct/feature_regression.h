@@ -3,7 +3,7 @@
 // (contract 3.4).
 #pragma once
 
-#include "frame/features.h"
+#include "film/features.h"
 #include "reconstruct/halved_image.h"
 #include "reconstruct/local_regression.h"
 

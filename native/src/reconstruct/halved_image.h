@@ -1,7 +1,7 @@
 // What is known of light that is reconstructed: what was sampled of it, and by how much the two halves disagree.
 #pragma once
 
-#include "frame/frame.h"
+#include "film/film.h"
 #include "reconstruct/field_values.h"
 
 namespace gradus {

@@ -6,7 +6,7 @@
 #include "reconstruct/l2.h"
 #include "reconstruct/l2_with_gaps.h"
 #include "reconstruct/minimise_l1.h"
-#include "reconstruct/settled.h"
+#include "reconstruct/noise_free.h"
 #include "reconstruct/solver.h"
 #include "reconstruct/twiced_solver.h"
 

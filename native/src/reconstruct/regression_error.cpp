@@ -4,7 +4,7 @@
 
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/light_around.h"
+#include "reconstruct/local_light.h"
 
 namespace gradus {
 namespace {

@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "base/types.h"
-#include "frame/sum_components.h"
+#include "film/sum_components.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/fused_differences.h"
-#include "reconstruct/linear_parts.h"
+#include "reconstruct/linear_terms.h"
 #include "reconstruct/solver_planes.h"
 
 namespace gradus {

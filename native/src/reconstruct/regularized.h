@@ -1,7 +1,7 @@
 // REGULARIZED: the features of the frame, its samples and, where there are any, its sampled differences.
 #pragma once
 
-#include "frame/features.h"
+#include "film/features.h"
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/solver.h"
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "base/cancel_test.h"
-#include "frame/frame.h"
+#include "base/cancel_check.h"
+#include "film/film.h"
 
 namespace gradus {
 

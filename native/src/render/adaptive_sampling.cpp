@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/sample_shares.h"
+#include "render/sample_allocation.h"
 
 namespace gradus {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "frame/cells.h"
+#include "film/pixel_blocks.h"
 #include "reconstruct/solver.h"
-#include "render/cell_noise.h"
+#include "render/block_noise.h"
 
 namespace gradus {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "path/components.h"
+#include "lpe/components.h"
 
 namespace gradus {
 

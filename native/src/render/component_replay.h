@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "frame/sample_sources.h"
+#include "film/replay_map.h"
 
 namespace gradus {
 

@@ -3,23 +3,23 @@
 #include <cmath>
 
 #include "base/threads.h"
-#include "base/bill.h"
+#include "base/scoped_timer.h"
 #include "base/clock.h"
 #include "scene/device.h"
 #include "base/error.h"
-#include "frame/pass_planes.h"
+#include "film/pass_planes.h"
 #include "motion/component_motion.h"
 #include "render/batches.h"
-#include "render/combine.h"
-#include "render/component_read.h"
-#include "render/denoise_and_bill.h"
+#include "output/combine.h"
+#include "output/component_read.h"
+#include "render/denoise_timed.h"
 #include "render/memory_estimate.h"
-#include "render/pass_read.h"
+#include "output/pass_read.h"
 #include "render/resume.h"
 #include "render/show_combined.h"
 #include "render/small_components.h"
 #include "render/tiles.h"
-#include "settings/pass_table.h"
+#include "schema/pass_table.h"
 
 namespace gradus {
 namespace {

@@ -9,12 +9,12 @@
 #include <tbb/task_arena.h>
 
 #include "base/stopwatch.h"
-#include "denoise/oidn_library.h"
-#include "frame/frame.h"
-#include "plan/plan.h"
+#include "output/oidn_library.h"
+#include "film/film.h"
+#include "render/plan.h"
 #include "render/adaptive_sampling.h"
-#include "render/light_passes.h"
-#include "render/live_view.h"
+#include "output/light_passes.h"
+#include "render/preview.h"
 #include "render/loop_input.h"
 #include "render/picture.h"
 #include "render/pilot.h"
@@ -63,7 +63,7 @@ class RenderLoop final : public RenderTask {
   void judge();
   void run_batch(uint32_t begin, uint32_t end);
   void tile_done(const Region& tile, uint64_t pixel_samples);
-  // What a watcher is shown (render/live_view.h), before the samples from `begin` on are taken or between two of their tiles.
+  // What a watcher is shown (render/preview.h), before the samples from `begin` on are taken or between two of their tiles.
   bool show_is_due(uint32_t begin) const;
   void show(uint32_t begin);
   bool is_done() const { return adaptive_ && adaptive_->all_done(); }  // by noise

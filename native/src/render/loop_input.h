@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "scene/device.h"
-#include "frame/frame.h"
-#include "frame/sample_sources.h"
+#include "film/film.h"
+#include "film/replay_map.h"
 #include "render/component_replay.h"
 #include "render/render.h"
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "frame/links.h"
-#include "frame/pass_planes.h"
+#include "film/pixel_correspondence.h"
+#include "film/pass_planes.h"
 
 namespace gradus {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "plan/plan.h"
+#include "render/plan.h"
 #include "reconstruct/space_time/window_grid.h"
 
 namespace gradus {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "frame/cells.h"
-#include "render/combine.h"
-#include "render/pass_read.h"
+#include "film/pixel_blocks.h"
+#include "output/combine.h"
+#include "output/pass_read.h"
 
 namespace gradus {
 

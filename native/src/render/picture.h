@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "frame/frame.h"
+#include "film/film.h"
 
 namespace gradus {
 

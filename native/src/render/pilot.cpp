@@ -7,11 +7,11 @@
 #include <numbers>
 
 #include "base/fpu.h"
-#include "frame/cells.h"
-#include "plan/l2_noise.h"
+#include "film/pixel_blocks.h"
+#include "render/l2_noise.h"
 #include "reconstruct/solver.h"
 #include "render/pausable_loop.h"
-#include "sampling/hash.h"
+#include "path/hash.h"
 
 namespace gradus {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "integrator/integrator.h"
-#include "plan/benefit.h"
-#include "plan/plan.h"
+#include "render/gradient_benefit.h"
+#include "render/plan.h"
 
 namespace gradus {
 

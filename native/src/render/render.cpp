@@ -8,7 +8,7 @@
 #include "scene/device.h"
 #include "base/error.h"
 #include "render/loop.h"
-#include "settings/pass_table.h"
+#include "schema/pass_table.h"
 
 namespace gradus {
 namespace {

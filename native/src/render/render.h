@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "frame/frame.h"
+#include "film/film.h"
 #include "gradus/gradus.h"
 #include "integrator/integrator.h"
 #include "scene/snapshot.h"
@@ -38,7 +38,7 @@ class Render {
   bool wait(double seconds);
   GradusError outcome(std::string* text) const;  // OK, CANCELLED or the failure, once ended
   // The delivered region. While sampling, Noisy Image is the noisy image so far, each tile as of its last batch that ended, 0 before the
-  // first one; so is Combined until its reader, a watcher, is shown more (render/live_view.h). Never waits. Others: invalid_operation until
+  // first one; so is Combined until its reader, a watcher, is shown more (render/preview.h). Never waits. Others: invalid_operation until
   // then.
   void read_pass(uint32_t pass, float* pixels, size_t count) const;
   // Of a component, once sampling has ended: invalid_operation until then.

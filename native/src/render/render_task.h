@@ -10,9 +10,9 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "frame/frame.h"
+#include "film/film.h"
 #include "gradus/gradus.h"
-#include "render/tracker.h"
+#include "render/progress_tracker.h"
 
 namespace gradus {
 

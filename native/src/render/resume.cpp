@@ -5,12 +5,12 @@
 
 #include "base/error.h"
 #include "base/text_list.h"
-#include "frame/cells.h"
-#include "frame/gate.h"
-#include "frame/pass_planes.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
-#include "settings/sampling_differences.h"
+#include "film/pixel_blocks.h"
+#include "film/finite_check.h"
+#include "film/pass_planes.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
+#include "schema/sampling_differences.h"
 
 namespace gradus {
 namespace {

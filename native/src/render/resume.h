@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "frame/frame.h"
-#include "plan/plan.h"
+#include "film/film.h"
+#include "render/plan.h"
 
 namespace gradus {
 

@@ -1,7 +1,7 @@
 #include "render/show_combined.h"
 
-#include "render/combine.h"
-#include "settings/pass_table.h"
+#include "output/combine.h"
+#include "schema/pass_table.h"
 
 namespace gradus {
 

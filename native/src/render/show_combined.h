@@ -5,8 +5,8 @@
 
 #include <tbb/task_arena.h>
 
-#include "frame/frame.h"
-#include "plan/plan.h"
+#include "film/film.h"
+#include "render/plan.h"
 #include "reconstruct/solver.h"
 #include "render/picture.h"
 

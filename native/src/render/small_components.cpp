@@ -9,8 +9,8 @@
 
 #include "base/fpu.h"
 #include "base/text_list.h"
-#include "frame/cells.h"
-#include "sampling/hash.h"
+#include "film/pixel_blocks.h"
+#include "path/hash.h"
 
 namespace gradus {
 namespace {

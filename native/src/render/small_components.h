@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include "integrator/integrator.h"
-#include "path/components.h"
-#include "plan/plan.h"
+#include "lpe/components.h"
+#include "render/plan.h"
 
 namespace gradus {
 

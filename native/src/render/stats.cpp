@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 namespace gradus {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "frame/frame.h"
-#include "plan/plan.h"
+#include "film/film.h"
+#include "render/plan.h"
 #include "reconstruct/solver.h"
 
 namespace gradus {

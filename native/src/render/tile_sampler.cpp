@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "base/fpu.h"
-#include "frame/cells.h"
+#include "film/pixel_blocks.h"
 #include "render/pausable_loop.h"
 
 namespace gradus {

@@ -1,6 +1,6 @@
 #include "render/tiles.h"
 
-#include "sampling/lattice.h"
+#include "film/pixel_block.h"
 
 namespace gradus {
 

@@ -1,7 +1,7 @@
-// Work tiles: cells of full-frame coordinates (frame/cells.h).
+// Work tiles: cells of full-frame coordinates (film/pixel_blocks.h).
 #pragma once
 
-#include "frame/cells.h"
+#include "film/pixel_blocks.h"
 
 namespace gradus {
 

@@ -1,6 +1,6 @@
 // Key of all that a frame shows (contract 7.2: the scene key of a frame). Of contents alone: the keys under which a caller holds meshes,
 // materials and images differ from one session to the next.
-#include "scene/image.h"
+#include "image/image.h"
 #include "scene/scene_state.h"
 
 namespace gradus {

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/fpu.h"
 #include "base/threads.h"
-#include "color/color.h"
+#include "image/color.h"
 
 namespace gradus {
 

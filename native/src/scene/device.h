@@ -8,11 +8,11 @@
 
 #include "base/warnings.h"
 #include "gradus/gradus.h"
-#include "scene/embree_device.h"
+#include "geometry/embree_device.h"
 
 namespace gradus {
 
-class ColorManager;  // color/color.h
+class ColorManager;  // image/color.h
 
 class Device {
  public:

@@ -5,8 +5,8 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "scene/matrix_keys.h"
-#include "scene/mesh_at.h"
+#include "geometry/matrix_keys.h"
+#include "geometry/mesh_at.h"
 #include "scene/snapshot_geometry.h"
 #include "scene/snapshot_tangents.h"
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/cancel_test.h"
+#include "base/cancel_check.h"
 #include "scene/snapshot.h"
 
 namespace gradus {

@@ -9,14 +9,14 @@
 
 #include "base/commit_monitor.h"
 #include "base/hash.h"
-#include "scene/accelerator.h"
-#include "scene/camera_keys.h"
-#include "scene/image_store.h"
-#include "scene/instance_arrays.h"
+#include "geometry/accelerator.h"
+#include "camera/camera_keys.h"
+#include "image/image_store.h"
+#include "geometry/instance_arrays.h"
 #include "scene/material_source.h"
-#include "scene/mesh.h"
+#include "geometry/mesh.h"
 #include "scene/scene.h"
-#include "scene/world_map.h"
+#include "light/world_map.h"
 
 namespace gradus {
 

@@ -7,10 +7,10 @@
 
 #include "base/types.h"
 #include "gradus/gradus.h"
-#include "scene/camera.h"
-#include "scene/camera_keys.h"
-#include "scene/lit_scene.h"
-#include "scene/shutter.h"
+#include "camera/camera.h"
+#include "camera/camera_keys.h"
+#include "light/lit_scene.h"
+#include "camera/shutter.h"
 
 namespace gradus {
 

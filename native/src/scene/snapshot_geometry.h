@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "scene/accelerator.h"
+#include "geometry/accelerator.h"
 #include "scene/snapshot.h"
 
 namespace gradus {

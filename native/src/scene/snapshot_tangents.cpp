@@ -3,8 +3,8 @@
 
 #include "scene/snapshot.h"
 #include "scene/snapshot_tangents.h"
-#include "scene/tangent_field.h"
-#include "scene/mesh.h"
+#include "geometry/tangent_field.h"
+#include "geometry/mesh.h"
 #include "shading/material.h"
 
 namespace gradus {

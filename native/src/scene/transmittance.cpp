@@ -1,5 +1,5 @@
 // Shadow rays through transparent surfaces.
-#include "scene/accelerator.h"
+#include "geometry/accelerator.h"
 #include "scene/snapshot.h"
 #include "shading/shade.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "shading/emit.h"
+#include "shading/program_emitter.h"
 
 namespace gradus {
 namespace {

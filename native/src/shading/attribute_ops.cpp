@@ -1,5 +1,5 @@
 // Attribute, Color Attribute and Object Info nodes.
-#include "scene/mesh.h"
+#include "geometry/mesh.h"
 #include "shading/context_ops.h"
 
 namespace gradus {

@@ -1,7 +1,7 @@
 // From a GradusMaterial to programs, and what can be said of them in advance.
 #include "bsdf/lobe.h"
-#include "scene/image_store.h"
-#include "shading/emit.h"
+#include "image/image_store.h"
+#include "shading/program_emitter.h"
 #include "shading/interpreter.h"
 #include "shading/material.h"
 #include "shading/scalar.h"

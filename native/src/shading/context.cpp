@@ -2,7 +2,7 @@
 
 #include <cfloat>
 
-#include "scene/mesh.h"
+#include "geometry/mesh.h"
 #include "shading/scalar.h"
 
 namespace gradus {

@@ -5,7 +5,7 @@
 
 #include "base/types.h"
 #include "shading/shaded_scene.h"
-#include "scene/surface.h"
+#include "geometry/surface.h"
 #include "shading/shade.h"
 
 namespace gradus {

@@ -1,5 +1,5 @@
 // Geometry node.
-#include "scene/mesh.h"
+#include "geometry/mesh.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 

@@ -1,7 +1,7 @@
 #include "shading/graph.h"
 
 #include "base/error.h"
-#include "scene/image_store.h"
+#include "image/image_store.h"
 #include "shading/graph_check.h"
 #include "shading/op_info.h"
 #include "shading/ops.h"

@@ -1,5 +1,5 @@
 // Image Texture and Environment Texture nodes.
-#include "scene/image_store.h"
+#include "image/image_store.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 

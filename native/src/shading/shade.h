@@ -3,7 +3,7 @@
 
 #include "base/types.h"
 #include "bsdf/closures.h"
-#include "scene/surface.h"
+#include "geometry/surface.h"
 
 namespace gradus {
 

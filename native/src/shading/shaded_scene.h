@@ -4,12 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "scene/geometry.h"
+#include "geometry/geometry.h"
 
 namespace gradus {
 
 struct MaterialData;  // shading/material.h: compiled node program and flags
-class ImageStore;     // scene/image_store.h
+class ImageStore;     // image/image_store.h
 
 // Geometry with materials and images. Functions that run node programs take this part of a snapshot.
 class ShadedScene : public Geometry {

@@ -1,7 +1,7 @@
 // Tangent and Normal Map nodes.
-#include "scene/mesh.h"
-#include "scene/tangent_field.h"
-#include "scene/turn.h"
+#include "geometry/mesh.h"
+#include "geometry/tangent_field.h"
+#include "base/minimal_rotation.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 

@@ -1,7 +1,7 @@
 // Texture Coordinate, Camera Data and Vector Transform nodes.
 #include <cstring>
 
-#include "scene/panorama.h"
+#include "camera/panorama.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 

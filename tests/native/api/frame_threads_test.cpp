@@ -1,6 +1,6 @@
 // gradus_film_reconstruct() and the threads that a frame's settings name.
 #include "base/clock.h"
-#include "frame/store.h"
+#include "film_io/store.h"
 #include "render/fake_integrator.h"
 #include "test_scene.h"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "api/test_scene.h"
-#include "settings/pass_table.h"
+#include "schema/pass_table.h"
 #include "support/light_sum.h"
 
 namespace gradus {

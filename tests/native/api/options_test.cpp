@@ -6,10 +6,10 @@
 
 #include "api/test_scene.h"
 #include "base/error.h"
-#include "frame/pass_planes.h"
+#include "film/pass_planes.h"
 #include "gradus/gradus.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 
 namespace gradus {
 namespace {

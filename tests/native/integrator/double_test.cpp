@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrator/gradient/offset_paths.h"
+#include "gradient/offset_paths.h"
 #include "integrator/pixel_loop.h"
 #include "support/double_image.h"
 #include "support/path_scene.h"

@@ -1,10 +1,10 @@
 // What features show: the first surface that is not a mirror or clear glass, or what shines there instead.
-#include "frame/features.h"
+#include "film/features.h"
 
 #include <gtest/gtest.h>
 
-#include "frame/pass_planes.h"
-#include "settings/pass_table.h"
+#include "film/pass_planes.h"
+#include "schema/pass_table.h"
 #include "support/path_scene.h"
 
 namespace gradus {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "frame/pass_planes.h"
-#include "render/pass_read.h"
+#include "film/pass_planes.h"
+#include "output/pass_read.h"
 #include "render/render.h"
-#include "settings/pass_table.h"
+#include "schema/pass_table.h"
 #include "shading/program_builder.h"
 #include "support/light_sum.h"
 #include "support/path_scene.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrator/gradient/pair.h"
+#include "gradient/pair.h"
 #include "path/light.h"
 #include "support/statistics.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "flow/flow.h"
+#include "motion/opencv/flow.h"
 
 #ifndef FAKE_FLOW_INTERFACE
 #define FAKE_FLOW_INTERFACE GRADUS_FLOW_INTERFACE

@@ -8,9 +8,9 @@
 #include <random>
 
 #include "base/error.h"
-#include "frame/pass_planes.h"
-#include "reconstruct/reconstruct_frame.h"
-#include "settings/pass_table.h"
+#include "film/pass_planes.h"
+#include "reconstruct/reconstruct_film.h"
+#include "schema/pass_table.h"
 #include "support/refusal.h"
 #include "support/statistics.h"
 

@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "frame/frame.h"
-#include "frame/pass_planes.h"
+#include "film/film.h"
+#include "film/pass_planes.h"
 #include "reconstruct/test_images.h"
-#include "settings/pass_table.h"
+#include "schema/pass_table.h"
 
 namespace gradus::test {
 

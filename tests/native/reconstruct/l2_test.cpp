@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "reconstruct/test_images.h"
-#include "settings/options.h"
+#include "schema/options.h"
 #include "support/threads.h"
 
 namespace gradus {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "frame/store.h"
+#include "film_io/store.h"
 #include "render/fake_integrator.h"
 #include "render/resume.h"
 

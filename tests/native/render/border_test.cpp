@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/plan.h"
-#include "render/combine.h"
+#include "render/plan.h"
+#include "output/combine.h"
 #include "render/render.h"
-#include "settings/options.h"
+#include "schema/options.h"
 #include "support/path_scene.h"
 
 namespace gradus {

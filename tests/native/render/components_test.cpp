@@ -9,14 +9,14 @@
 #include <unistd.h>
 
 #include "base/error.h"
-#include "frame/features.h"
-#include "frame/store.h"
+#include "film/features.h"
+#include "film_io/store.h"
 #include "motion/component_motion.h"
-#include "reconstruct/reconstruct_frame.h"
+#include "reconstruct/reconstruct_film.h"
 #include "render/resume.h"
 #include "render/scene_render.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 #include "support/refusal.h"
 
 namespace gradus {

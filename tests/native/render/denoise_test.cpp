@@ -7,10 +7,10 @@
 #include <thread>
 
 #include "scene/device.h"
-#include "denoise/oidn_library.h"
-#include "frame/features.h"
+#include "output/oidn_library.h"
+#include "film/features.h"
 #include "reconstruct/feature_filter.h"
-#include "render/denoise_combined.h"
+#include "output/denoise_combined.h"
 #include "render/fake_integrator.h"
 
 namespace gradus {

@@ -1,8 +1,8 @@
 // The pass Error of renders, and of their frames.
 #include <gtest/gtest.h>
 
-#include "plan/plan.h"
-#include "render/combine.h"
+#include "render/plan.h"
+#include "output/combine.h"
 #include "render/fake_integrator.h"
 #include "support/statistics.h"
 

@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "render/render.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 
 namespace gradus::test {
 

@@ -4,11 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "plan/l2_noise.h"
+#include "render/l2_noise.h"
 #include "reconstruct/solver.h"
 #include "render/fake_integrator.h"
 #include "render/pilot.h"
-#include "settings/options.h"
+#include "schema/options.h"
 
 namespace gradus {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "plan/plan.h"
+#include "render/plan.h"
 #include "render/fake_integrator.h"
-#include "settings/pass_table.h"
+#include "schema/pass_table.h"
 
 namespace gradus {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "gradus/gradus_nodes.h"
 #include "render/render.h"
-#include "settings/options.h"
-#include "settings/pass_table.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
 #include "shading/program_builder.h"
 #include "support/path_scene.h"
 

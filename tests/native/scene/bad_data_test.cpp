@@ -7,10 +7,10 @@
 
 #include "base/error.h"
 #include "base/fpu.h"
-#include "scene/accelerator.h"
-#include "scene/emitter_table.h"
-#include "scene/mesh.h"
-#include "scene/plane.h"
+#include "geometry/accelerator.h"
+#include "light/light_table.h"
+#include "geometry/mesh.h"
+#include "geometry/plane.h"
 #include "scene_fixture.h"
 
 namespace gradus::test {

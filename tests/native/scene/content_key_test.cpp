@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/image_test_support.h"
+#include "image/image_test_support.h"
 #include "scene/scene_fixture.h"
 #include "support/image_files.h"
 

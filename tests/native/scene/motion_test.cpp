@@ -3,9 +3,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "path/segment.h"
-#include "scene/matrix_keys.h"
-#include "scene/mesh.h"
-#include "scene/rays4.h"
+#include "geometry/matrix_keys.h"
+#include "geometry/mesh.h"
+#include "geometry/rays4.h"
 #include "scene_fixture.h"
 #include "support/refusal.h"
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/accelerator.h"
-#include "scene/mesh.h"
+#include "geometry/accelerator.h"
+#include "geometry/mesh.h"
 #include "scene/scene_fixture.h"
 
 namespace gradus::test {

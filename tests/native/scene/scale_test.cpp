@@ -1,8 +1,8 @@
 // D5 and D6 for the geometry: direct light on a small scene, at other scales and far from the origin.
 #include <gtest/gtest.h>
 
-#include "scene/camera.h"
-#include "scene/emitters.h"
+#include "camera/camera.h"
+#include "light/light_sampling.h"
 #include "scene_fixture.h"
 #include "support/chi_square.h"
 

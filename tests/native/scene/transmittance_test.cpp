@@ -1,7 +1,7 @@
 // Shadow rays through transparent surfaces, with materials as nodes compile them.
 #include <gtest/gtest.h>
 
-#include "scene/emitters.h"
+#include "light/light_sampling.h"
 #include "scene_fixture.h"
 
 namespace gradus::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/image_store.h"
+#include "image/image_store.h"
 #include "shading/interpreter.h"
 #include "shading/material.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/cone.h"
+#include "base/cone.h"
 #include "shading/program_builder.h"
 #include "shading/sky/sky.h"
 

@@ -12,7 +12,7 @@
 #include <tuple>
 
 #include "api/test_scene.h"
-#include "frame/image_exr.h"
+#include "film_io/image_exr.h"
 
 namespace gradus {
 namespace {

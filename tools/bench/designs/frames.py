@@ -32,7 +32,7 @@ def planes_of(path: Path) -> dict[str, np.ndarray]:
 
 
 def frame_of(planes: dict[str, np.ndarray]) -> Frame:
-    """From planes by the names of native/src/frame/store_planes.cpp."""
+    """From planes by the names of native/src/film_io/store_planes.cpp."""
     depths = [_mean_of_samples(planes, half, f"{half}.Denoising_Depth", "V") for half in "AB"]
     median = _median_of_positive(np.concatenate(depths))
     a, b = (_half_of(planes, half, depth / (depth + median)) for half, depth in zip("AB", depths, strict=True))
@@ -71,7 +71,7 @@ def _half_of(planes: dict[str, np.ndarray], half: str, depth: np.ndarray) -> Hal
 
 
 def _mean_of_pairs(planes: dict[str, np.ndarray], half: str, offset: str) -> np.ndarray:
-    """Of the samples from this end of each pair (native/src/frame/read.cpp joins both ends); NaN where there are none."""
+    """Of the samples from this end of each pair (native/src/film/read.cpp joins both ends); NaN where there are none."""
     pairs = planes[f"{half}.{offset}.pairs.V"][:, :, None]
     return _vector(planes, f"{half}.{offset}", "RGB") / np.where(pairs > 0.0, pairs, np.nan)
 

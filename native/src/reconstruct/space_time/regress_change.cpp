@@ -6,8 +6,8 @@
 #include "reconstruct/box_mean.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/linear_parts.h"
-#include "reconstruct/space_time/rounded_ways.h"
+#include "reconstruct/linear_terms.h"
+#include "reconstruct/space_time/rounded_displacements.h"
 #include "reconstruct/space_time/solve_tracks.h"
 
 namespace gradus {

@@ -4,9 +4,9 @@
 
 #include <memory>
 
-#include "frame/features.h"
+#include "film/features.h"
 #include "reconstruct/solver.h"
-#include "reconstruct/space_time/links.h"
+#include "reconstruct/space_time/correspondence_map.h"
 #include "reconstruct/space_time/window_source.h"
 
 namespace gradus {

@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "frame/features.h"
-#include "frame/frame.h"
+#include "film/features.h"
+#include "film/film.h"
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/space_time/regress_change.h"
 #include "reconstruct/space_time/window_grid.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "reconstruct/space_time/links.h"
+#include "reconstruct/space_time/correspondence_map.h"
 
 namespace gradus {
 

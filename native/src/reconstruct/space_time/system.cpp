@@ -1,6 +1,6 @@
 #include "reconstruct/space_time/system.h"
 
-#include "reconstruct/space_time/linked_rows.h"
+#include "reconstruct/space_time/correspondence_rows.h"
 #include "reconstruct/space_time/value_rows.h"
 
 namespace gradus {

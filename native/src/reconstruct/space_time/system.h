@@ -8,7 +8,7 @@
 
 #include "reconstruct/field.h"
 #include "base/rows.h"
-#include "reconstruct/space_time/links.h"
+#include "reconstruct/space_time/correspondence_map.h"
 #include "reconstruct/space_time/screened_laplacian.h"
 #include "reconstruct/space_time/window_source.h"
 

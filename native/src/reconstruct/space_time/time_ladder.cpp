@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "reconstruct/field_values.h"
-#include "reconstruct/space_time/linked_rows.h"
+#include "reconstruct/space_time/correspondence_rows.h"
 
 namespace gradus {
 namespace {

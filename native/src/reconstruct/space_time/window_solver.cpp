@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/value_rows.h"
-#include "reconstruct/space_time/weigh_alike.h"
+#include "reconstruct/space_time/weigh_uniformly.h"
 #include "reconstruct/space_time/weigh_by_residuals.h"
 #include "reconstruct/weighted_least_squares.h"
 

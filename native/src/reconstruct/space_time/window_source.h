@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "frame/links.h"
+#include "film/pixel_correspondence.h"
 
 namespace gradus {
 

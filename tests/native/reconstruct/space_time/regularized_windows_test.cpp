@@ -13,7 +13,7 @@
 #include "reconstruct/space_time/solve_tracks.h"
 #include "render/resume.h"
 #include "support/threads.h"
-#include "temporal/frame_window.h"
+#include "animation/frame_window.h"
 
 namespace gradus {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "reconstruct/space_time/sequences.h"
 #include "reconstruct/space_time/solve_window.h"
-#include "reconstruct/space_time/weigh_alike.h"
+#include "reconstruct/space_time/weigh_uniformly.h"
 
 namespace gradus {
 namespace {

@@ -1,0 +1,129 @@
+#include "animation/component_flows.h"
+
+#include <algorithm>
+
+#include "lpe/components.h"
+#include "output/component_read.h"
+#include "film/region_pixels.h"
+#include "schema/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// What surfaces, or what is seen through them, do towards one side.
+struct KnownMotion {
+  std::vector<Vec2> vectors;
+  std::vector<float> tracked;
+};
+
+KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side side) {
+  const ComponentPlanes& planes = developed.film->components[component];
+  const auto pixels = size_t(developed.delivered().area());
+  KnownMotion known{std::vector<Vec2>(pixels), std::vector<float>(pixels)};
+  for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
+    const Vec4& motion = planes.motion[i];
+    known.vectors[out] = side == Side::Previous ? Vec2(motion) : -Vec2(motion.z, motion.w);
+    known.tracked[out] = planes.tracked[i];
+  });
+  return known;
+}
+
+// Without the film's exposure, which may change from frame to frame.
+std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind) {
+  const Region& region = developed.delivered();
+  const uint32_t pass = kind.domain == FlowDomain::Logarithmic ? GRADUS_COMPONENT_IRRADIANCE : GRADUS_COMPONENT_COLOR;
+  std::vector<float> values(3 * size_t(region.area()));
+  read_component_pass(*developed.film, int(kind.component), pass, region, developed.components[kind.component], values.data());
+  const float exposure = developed.film->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
+  std::vector<Rgb> light(values.size() / 3);
+  for_pixels(*developed.film, region, [&](size_t, size_t out) {
+    const float* const value = &values[3 * out];
+    light[out] = factor * Rgb(value[0], value[1], value[2]);
+  });
+  return light;
+}
+
+class FlowInput {
+ public:
+  FlowInput(const DevelopedFrame& developed, const FlowKind& kind, Side side)
+      : light_(light_of(developed, kind)), known_(known_motion(developed, kind.component, side)), object_(light_.size()), depth_(light_.size()) {
+    const std::vector<ShownPoint>& shown = developed.film->components[kind.component].shown;
+    for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
+      object_[out] = int32_t(shown[i].object);
+      depth_[out] = shown[i].depth;
+    });
+  }
+  ComponentFrame view() const { return {light_, known_.vectors, known_.tracked, object_, depth_}; }
+
+ private:
+  std::vector<Rgb> light_;
+  KnownMotion known_;
+  std::vector<int32_t> object_;
+  std::vector<float> depth_;
+};
+
+// The end of the list: it has none.
+size_t place_of(const std::vector<FlowKind>& kinds, const DevelopedFrame& developed, const std::string& component, FlowDomain domain) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const FlowKind& kind) {
+    return kind.domain == domain && developed.film->components[kind.component].name == component;
+  });
+  return size_t(found - kinds.begin());
+}
+
+}  // namespace
+
+std::vector<FlowKind> wanted_flows(const Film& frame) {
+  std::vector<FlowKind> kinds;
+  const uint32_t passes = frame.settings.component_passes;
+  const bool of_irradiance = any_wanted(passes, is_irradiance_motion);
+  const bool of_residual = has_bit(passes, GRADUS_COMPONENT_MOTION) || has_bit(passes, GRADUS_COMPONENT_TRACKED);
+  for (size_t c = 0; c < frame.components.size(); ++c) {
+    if (of_residual && frame.components[c].name == kResidual) kinds.push_back({c, FlowDomain::Linear});
+    if (of_irradiance) kinds.push_back({c, FlowDomain::Logarithmic});
+  }
+  return kinds;
+}
+
+std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const DevelopedFrame& first, const DevelopedFrame& second) {
+  const std::vector<FlowKind> kinds = wanted_flows(*first.film), others = wanted_flows(*second.film);
+  std::array<FrameFlows, 2> flows{FrameFlows(kinds.size()), FrameFlows(others.size())};
+  const Region& region = first.delivered();
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    const std::string& name = first.film->components[kinds[k].component].name;
+    const size_t other = place_of(others, second, name, kinds[k].domain);
+    if (other == others.size()) continue;
+    const FlowInput a(first, kinds[k], Side::Next), b(second, others[other], Side::Previous);
+    std::array<PixelMotion, 2> motion = irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kinds[k].domain);
+    flows[0][k] = std::move(motion[0]);
+    flows[1][other] = std::move(motion[1]);
+  }
+  return flows;
+}
+
+void complete_flows(const DevelopedFrame& frame, Side side, Tracking cause, FrameFlows* flows) {
+  const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
+  flows->resize(kinds.size());
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    if (!(*flows)[k].vectors.empty()) continue;
+    KnownMotion known = known_motion(frame, kinds[k].component, side);
+    for (float& tracked : known.tracked) tracked = tracked == kTracked ? float(cause) : tracked;
+    (*flows)[k] = {std::move(known.vectors), std::move(known.tracked)};
+  }
+}
+
+std::vector<FlowPass> join_flows(const DevelopedFrame& frame, const FrameFlows& previous, const FrameFlows& next) {
+  std::vector<FlowPass> passes;
+  const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    const PixelMotion &before = previous[k], &after = next[k];
+    FlowPass pass{kinds[k], std::vector<Vec4>(before.vectors.size()), before.tracked};
+    for_pixels(*frame.film, frame.delivered(), [&](size_t, size_t out) {
+      pass.vectors[out] = Vec4(before.vectors[out], -after.vectors[out]);
+      if (pass.tracked[out] == kTracked) pass.tracked[out] = after.tracked[out];
+    });
+    passes.push_back(std::move(pass));
+  }
+  return passes;
+}
+
+}  // namespace gradus

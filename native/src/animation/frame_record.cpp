@@ -1,0 +1,54 @@
+#include "animation/frame_record.h"
+
+#include <algorithm>
+
+#include "film/features.h"
+#include "schema/options.h"
+
+namespace gradus {
+namespace {
+
+uint64_t key_without_frame(GradusSettings settings) {
+  settings.frame = 0;
+  return sampling_key(settings);
+}
+
+}  // namespace
+
+FrameTraits traits_of(const FilmHeader& fresh, const FilmHeader& replayed) {
+  return {fresh.region,       fresh.channels,         fresh.gradients, has_features(fresh),  fresh.settings,
+          fresh.frame_number, replayed.replayed_frame, fresh.scene_key, replayed.replayed_key, replayed.replayed_seed};
+}
+
+bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) {
+  const uint32_t seed = before.settings.seed;
+  if (frame.stream == before.stream) return frame.scene_key != before.scene_key || frame.settings.seed != seed;
+  const bool shows_another = frame.replayed_scene != 0 && frame.replayed_scene != before.scene_key;
+  return frame.replayed_stream == before.stream && (shows_another || frame.replayed_seed != seed);
+}
+
+bool share_windows(const FrameTraits& before, const FrameTraits& frame, uint32_t reconstruction) {
+  const bool features = before.features == frame.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
+  return before.region == frame.region && before.channels == frame.channels && before.gradients == frame.gradients && features &&
+         !follows_another_frame(before, frame);
+}
+
+std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
+                                         const FilmHeader* fresh) {
+  auto before = std::make_unique<PreviousFrame>();
+  before->snapshot = std::move(snapshot);
+  before->settings = settings;
+  before->stream_frame = fresh != nullptr ? fresh->frame_number : settings.frame;
+  if (fresh != nullptr) before->sampled = fresh->region;
+  return before;
+}
+
+bool has_counts(const GradusSettings& settings) { return settings.noise_threshold > 0.0f || settings.time_limit > 0.0f; }
+
+bool are_equivalent(const GradusSettings& a, const GradusSettings& b) {
+  return key_without_frame(a) == key_without_frame(b) && a.passes == b.passes && show_same_region(a, b);
+}
+
+bool show_same_region(const GradusSettings& a, const GradusSettings& b) { return std::equal(a.region, a.region + 4, b.region); }
+
+}  // namespace gradus

@@ -1,0 +1,81 @@
+#include "animation/frame_window.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+namespace {
+
+const std::vector<float>& plane_of(const GradientImages& images, RowKind kind) {
+  if (kind == RowKind::kDx || kind == RowKind::kDxDt) return images.dx;
+  if (kind == RowKind::kDy || kind == RowKind::kDyDt) return images.dy;
+  return images.primal;
+}
+
+// Mean over all samples; what one of the two lacks is the other's.
+float mixed(float fresh, float replay, float share) {
+  if (std::isnan(fresh)) return replay;
+  if (std::isnan(replay)) return fresh;
+  return fresh + share * (replay - fresh);
+}
+
+}  // namespace
+
+FrameWindow::FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frames) : frames_(std::move(frames)) {
+  for (size_t t = 0; t + 1 < frames_.size(); ++t) {
+    const TemporalFrame &frame = *frames_[t], &next = *frames_[t + 1];
+    check_same_layout(frame.fresh.values, next.replay.values, next.stream);
+    correspondence_.push_back(correspondence_between(frame, next));
+  }
+}
+
+WindowSize FrameWindow::size() const {
+  const GradientImages& first = frames_.front()->fresh.values;
+  return {first.width, first.height, first.channels, int(frames_.size())};
+}
+
+void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const {
+  const TemporalFrame& frame = *frames_[size_t(t)];
+  const size_t width = size_t(size().width), channels = size_t(size().channels), first = size_t(y) * width;
+  const float* fresh = plane_of(frame.fresh.*part, kind).data();
+  if (!is_temporal(kind)) {
+    const float* replay = plane_of(frame.replay.*part, kind).data();
+    for (size_t i = first; i < first + width; ++i) {
+      const float share = frame.replay_share[i];
+      for (size_t k = i * channels; k < (i + 1) * channels; ++k) *out++ = mixed(fresh[k], replay[k], share);
+    }
+    return;
+  }
+  if (is_repeated(frame, *frames_[size_t(t) + 1])) {
+    std::fill_n(out, width * channels, 0.0f);
+    return;
+  }
+  const float* next = plane_of(frames_[size_t(t) + 1]->replay.*part, kind).data();
+  for (size_t i = first; i < first + width; ++i) {
+    const int32_t link = correspondence_[size_t(t)].pixel[i];
+    for (size_t c = 0; c < channels; ++c) {
+      *out++ = link == kNoCorrespondence ? kAbsentPair : next[size_t(link) * channels + c] - fresh[i * channels + c];
+    }
+  }
+}
+
+void FrameWindow::read_row(RowKind kind, int t, int y, float* out) const { read(kind, t, y, &HalvedImages::values, out); }
+
+void FrameWindow::read_half_differences(RowKind kind, int t, int y, float* out) const {
+  read(kind, t, y, &HalvedImages::half_differences, out);
+}
+
+void FrameWindow::read_correspondence(int t, int y, int32_t* out) const {
+  const auto first = correspondence_[size_t(t)].pixel.begin() + ptrdiff_t(y) * size().width;
+  std::copy(first, first + size().width, out);
+}
+
+void FrameWindow::read_off_centre(int t, int y, Vec2* out) const {
+  const std::vector<Vec2>& off_centre = correspondence_[size_t(t)].off_centre;
+  if (off_centre.empty()) return HalvedWindowSource::read_off_centre(t, y, out);
+  const auto first = off_centre.begin() + ptrdiff_t(y) * size().width;
+  std::copy(first, first + size().width, out);
+}
+
+}  // namespace gradus

@@ -1,0 +1,81 @@
+#include "film/features.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "base/fpu.h"
+#include "film/pass_planes.h"
+#include "schema/pass_table.h"
+
+namespace gradus {
+
+namespace {
+
+// Row by row: function(pixel).
+template <class Function>
+void for_pixels(const Film& film, const Function& function) {
+  const auto width = static_cast<size_t>(film.region.width());
+  tbb::parallel_for(0, film.region.height(), [&](int y) {
+    const FlushDenormals flush;
+    for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i) function(i);
+  });
+}
+
+void read_mean(const Film& film, const PassPlane& plane, HalfRange halves, size_t pixel, float* to) {
+  uint32_t count = 0;
+  for (int h = halves.first; h < halves.last; ++h) count += film.count[h][pixel];
+  const float factor = count > 0 ? 1.0f / static_cast<float>(count) : 0.0f;
+  for (uint32_t c = 0; c < plane.channels; ++c) {
+    float sum = 0.0f;
+    for (int h = halves.first; h < halves.last; ++h) sum += plane.values[h][plane.channels * pixel + c];
+    to[c] = factor * sum;
+  }
+}
+
+// half: half the difference of the halves' means.
+float variance_of(float half, bool is_known) {
+  return is_known ? std::min(half * half, std::numeric_limits<float>::max()) : std::numeric_limits<float>::quiet_NaN();
+}
+
+void read_variance(const Film& film, const PassPlane& plane, size_t pixel, float* to) {
+  const uint32_t a = film.count[0][pixel], b = film.count[1][pixel];
+  for (uint32_t c = 0; c < plane.channels; ++c) {
+    const size_t i = plane.channels * pixel + c;
+    const float half = 0.5f * (plane.values[0][i] / static_cast<float>(a) - plane.values[1][i] / static_cast<float>(b));
+    to[c] = variance_of(half, a > 0 && b > 0);
+  }
+}
+
+}  // namespace
+
+bool holds_features(uint64_t planes) { return (planes & feature_passes()) == feature_passes(); }
+
+bool has_features(const FilmHeader& header) { return holds_features(header.planes); }
+bool has_features(const Film& film) { return holds_features(film_passes(film)); }
+
+FeatureImage read_feature(const Film& film, uint32_t pass, HalfRange halves) {
+  const PassPlane* plane = find_plane(film, pass);
+  if (plane == nullptr || !plane->in_halves) {
+    throw invalid_operation("the frame does not keep " + std::string(pass_info(pass).name) + " in halves");
+  }
+  FeatureImage image;
+  image.channels = plane->channels;
+  image.values.resize(plane->values[0].size());
+  for_pixels(film, [&](size_t i) { read_mean(film, *plane, halves, i, image.values.data() + i * image.channels); });
+  if (halves.last - halves.first == kHalves) {
+    image.variance.resize(image.values.size());
+    for_pixels(film, [&](size_t i) { read_variance(film, *plane, i, image.variance.data() + i * image.channels); });
+  }
+  return image;
+}
+
+Features read_features(const Film& film, HalfRange halves) {
+  return {film.region.width(), film.region.height(), read_feature(film, GRADUS_PASS_DENOISING_NORMAL, halves),
+          read_feature(film, GRADUS_PASS_DENOISING_ALBEDO, halves), read_feature(film, GRADUS_PASS_DENOISING_DEPTH, halves)};
+}
+
+}  // namespace gradus

@@ -1,0 +1,33 @@
+// What is known of a stored frame without unpacking its planes.
+#pragma once
+
+#include "film/film.h"
+#include "film/pass_planes.h"
+
+namespace gradus {
+
+struct FilmHeader {
+  Region region;
+  int channels = 3;
+  bool gradients = false;
+  uint64_t planes = 0;  // of passes, a bit each
+  ComponentContent of_components;
+  GradusSettings settings{};
+  SampleRanges samples;
+  uint64_t scene_key = 0;
+  int32_t frame_number = 0;
+  int32_t replayed_frame = 0;  // of a replay
+  uint64_t replayed_key = 0;   // of its scene; 0: not known
+  uint32_t replayed_seed = 0;
+  AdaptiveState shared;
+  std::vector<std::string> warnings;  // what the file asks for that this version does not have
+};
+
+inline FilmHeader header_of(const Film& film) {
+  const ReplayMap& replayed = film.replayed;
+  return {film.region,       film.channels, film.gradients, film_passes(film), component_content(film),
+          film.settings,     film.samples,  film.scene_key, film.frame_number, replayed.stream_frame,
+          replayed.scene_key, replayed.seed,  film.shared,    {}};
+}
+
+}  // namespace gradus

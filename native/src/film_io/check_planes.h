@@ -1,0 +1,11 @@
+// What a file may hold and no frame does: what was sampled has passed the gate, and what was found is bounded.
+#pragma once
+
+#include "film/film.h"
+
+namespace gradus {
+
+// Of what passes of components are made of, by the threads of the caller's arena. Throws invalid_argument.
+void check_planes(const Film& film);
+
+}  // namespace gradus

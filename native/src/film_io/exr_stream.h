@@ -1,0 +1,60 @@
+// OpenEXR's output through a writer that is atomic.
+#pragma once
+
+#include <ImfIO.h>
+
+#include <exception>
+#include <string>
+
+#include "base/error.h"
+#include "film_io/file_writer.h"
+
+namespace gradus {
+
+// Errors that OpenEXR swallows (its destructors write, too) are kept for afterwards.
+class WriterStream final : public Imf::OStream {
+ public:
+  WriterStream(FileWriter* writer, const std::string& path) : Imf::OStream(path.c_str()), writer_(writer) {}
+  void write(const char data[], int size) override {
+    run([&] { writer_->write(data, size_t(size)); });
+  }
+  uint64_t tellp() override { return writer_->position(); }
+  void seekp(uint64_t position) override {
+    run([&] { writer_->seek(position); });
+  }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  template <class Function>
+  void run(Function&& function) {
+    try {
+      function();
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+  FileWriter* writer_;
+  std::exception_ptr failure_;
+};
+
+// Runs write(&stream) and commits; what goes wrong is thrown as Error with path and cause, and leaves no file.
+template <class Function>
+void write_exr(const std::string& path, Function&& write, Durable durable = Durable::kYes) {
+  FileWriter writer(path, durable);
+  WriterStream stream(&writer, path);
+  try {
+    write(&stream);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    stream.rethrow();
+    throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot write " + path + ": " + e.what());
+  }
+  stream.rethrow();
+  writer.commit();
+}
+
+}  // namespace gradus

@@ -1,0 +1,104 @@
+#include "film_io/file_writer.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "base/error.h"
+#include "film_io/temporary_file.h"
+
+namespace gradus {
+namespace {
+
+// So that the new name itself survives a power cut. Not every file system can do it; the data is safe already.
+void sync_folder_of(const std::string& path) {
+  const size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  fsync(fd);
+  close(fd);
+}
+
+// A sync cannot be cancelled. That of half a frame of 4K, all at its end, takes seconds, or many on a slow disk.
+constexpr size_t kMaxUnsynced = size_t{1} << 25;
+
+}  // namespace
+
+FileWriter::FileWriter(const std::string& path, Durable durable) : path_(path), durable_(durable) {
+  const TemporaryFile part = make_temporary_file(path);
+  if (part.descriptor < 0) fail("create");
+  temporary_ = part.name;
+  file_ = fdopen(part.descriptor, "wb");
+  if (file_ == nullptr) {
+    close(part.descriptor);
+    unlink(temporary_.c_str());
+    fail("create");
+  }
+}
+
+FileWriter::~FileWriter() {
+  if (!file_) return;
+  std::fclose(file_);
+  unlink(temporary_.c_str());
+}
+
+void FileWriter::fail(const char* action) const {
+  throw Error(GRADUS_ERROR_INVALID_OPERATION, std::string("cannot ") + action + " " + path_ + ": " + std::strerror(errno));
+}
+
+void FileWriter::write(const void* data, size_t size) {
+  if (size > 0 && std::fwrite(data, 1, size, file_) != size) fail("write");
+  unsynced_ += size;
+  if (durable_ == Durable::kYes && unsynced_ >= kMaxUnsynced) sync();
+}
+
+void FileWriter::sync() {
+  if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail("write");
+  unsynced_ = 0;
+}
+
+uint64_t FileWriter::position() const {
+  const off_t position = ftello(file_);
+  if (position < 0) fail("write");
+  return uint64_t(position);
+}
+
+void FileWriter::seek(uint64_t position) {
+  if (fseeko(file_, off_t(position), SEEK_SET) != 0) fail("write");
+}
+
+void FileWriter::commit() {
+  const bool is_durable = durable_ == Durable::kYes;
+  if (is_durable) sync();
+  const int closed = std::fclose(file_);
+  file_ = nullptr;
+  if (closed != 0 || rename(temporary_.c_str(), path_.c_str()) != 0) {
+    const int reason = errno;
+    unlink(temporary_.c_str());
+    errno = reason;
+    fail("write");
+  }
+  if (is_durable) sync_folder_of(path_);
+}
+
+void copy_file(const std::string& path, const std::string& name, Durable durable) {
+  constexpr size_t kPiece = 1 << 20;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> from(std::fopen(path.c_str(), "rb"), std::fclose);
+  const auto refuse = [&] { throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot read " + path + ": " + std::strerror(errno)); };
+  if (!from) refuse();
+  FileWriter to(name, durable);
+  std::vector<char> piece(kPiece);
+  for (size_t size = kPiece; size == kPiece;) {
+    size = std::fread(piece.data(), 1, kPiece, from.get());
+    to.write(piece.data(), size);
+  }
+  if (std::ferror(from.get()) != 0) refuse();
+  to.commit();
+}
+
+}  // namespace gradus

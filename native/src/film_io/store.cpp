@@ -1,0 +1,178 @@
+#include "film_io/store.h"
+
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include "base/throw_if_cancelled.h"
+#include "film_io/block_file.h"
+#include "film_io/block_rows.h"
+#include "film_io/check_planes.h"
+#include "film_io/exr_problem.h"
+#include "film_io/exr_stream.h"
+#include "film_io/store_header.h"
+#include "film_io/store_planes.h"
+
+namespace gradus {
+namespace {
+
+// A part's block, of all parts in a row.
+struct PlacedBlock {
+  int part = 0, block = 0;
+};
+
+// The rows of all parts, as their blocks follow each other in the file.
+class PartRows {
+ public:
+  PartRows(const std::vector<StoredPart>& parts, const Film& film) {
+    for (const StoredPart& part : parts) rows_.emplace_back(part.planes, film.region.width(), film.region.height());
+  }
+  int blocks() const { return int(rows_.size()) * rows_.front().blocks(); }
+  PlacedBlock at(int i) const { return {i / rows_.front().blocks(), i % rows_.front().blocks()}; }
+  const BlockRows& of(int part) const { return rows_[size_t(part)]; }
+
+ private:
+  std::vector<BlockRows> rows_;
+};
+
+struct PackedBlock {
+  PlacedBlock place;
+  Bytes bytes;
+};
+
+void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* file) {
+  tbb::enumerable_thread_specific<BlockCodec> codecs;
+  int next = 0;
+  const auto number = [&](tbb::flow_control& control) {
+    if (next == rows.blocks()) control.stop();
+    return next++;
+  };
+  const auto pack = [&](int i) {
+    throw_if_cancelled(cancel);
+    const PlacedBlock place = rows.at(i);
+    Bytes bytes(rows.of(place.part).bytes(place.block));
+    rows.of(place.part).gather(place.block, &bytes);
+    return PackedBlock{place, codecs.local().pack(bytes)};
+  };
+  const auto write = [&](const PackedBlock& packed) { file->write(packed.place.part, packed.place.block, packed.bytes); };
+  const auto tokens = 2 * size_t(tbb::this_task_arena::max_concurrency());
+  tbb::parallel_pipeline(tokens, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
+                                     tbb::make_filter<int, PackedBlock>(tbb::filter_mode::parallel, pack) &
+                                     tbb::make_filter<PackedBlock, void>(tbb::filter_mode::serial_in_order, write));
+}
+
+// numbers: of the parts in the file.
+void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std::vector<int>& numbers, const CancelCheck& cancel) {
+  struct Reader {
+    BlockCodec codec;
+    Bytes packed, bytes;
+  };
+  tbb::enumerable_thread_specific<Reader> readers;
+  std::vector<Imf::InputPart> inputs;
+  for (const int number : numbers) inputs.emplace_back(*file, number);
+  const int top = file->header(0).dataWindow().min.y;
+  tbb::parallel_for(0, rows.blocks(), [&](int i) {
+    throw_if_cancelled(cancel);
+    const auto [part, block] = rows.at(i);
+    const BlockRows& own = rows.of(part);
+    Reader& reader = readers.local();
+    reader.bytes.resize(own.bytes(block));
+    reader.packed.resize(own.max_bytes());  // OpenEXR reads as much, if the file says so
+    int size = int(reader.packed.size());
+    inputs[size_t(part)].rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()), size);
+    if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes)) throw invalid_argument("a block of its rows is broken");
+    own.scatter(reader.bytes, block);
+  });
+}
+
+void check_sources(const Film& film) {
+  const auto check = [&](const PixelCorrespondence& correspondence) {
+    for (const int32_t pixel : correspondence.pixel) {
+      if (pixel < kNoCorrespondence || pixel >= film.region.area()) throw invalid_argument("it replays pixels that do not exist");
+    }
+    for (const Vec2& off : correspondence.off_centre) {
+      if (!(std::abs(off.x) <= 0.5f && std::abs(off.y) <= 0.5f)) throw invalid_argument("it replays ways that end in no pixel");
+    }
+  };
+  check(film.replayed.correspondence);
+  for (const PixelCorrespondence& own : film.replayed.of_component) check(own);
+}
+
+Imf::MultiPartInputFile open_file(const std::string& path) {
+  constexpr int kNoThreads = 0;  // ours unpack
+  constexpr bool kRepair = false;
+  return Imf::MultiPartInputFile(path.c_str(), kNoThreads, kRepair);
+}
+
+int number_of(const Imf::MultiPartInputFile& file, const std::string& part) {
+  for (int i = 0; i < file.parts(); ++i) {
+    if (file.header(i).hasName() && file.header(i).name() == part) return i;
+  }
+  throw invalid_argument("part " + part + " is missing");
+}
+
+// only: the component to be read; nullptr: all.
+Film read_film(const std::string& path, StoredContent content, const std::string* only, const CancelCheck& cancel) {
+  Imf::MultiPartInputFile file = open_file(path);
+  Film film = make_frame(file.header(0), content, only);
+  const std::vector<StoredPart> parts = stored_parts(&film);
+  const bool is_whole = content == StoredContent::kAll && only == nullptr;
+  if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
+  std::vector<int> numbers;
+  for (const StoredPart& part : parts) {
+    numbers.push_back(number_of(file, part.name));
+    check_part(file.header(numbers.back()), file.header(0), part);
+  }
+  read_blocks(&file, PartRows(parts, film), numbers, cancel);
+  check_sources(film);
+  check_planes(film);
+  return film;
+}
+
+// read(): of the file at `path`. What it throws is told with that.
+template <class Read>
+auto load(const std::string& path, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& e) {
+    if (e.code() == GRADUS_ERROR_CANCELLED) throw;
+    throw Error(e.code(), "cannot load frame " + path + ": " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw invalid_argument("cannot load frame " + path + ": " + exr_problem(e));
+  }
+}
+
+}  // namespace
+
+void save_film(const Film& film, const std::string& path, const FilmWriteOptions& how) {
+  // The planes are only read here; the list is shared with reading, which writes them.
+  const std::vector<StoredPart> parts = stored_parts(const_cast<Film*>(&film));
+  const auto write = [&](WriterStream* stream) {
+    BlockFile file(make_headers(film, parts), stream);
+    write_blocks(PartRows(parts, film), how.cancel, &file);
+    file.finish();
+  };
+  write_exr(path, write, how.durable);
+}
+
+std::shared_ptr<Film> load_film(const std::string& path, StoredContent content, const CancelCheck& cancel) {
+  return load(path, [&] { return std::make_shared<Film>(read_film(path, content, nullptr, cancel)); });
+}
+
+std::shared_ptr<Film> load_component(const std::string& path, const std::string& name, StoredContent content, const CancelCheck& cancel) {
+  auto film = load(path, [&] { return std::make_shared<Film>(read_film(path, content, &name, cancel)); });
+  select_component(name, film.get());
+  return film;
+}
+
+FilmHeader load_header(const std::string& path) {
+  return load(path, [&] { return read_header(open_file(path).header(0)); });
+}
+
+}  // namespace gradus

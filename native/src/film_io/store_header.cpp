@@ -1,0 +1,280 @@
+#include "film_io/store_header.h"
+
+#include <ImfChannelList.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "film/pixel_blocks.h"
+#include "film/pass_planes.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
+
+namespace gradus {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormat = 9;
+constexpr size_t kMaxStoredComponents = 64;
+constexpr int kMaxSide = 1 << 16;
+constexpr const char* kAttribute = "gradus";
+
+// What is wrong with a file, as the exception that load_film() throws.
+Error damaged(const std::string& why) { return invalid_argument(why); }
+
+std::string hex(uint64_t value) {
+  char text[20];
+  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+json counters_to_json(const Counters& counters) {
+  std::vector<uint64_t> values(sizeof(Counters) / sizeof(uint64_t));
+  std::memcpy(values.data(), &counters, sizeof(Counters));
+  return values;
+}
+
+uint64_t key_from_json(const json& j) { return std::stoull(j.get<std::string>(), nullptr, 16); }
+
+Counters counters_from_json(const json& j) {
+  const auto values = j.get<std::vector<uint64_t>>();
+  Counters counters;
+  std::memcpy(static_cast<void*>(&counters), values.data(), std::min(values.size() * sizeof(uint64_t), sizeof(Counters)));
+  return counters;
+}
+
+json ranges_to_json(const SampleRanges& ranges) {
+  json list = json::array();
+  for (const SampleRange& r : ranges.list()) list.push_back({r.begin, r.end});
+  return list;
+}
+
+SampleRanges ranges_from_json(const json& j) {
+  std::vector<SampleRange> list;
+  for (const json& r : j) list.push_back({r.at(0).get<uint32_t>(), r.at(1).get<uint32_t>()});
+  return SampleRanges(std::move(list));
+}
+
+json adaptive_state_to_json(const AdaptiveState& shared) {
+  return {{"mean", shared.mean}, {"uncounted", shared.uncounted}, {"rays", shared.rays}, {"stopped", shared.stopped}};
+}
+
+AdaptiveState adaptive_state_from_json(const json& j, const Region& region) {
+  AdaptiveState shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
+                       j.at("stopped").get<std::vector<uint8_t>>()};
+  const size_t blocks = make_pixel_blocks(region).size();
+  if (shared.rays.size() != blocks || shared.stopped.size() != blocks) throw damaged("its cells are wrong");
+  return shared;
+}
+
+json components_to_json(const Film& film) {
+  json list = json::array();
+  for (const ComponentPlanes& planes : film.components) list.push_back({planes.name, planes.expression});
+  return list;
+}
+
+void name_components(const json& list, Film* film) {
+  for (size_t i = 0; i < film->components.size(); ++i) {
+    film->components[i].name = list.at(i).at(0);
+    film->components[i].expression = list.at(i).at(1);
+  }
+}
+
+ComponentContent component_content_from_json(const json& j) {
+  return {j.at("rough"), j.value("details", false), j.at("motion"), j.at("shown")};  // once there were no details
+}
+
+json describe_samples(const Film& film) {
+  const ComponentContent kept = component_content(film);
+  return {{"format", kFormat},
+          {"version", gradus_version_text()},
+          {"frame", film.frame_number},
+          {"channels", film.channels},
+          {"components", components_to_json(film)},
+          {"rough", kept.non_specular},
+          {"details", kept.details},
+          {"motion", kept.motion},
+          {"shown", kept.shown},
+          {"gradients", film.gradients},
+          {"sampling_key", hex(sampling_key(film.settings))},
+          {"scene_key", hex(film.scene_key)},
+          {"settings", settings_to_json(film.settings)},
+          {"planes", film_passes(film)},
+          {"samples", ranges_to_json(film.samples)},
+          {"counters", counters_to_json(film.counters)}};
+}
+
+json describe(const Film& film) {
+  json j = describe_samples(film);
+  if (!film.shared.rays.empty()) j["shared"] = adaptive_state_to_json(film.shared);
+  if (film.replayed.correspondence.empty()) return j;
+  j["replayed_frame"] = film.replayed.stream_frame;
+  j["replayed_scene_key"] = hex(film.replayed.scene_key);
+  j["replayed_seed"] = film.replayed.seed;
+  j["off_centre"] = !film.replayed.correspondence.off_centre.empty();
+  for (int c = 0; c < int(film.components.size()); ++c) {
+    if (film.replayed.has_component_map(c)) j["own_sources"].push_back(c);
+  }
+  return j;
+}
+
+Imf::PixelType type_of(const StoredPlane& plane) { return plane.integer ? Imf::UINT : Imf::FLOAT; }
+
+Imf::Header make_header(const Film& film, const StoredPart& part) {
+  const int width = int(film.full_width), height = int(film.full_height);
+  const Region& r = film.region;
+  // OpenEXR's rows run downwards.
+  const Imath::Box2i display({0, 0}, {width - 1, height - 1});
+  const Imath::Box2i data({r.x0, height - r.y1}, {r.x1 - 1, height - 1 - r.y0});
+  Imf::Header header(display, data);
+  header.setName(part.name);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const StoredPlane& plane : part.planes) header.channels().insert(plane.name, Imf::Channel(type_of(plane)));
+  return header;
+}
+
+json description_of(const Imf::Header& header) {
+  const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
+  if (!attribute) throw damaged("it is no frame of Gradus");
+  json description = json::parse(attribute->value());
+  if (description.at("format") != kFormat) throw damaged("it was written by another version of Gradus");
+  return description;
+}
+
+void check_size(const Imath::Box2i& display, const Imath::Box2i& data) {
+  const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
+  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxSide || display.max.y < 0 ||
+      display.max.y >= kMaxSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
+      !inside(data.min.y, data.max.y, display.max.y + 1)) {
+    throw damaged("its size is wrong");
+  }
+}
+
+void check_regions(const Film& film) {
+  const uint32_t* r = film.settings.region;
+  const bool whole = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
+  const Region delivered{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
+  if (!whole && (r[2] > film.full_width || r[3] > film.full_height || delivered.x0 < film.region.x0 || delivered.y0 < film.region.y0 ||
+                 delivered.x1 > film.region.x1 || delivered.y1 > film.region.y1 || delivered.width() <= 0 || delivered.height() <= 0)) {
+    throw damaged("its region lies outside of it");
+  }
+  if (film.settings.width != film.full_width || film.settings.height != film.full_height)
+    throw damaged("its settings name another size");
+}
+
+Region region_of(const Imf::Header& header) {
+  const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
+  check_size(display, data);
+  const int height = display.max.y + 1;
+  return {data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
+}
+
+FilmHeader read_header(const Imf::Header& header, const json& description) {
+  FilmHeader film;
+  film.region = region_of(header);
+  film.channels = description.at("channels");
+  if (film.channels != 3 && film.channels != 4) throw damaged("its planes are wrong");
+  film.gradients = description.at("gradients");
+  film.planes = description.at("planes");
+  film.of_components = component_content_from_json(description);
+  film.settings = settings_from_json(description.at("settings"), &film.warnings);
+  film.samples = ranges_from_json(description.at("samples"));
+  film.replayed_frame = description.value("replayed_frame", 0);
+  if (description.contains("replayed_scene_key")) film.replayed_key = key_from_json(description.at("replayed_scene_key"));
+  film.replayed_seed = description.value("replayed_seed", film.settings.seed);  // once replays took that of their own frame
+  if (description.contains("shared")) film.shared = adaptive_state_from_json(description.at("shared"), film.region);
+  film.scene_key = key_from_json(description.at("scene_key"));
+  film.frame_number = description.at("frame");
+  return film;
+}
+
+// 0 where there is none: whoever asks for one that is not there gets planes all the same (select_component()).
+size_t place_of(const json& names, const std::string& name) {
+  const auto found = std::find_if(names.begin(), names.end(), [&](const json& item) { return item.at(0) == name; });
+  return found != names.end() ? size_t(found - names.begin()) : 0;
+}
+
+// The frame's one component takes a place among so many, of which the others have no planes.
+void place_component(size_t place, size_t count, Film* film) {
+  std::vector<ComponentPlanes> components(count);
+  components[place] = std::move(film->components.front());
+  film->components = std::move(components);
+}
+
+}  // namespace
+
+std::vector<Imf::Header> make_headers(const Film& film, const std::vector<StoredPart>& parts) {
+  std::vector<Imf::Header> headers;
+  headers.reserve(parts.size());
+  for (const StoredPart& part : parts) headers.push_back(make_header(film, part));
+  headers.front().insert(kAttribute, Imf::StringAttribute(describe(film).dump()));
+  return headers;
+}
+
+FilmHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
+
+Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only) {
+  const json description = description_of(header);
+  const FilmHeader known = read_header(header, description);
+  const json& names = description.at("components");
+  if (!names.is_array() || names.empty() || names.size() > kMaxStoredComponents) throw damaged("its planes are wrong");
+  const int components = int(names.size());
+  const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
+  const ComponentContent kept = is_whole ? known.of_components : ComponentContent{};
+  const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
+  const bool has_fallback = is_whole && has_bit(known.settings.passes, GRADUS_PASS_FALLBACK);
+  const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
+  const int held = only ? 1 : components;
+  const uint64_t bytes = film_bytes_per_pixel(held, gradients, planes, kept) * pixels, available = machine_memory_bytes();
+  if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
+
+  const Imath::V2i last = header.displayWindow().max;
+  Film film(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
+  allocate_component_content(kept, &film);
+  if (only) place_component(place_of(names, *only), names.size(), &film);
+  name_components(names, &film);
+  film.settings = known.settings;
+  film.frame_number = known.frame_number;
+  film.scene_key = known.scene_key;
+  film.counters = counters_from_json(description.at("counters"));
+  film.samples = known.samples;
+  film.shared = known.shared;
+  film.passes = make_pass_planes(passes, pixels);
+  if (has_fallback) film.fallback.assign(pixels, 0.0f);
+  if (description.contains("replayed_frame")) {
+    const PixelCorrespondence correspondence{std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
+    film.replayed = {known.replayed_frame, correspondence, known.replayed_key, known.replayed_seed};
+    for (const int own : description.value("own_sources", std::vector<int>())) {
+      if (own < 0 || own >= components) throw damaged("its planes are wrong");
+      if (film.components[size_t(own)].primal[0].empty()) continue;  // not read
+      film.replayed.of_component.resize(size_t(components));
+      film.replayed.of_component[size_t(own)] = correspondence;
+    }
+  }
+  check_regions(film);
+  return film;
+}
+
+void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part) {
+  if (!header.hasName() || header.name() != part.name) throw damaged("part " + part.name + " is missing");
+  if (!header.hasType() || header.type() != Imf::SCANLINEIMAGE) throw damaged("part " + part.name + " is no image of scan lines");
+  if (header.dataWindow() != first.dataWindow()) throw damaged("its parts differ in size");
+  for (const StoredPlane& plane : part.planes) {
+    const Imf::Channel* channel = header.channels().findChannel(plane.name);
+    if (!channel || channel->type != type_of(plane) || channel->xSampling != 1 || channel->ySampling != 1) {
+      throw damaged("channel " + plane.name + " is missing or of another type");
+    }
+  }
+  size_t channels = 0;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) ++channels;
+  if (channels != part.planes.size()) throw damaged("it has channels of something else");
+  if (header.compression() != Imf::ZIP_COMPRESSION) throw damaged("it was packed by another program");
+}
+
+}  // namespace gradus

@@ -1,0 +1,186 @@
+#include "geometry/geometry_group.h"
+
+#include <span>
+#include <unordered_set>
+
+#include <embree3/rtcore.h>
+#include <tbb/parallel_for.h>
+
+#include "base/error.h"
+#include "base/hash.h"
+
+namespace gradus {
+
+namespace {
+
+struct Monitor {
+  const BuildProgress* progress;
+  float first, last;
+};
+
+bool on_progress(void* data, double fraction) {
+  const auto* m = static_cast<const Monitor*>(data);
+  return (*m->progress)(m->first + (m->last - m->first) * float(fraction));
+}
+
+// Without memory for what grows with the scene, nodes and leaves, Embree gives back what it has and says so. Where the few bytes of a
+// build's entry in its thread pool are refused, it keeps the pool's lock (3.13.5, ThreadPool::add), and the next build waits for ever: that
+// only tests refuse (tests/memory/embree_guard.cpp).
+void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progress, float first, float last) {
+  Monitor monitor{&progress, first, last};
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetSceneProgressMonitorFunction(scene, on_progress, &monitor);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_CANCELLED || !progress(last)) throw cancelled();
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while building the acceleration structure");
+  if (error != RTC_ERROR_NONE) throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed with code " + std::to_string(int(error)));
+}
+
+// positions: key after key.
+void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, const MeshData& mesh, const Vec3* positions,
+                      unsigned keys) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryTimeStepCount(geometry, keys);
+  for (unsigned k = 0; k < keys; ++k)
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, positions, k * mesh.vertex_count * sizeof(Vec3),
+                               sizeof(Vec3), mesh.vertex_count);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangle_vertices.data(), 0, 3 * sizeof(uint32_t),
+                             mesh.triangle_count);
+  rtcSetGeometryMask(geometry, mask);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced, const InstanceData& instance) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, instanced);
+  const std::span<const Mat4> keys = instance.keys ? std::span(instance.keys->keys()) : std::span(&instance.to_world, 1);
+  rtcSetGeometryTimeStepCount(geometry, unsigned(keys.size()));
+  for (unsigned i = 0; i < keys.size(); ++i) rtcSetGeometryTransform(geometry, i, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &keys[i][0][0]);
+  rtcSetGeometryMask(geometry, mask);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device, const std::shared_ptr<const MeshData>& mesh,
+                                                  const BuildProgress& progress, float at) {
+  auto built = std::make_shared<MeshScene>();
+  built->device = device;
+  built->mesh = mesh;
+  built->scene = rtcNewScene(device.get());
+  const bool deforms = mesh->shutter_keys > 0;
+  attach_triangles(device.get(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->frame_positions(),
+                   deforms ? mesh->shutter_keys : 1);
+  commit_scene(device.get(), built->scene, progress, at, at);
+  return built;
+}
+
+// In double: a mesh that lies far from its own origin may be brought back by its matrix.
+std::unique_ptr<std::vector<Vec3>> transform_positions(const MeshData& mesh, const glm::dmat4& m) {
+  auto out = std::make_unique<std::vector<Vec3>>(size_t(mesh.vertex_count) + 1);
+  const Vec3* in = mesh.frame_positions();
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count, 1 << 14), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) (*out)[i] = Vec3(m * glm::dvec4(glm::dvec3(in[i]), 1.0));
+  });
+  return out;
+}
+
+RayBox bounds_of(RTCScene scene) {
+  RTCLinearBounds bounds;
+  rtcGetSceneLinearBounds(scene, &bounds);
+  RayBox box;
+  for (const RTCBounds& b : {bounds.bounds0, bounds.bounds1})
+    box.add(Vec3(b.lower_x, b.lower_y, b.lower_z), Vec3(b.upper_x, b.upper_y, b.upper_z));
+  box.widen();
+  return box;
+}
+
+class GroupBuild {
+ public:
+  GroupBuild(const EmbreeDevice& device, uint64_t key, const BuildProgress& progress, MeshScenes* known)
+      : device_(device), progress_(progress), known_(*known) {
+    group_->device = device;
+    group_->key = key;
+    group_->scene = rtcNewScene(device.get());
+  }
+
+  std::shared_ptr<const GeometryGroup> run(const GroupInput& input) {
+    constexpr float kMeshShare = 0.4f;  // of the progress
+    for (size_t i = 0; i < input.members.size(); ++i) {
+      const GroupInput::Member& member = input.members[i];
+      const float done = kMeshShare * float(i) / float(input.members.size());
+      if ((i & 255) == 0 && !progress_(done)) throw cancelled();
+      if (member.flat)
+        add_flat(*input.instance(member).mesh, (*input.to_internal)(member.instance), unsigned(i), member.mask);
+      else
+        add_instance(input.instance(member), unsigned(i), member.mask, done);
+    }
+    commit_scene(device_.get(), group_->scene, progress_, kMeshShare, 1.0f);
+    group_->box = bounds_of(group_->scene);
+    size_t flat = 0;
+    for (const GroupInput::Member& member : input.members) {
+      FlatTriangles& triangles = group_->flat_triangles.emplace_back();
+      if (!member.flat) continue;
+      group_->meshes.push_back(input.instance(member).mesh);
+      triangles = make_flat_triangles(*input.instance(member).mesh, group_->flat_positions[flat++]->data());
+    }
+    return group_;
+  }
+
+ private:
+  void add_flat(const MeshData& mesh, const glm::dmat4& to_internal, unsigned id, unsigned mask) {
+    group_->flat_positions.push_back(transform_positions(mesh, to_internal));
+    attach_triangles(device_.get(), group_->scene, id, mask, mesh, group_->flat_positions.back()->data(), 1);
+  }
+  void add_instance(const InstanceData& instance, unsigned id, unsigned mask, float done) {
+    std::shared_ptr<const MeshScene>& scene = known_[instance.mesh.get()];
+    if (!scene) scene = build_mesh_scene(device_, instance.mesh, progress_, done);
+    if (used_.insert(instance.mesh.get()).second) group_->mesh_scenes.push_back(scene);
+    attach_instance(device_.get(), group_->scene, id, mask, scene->scene, instance);
+  }
+
+  const EmbreeDevice& device_;
+  const BuildProgress& progress_;
+  MeshScenes& known_;
+  std::unordered_set<const MeshData*> used_;
+  std::shared_ptr<GeometryGroup> group_ = std::make_shared<GeometryGroup>();
+};
+
+}  // namespace
+
+MeshScene::~MeshScene() {
+  if (scene) rtcReleaseScene(scene);
+}
+
+GeometryGroup::~GeometryGroup() {
+  if (scene) rtcReleaseScene(scene);
+}
+
+uint64_t GroupInput::key() const {
+  ContentHash hash;
+  for (const Member& member : members) {
+    hash.value(instance(member).mesh->content_hash);
+    hash.value(member.mask);
+    hash.value(uint32_t(member.flat));
+    if (member.flat) {
+      const glm::dmat4 matrix = (*to_internal)(member.instance);
+      hash.bytes(&matrix, sizeof(matrix));
+    } else {
+      hash.bytes(&instance(member).to_world, sizeof(Mat4));
+    }
+    if (instance(member).keys) hash.array(instance(member).keys->keys());
+  }
+  return hash.result();
+}
+
+std::shared_ptr<const GeometryGroup> build_group(const EmbreeDevice& device, const GroupInput& input, uint64_t key,
+                                                 const BuildProgress& progress, MeshScenes* known) {
+  return GroupBuild(device, key, progress, known).run(input);
+}
+
+}  // namespace gradus

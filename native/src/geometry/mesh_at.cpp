@@ -1,0 +1,65 @@
+#include "geometry/mesh_at.h"
+
+#include "base/hash.h"
+#include "geometry/smooth_normals.h"
+#include "base/minimal_rotation.h"
+
+namespace gradus {
+
+namespace {
+
+std::vector<Vec3> positions_at(const MeshData& mesh, float frames) {
+  const MeshMoment moment = mesh_moment(mesh, frames);
+  const Vec3* before = mesh.positions.data() + size_t(moment.before) * mesh.vertex_count;
+  const Vec3* after = mesh.positions.data() + size_t(moment.after) * mesh.vertex_count;
+  std::vector<Vec3> positions(size_t(mesh.vertex_count) + 1, Vec3(0.0f));
+  for (size_t i = 0; i < mesh.vertex_count; ++i) positions[i] = before[i] + (after[i] - before[i]) * moment.share;
+  return positions;
+}
+
+void turn_normals(const MeshData& from, MeshData* mesh) {
+  if (mesh->normals.empty() || mesh->normal_domain == GRADUS_DOMAIN_FACE) return;
+  const std::vector<Vec3> rest = smooth_normals(from, from.frame_positions()), now = smooth_normals(*mesh, mesh->positions.data());
+  const bool by_vertex = mesh->normal_domain == GRADUS_DOMAIN_POINT;
+  std::vector<bool> done(mesh->normals.size());
+  for (size_t i = 0; i < mesh->triangle_vertices.size(); ++i) {
+    const uint32_t vertex = mesh->triangle_vertices[i];
+    const uint32_t element = by_vertex ? vertex : mesh->triangle_corners[i];
+    if (vertex == kDroppedVertex || done[element]) continue;
+    done[element] = true;
+    if (rest[vertex] != Vec3(0.0f) && now[vertex] != Vec3(0.0f))
+      mesh->normals[element] = turned(mesh->normals[element], rest[vertex], now[vertex]);
+  }
+}
+
+void find_bounds(MeshData* mesh) {
+  mesh->lower = Vec3(kInfinity);
+  mesh->upper = Vec3(-kInfinity);
+  for (const uint32_t v : mesh->triangle_vertices) {
+    if (v == kDroppedVertex) continue;
+    mesh->lower = glm::min(mesh->lower, mesh->positions[v]);
+    mesh->upper = glm::max(mesh->upper, mesh->positions[v]);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames) {
+  auto moved = std::make_shared<MeshData>(mesh);
+  moved->positions = positions_at(mesh, frames);
+  moved->key_times = {0.0f};
+  moved->frame_key = 0;
+  moved->shutter_keys = 0;
+  moved->shutter_positions.clear();
+  moved->shutter_normals.clear();
+  if (moved->generated_points.empty()) moved->generated_points.assign(mesh.frame_positions(), mesh.frame_positions() + mesh.vertex_count);
+  turn_normals(mesh, moved.get());
+  find_bounds(moved.get());
+  ContentHash hash;
+  hash.value(mesh.content_hash);
+  hash.value(frames);
+  moved->content_hash = hash.result();
+  return moved;
+}
+
+}  // namespace gradus

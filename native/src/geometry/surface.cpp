@@ -1,0 +1,176 @@
+#include "geometry/surface.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "geometry/flat_triangle.h"
+#include "geometry/mesh.h"
+#include "geometry/geometry.h"
+
+namespace gradus {
+
+namespace {
+
+// |m|·v + |t|, the size of the terms that an affine transformation adds up.
+Vec3 magnitudes(const Mat4& m, const Vec3& v) {
+  return glm::abs(Vec3(m[0])) * v.x + glm::abs(Vec3(m[1])) * v.y + glm::abs(Vec3(m[2])) * v.z + glm::abs(Vec3(m[3]));
+}
+
+// Linear in the barycentrics; where the mesh is flat or its normals are broken, the geometric normal.
+void set_shading_normal(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
+  std::array<Vec3, 3> n;
+  const bool smooth = triangle_normals_in_shutter(*instance.mesh, hit.triangle, hit.time, &n);
+  const Vec3& geometric = point->geometric_normal;
+  point->shading_normal =
+      smooth ? keep_above(safe_unit(placement.normal_to_world * interpolate(n, hit.barycentric), geometric), geometric) : geometric;
+  point->shadow_terminator_offset = smooth ? instance.shadow_terminator_offset : 0.0f;
+}
+
+// Blender shows the last slot where a face names one that does not exist.
+uint32_t material_of_slot(const InstanceData& instance, uint32_t slot) {
+  return instance.materials.empty() ? 0 : instance.materials[std::min<size_t>(slot, instance.materials.size() - 1)];
+}
+
+void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
+  const FlatTriangle& triangle = instance.flat_triangles[hit.triangle];
+  const std::array<Vec3, 3>& p = triangle.corners;
+  const std::array<Vec3, 3> sizes = {glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])};
+  point->position = interpolate(p, hit.barycentric);
+  point->geometric_normal = instance.mirrored ? -triangle.plane.normal : triangle.plane.normal;
+  const Vec3 error = gamma_bound(7) * interpolate(sizes, hit.barycentric);
+  point->error = glm::dot(glm::abs(point->geometric_normal), error) + triangle.plane.error;
+  point->material = material_of_slot(instance, triangle.slot);
+}
+
+void place_instanced(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
+  const std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, hit.triangle, hit.time);
+  const Plane plane = plane_of(p);
+  const Vec3 local = interpolate(p, hit.barycentric);
+  const Vec3 local_size = interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
+  point->position = Vec3(placement.to_world * Vec4(local, 1.0f));
+  point->geometric_normal = safe_unit(placement.normal_to_world * plane.normal, Vec3(0, 0, 1));
+  // There: corners, sum, matrix. And back: Embree takes the next ray into the mesh's space, with rounding of its own there. What moves is
+  // interpolated between its keys, here and there.
+  const int roundings = instance.moves() ? 16 : 8;
+  const Mat4 linear(placement.to_world[0], placement.to_world[1], placement.to_world[2], Vec4(0.0f));
+  const Vec3 back = magnitudes(placement.to_local, glm::abs(point->position));
+  const Vec3 error = magnitudes(placement.to_world, local_size) * gamma_bound(roundings) +
+                     magnitudes(linear, back) * gamma_bound(roundings) + magnitudes(linear, Vec3(plane.error));
+  point->error = glm::dot(glm::abs(point->geometric_normal), error);
+  point->material = material_of_slot(instance, instance.mesh->material_slot(hit.triangle));
+}
+
+void place_at(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
+  if (instance.flat_triangles)
+    place_flat(instance, hit, point);
+  else
+    place_instanced(instance, placement, hit, point);
+  set_shading_normal(instance, placement, hit, point);
+}
+
+// The float next to v in the direction of `up`: std::nextafter for finite v. By bits: signs cannot be foretold.
+float step_away(float v, float up) {
+  const auto bits = std::bit_cast<int32_t>(v), up_bits = std::bit_cast<int32_t>(up);
+  const int32_t away = bits + (((bits ^ up_bits) >> 31) | 1);
+  const float from_zero = std::copysign(std::numeric_limits<float>::denorm_min(), up);
+  const float next = v == 0.0f ? from_zero : std::bit_cast<float>(away);
+  return up == 0.0f ? v : next;
+}
+
+}  // namespace
+
+const Placement& InstanceData::placement(float time, Placement* room) const {
+  if (!keys) return *this;
+  *room = make_placement(glm::dmat4(keys->at(time)));
+  return *room;
+}
+
+uint32_t Geometry::material_of(uint32_t index, uint32_t triangle) const {
+  const InstanceData& instance = instances[index];
+  const bool flat = instance.flat_triangles != nullptr;
+  return material_of_slot(instance, flat ? instance.flat_triangles[triangle].slot : instance.mesh->material_slot(triangle));
+}
+
+void Geometry::place(const Hit& hit, SurfacePoint* point) const {
+  const InstanceData& instance = instances[hit.instance];
+  point->hit = hit;
+  if (!instance.keys) return place_at(instance, instance, hit, point);
+  Placement room;
+  place_at(instance, instance.placement(hit.time, &room), hit, point);
+}
+
+void Geometry::prefetch(const Hit& hit) const {
+  if (hit.valid() && instances[hit.instance].flat_triangles) __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.triangle]);
+}
+
+SurfacePoint Geometry::surface_point(const Hit& hit) const {
+  SurfacePoint point;
+  place(hit, &point);
+  return point;
+}
+
+std::array<Vec3, 3> Geometry::corners(uint32_t index, uint32_t triangle, float time) const {
+  const InstanceData& instance = instances[index];
+  if (instance.flat_triangles) return instance.flat_triangles[triangle].corners;
+  std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, triangle, time);
+  const Mat4 to_world = instance.keys ? instance.keys->at(time) : instance.to_world;
+  for (Vec3& v : p) v = Vec3(to_world * Vec4(v, 1.0f));
+  return p;
+}
+
+float Geometry::curvature(const Hit& hit) const {
+  const InstanceData& instance = instances[hit.instance];
+  std::array<Vec3, 3> n;
+  if (!triangle_normals_in_shutter(*instance.mesh, hit.triangle, hit.time, &n)) return 0.0f;
+  const std::array<Vec3, 3> p = corners(hit.instance, hit.triangle, hit.time);
+  Placement room;
+  const Placement& placement = instance.placement(hit.time, &room);
+  for (Vec3& v : n) v = glm::normalize(placement.normal_to_world * v);
+  float largest = 0.0f;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t next = (i + 1) % 3;
+    const float length = glm::length(p[next] - p[i]);
+    if (length > 0.0f) largest = std::max(largest, glm::length(n[next] - n[i]) / length);
+  }
+  return largest;
+}
+
+Vec3 Geometry::position_at(const Hit& hit, Moment when) const {
+  const InstanceData& instance = instances[hit.instance];
+  const Mat4& to_world = when == Moment::Now    ? instance.to_world
+                         : when == Moment::Next ? instance.to_world_next
+                                                : instance.to_world_previous;
+  // At rest the very same position, so that its motion is exactly zero.
+  if (instance.mesh->key_times.size() == 1 && to_world == instance.to_world && !instance.moves()) return surface_point(hit).position;
+  const float frames = when == Moment::Now ? 0.0f : when == Moment::Next ? 1.0f : -1.0f;
+  const Vec3 local = interpolate(triangle_positions_at(*instance.mesh, hit.triangle, frames), hit.barycentric);
+  return Vec3(to_world * Vec4(local, 1.0f));
+}
+
+// pbrt-v4 section 6.8.6: along the geometric normal by the bound, then one float further so that rounding the sum cannot undo it.
+Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction) {
+  const Vec3 n = point.geometric_normal;
+  const Vec3 offset = n * std::copysign(point.error, glm::dot(n, direction));
+  const Vec3 p = point.position + offset;
+  return Vec3(step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z));
+}
+
+float pass_surface(const SurfacePoint& point, Ray* ray) {
+  const Vec3 next = offset_origin(point, ray->direction);
+  const float step = glm::dot(next - ray->origin, ray->direction);
+  ray->origin = next;
+  ray->t_min = 0.0f;
+  ray->t_max -= step;
+  return step;
+}
+
+Ray ray_between(const Vec3& start, const Vec3& end, const Vec3& direction, float time) {
+  const Vec3 line = end - start;
+  const float length = glm::length(line);
+  if (!(length > 0.0f) || glm::dot(line, direction) <= 0.0f) return Ray{start, 0.0f, direction, -1.0f, time};
+  return Ray{start, 0.0f, line / length, length * (1.0f - 1e-6f), time};
+}
+
+}  // namespace gradus

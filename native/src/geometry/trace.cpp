@@ -1,0 +1,192 @@
+// Ray queries of a snapshot. Embree's internal assertions abort on rays that are not finite, and NaN makes traversal slow: such rays
+// are misses and never reach it.
+#include <algorithm>
+#include <cstring>
+
+#include <embree3/rtcore.h>
+
+#include "geometry/accelerator.h"
+#include "geometry/rays4.h"
+#include "geometry/geometry.h"
+
+namespace gradus {
+
+namespace {
+
+// A segment that can meet anything: comparisons are false for NaN.
+bool traceable(const Ray& ray) {
+  const float sum = ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
+  return is_finite(ray.origin) && sum > 0.0f && is_finite(sum) && ray.t_min < kInfinity && ray.t_min <= ray.t_max;
+}
+
+void set_ray(const Ray& ray, uint32_t mask, RTCRay* r) {
+  r->org_x = ray.origin.x;
+  r->org_y = ray.origin.y;
+  r->org_z = ray.origin.z;
+  r->tnear = ray.t_min < 0.0f ? 0.0f : ray.t_min;
+  r->dir_x = ray.direction.x;
+  r->dir_y = ray.direction.y;
+  r->dir_z = ray.direction.z;
+  r->time = ray.time;
+  r->tfar = ray.t_max;
+  r->mask = mask;
+  r->id = 0;
+  r->flags = 0;
+}
+
+using LaneBits = int32_t __attribute__((vector_size(16)));
+
+template <class Field, class Values>
+void set(Field* lanes, const Values& values) {
+  std::memcpy(lanes, &values, sizeof(values));
+}
+
+template <class Packet>
+void set_lane(const Ray& ray, uint32_t mask, int i, Packet* r) {
+  r->org_x[i] = ray.origin.x;
+  r->org_y[i] = ray.origin.y;
+  r->org_z[i] = ray.origin.z;
+  r->tnear[i] = ray.t_min < 0.0f ? 0.0f : ray.t_min;
+  r->dir_x[i] = ray.direction.x;
+  r->dir_y[i] = ray.direction.y;
+  r->dir_z[i] = ray.direction.z;
+  r->time[i] = ray.time;
+  r->tfar[i] = ray.t_max;
+  r->mask[i] = mask;
+  r->id[i] = 0;
+  r->flags[i] = 0;
+}
+
+// A triangle in the top level carries the member's place as its geometry id; within an instanced mesh scene that id is 0.
+uint32_t instance_of(const Accelerator::Part& part, unsigned instance_id, unsigned geometry_id) {
+  return part.instances[instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id];
+}
+
+bool may_meet_moving(const Accelerator& accelerator, const RTCRay& r) {
+  return accelerator.moving.group &&
+         accelerator.moving.group->box.may_meet({r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tnear, r.tfar);
+}
+
+bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
+  if (!traceable(ray)) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay r;
+  set_ray(ray, mask, &r);
+  rtcOccluded1(accelerator.static_part.group->scene, &context, &r);
+  if (r.tfar >= 0.0f && may_meet_moving(accelerator, r)) rtcOccluded1(accelerator.moving.group->scene, &context, &r);
+  return r.tfar < 0.0f;
+}
+
+// Of the valid lanes; false: there are none. Occluded rays end before they start.
+bool mask_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& r, int valid[4]) {
+  if (!accelerator.moving.group) return false;
+  const RayBox& box = accelerator.moving.group->box;
+  bool any = false;
+  for (int i = 0; i < 4; ++i) {
+    if (valid[i] && !box.may_meet({r.org_x[i], r.org_y[i], r.org_z[i]}, {r.dir_x[i], r.dir_y[i], r.dir_z[i]}, r.tnear[i], r.tfar[i]))
+      valid[i] = 0;
+    any |= valid[i] != 0;
+  }
+  return any;
+}
+
+// In the part: nearer than what the query has. The query keeps that if there is nothing.
+bool intersect(const Accelerator::Part& part, RTCRayHit* query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(part.group->scene, &context, query);
+  return query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+}  // namespace
+
+bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit) {
+  *hit = Hit();
+  if (!traceable(ray)) return false;
+  RTCRayHit query;
+  set_ray(ray, mask, &query.ray);
+  const auto take = [&](const Accelerator::Part& part) {
+    if (!intersect(part, &query)) return;
+    hit->t = query.ray.tfar;
+    hit->instance = instance_of(part, query.hit.instID[0], query.hit.geomID);
+    hit->triangle = query.hit.primID;
+    hit->barycentric = Vec2(query.hit.u, query.hit.v);
+    hit->time = ray.time;
+  };
+  take(accelerator.static_part);
+  if (may_meet_moving(accelerator, query.ray)) take(accelerator.moving);
+  return hit->valid();
+}
+
+bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask) { return blocked_by(accelerator, ray, mask); }
+
+bool Geometry::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
+  return trace_nearest(*accelerator, ray, visibility & kMaskVisibility, hit);
+}
+
+bool Geometry::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }
+
+bool Geometry::meets(const Ray& ray, uint32_t visibility) const { return blocked_by(*accelerator, ray, visibility & kMaskVisibility); }
+
+void Geometry::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const {
+  alignas(16) int valid[4];
+  RTCRayHit4 query;
+  for (int i = 0; i < 4; ++i) {
+    hits[i] = Hit();
+    const bool trace = traceable(rays[i]);
+    valid[i] = trace ? -1 : 0;
+    set_lane(trace ? rays[i] : Ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), -1.0f}, visibility & kMaskVisibility, i, &query.ray);
+  }
+  const auto take = [&](const Accelerator::Part& part) {
+    std::fill_n(query.hit.geomID, 4, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(query.hit.instID[0], 4, RTC_INVALID_GEOMETRY_ID);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect4(valid, part.group->scene, &context, &query);
+    for (int i = 0; i < 4; ++i) {
+      if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      hits[i].t = query.ray.tfar[i];
+      hits[i].instance = instance_of(part, query.hit.instID[0][i], query.hit.geomID[i]);
+      hits[i].triangle = query.hit.primID[i];
+      hits[i].barycentric = Vec2(query.hit.u[i], query.hit.v[i]);
+      hits[i].time = rays[i].time;
+    }
+  };
+  take(accelerator->static_part);
+  if (mask_lanes_that_meet_moving(*accelerator, query.ray, valid)) take(accelerator->moving);
+}
+
+void Geometry::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const {
+  const Lanes3 &o = rays.origin, &d = rays.direction;
+  const Lanes length2 = d.x * d.x + d.y * d.y + d.z * d.z;
+  const Lanes sum = o.x + o.y + o.z + length2;
+  const LaneBits want{-int(wanted[0]), -int(wanted[1]), -int(wanted[2]), -int(wanted[3])};
+  const LaneBits valid = want & (sum - sum == 0.0f) & (length2 > 0.0f) & (rays.t_max >= 0.0f);
+  const Lanes zero{};
+  RTCRay4 query;
+  set(query.org_x, o.x);
+  set(query.org_y, o.y);
+  set(query.org_z, o.z);
+  set(query.tnear, zero);
+  set(query.dir_x, d.x);
+  set(query.dir_y, d.y);
+  set(query.dir_z, d.z);
+  set(query.time, same(rays.time));
+  set(query.tfar, rays.t_max);
+  set(query.mask, LaneBits{} + int32_t(GRADUS_VISIBLE_SHADOW));
+  set(query.id, zero);
+  set(query.flags, zero);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  alignas(16) int lanes[4];
+  std::memcpy(lanes, &valid, sizeof(lanes));
+  rtcOccluded4(lanes, accelerator->static_part.group->scene, &context, &query);
+  if (mask_lanes_that_meet_moving(*accelerator, query, lanes)) rtcOccluded4(lanes, accelerator->moving.group->scene, &context, &query);
+  for (int i = 0; i < 4; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0.0f;
+}
+
+}  // namespace gradus

@@ -1,0 +1,124 @@
+#include "gradient/half_vector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+namespace {
+
+// Below this difference of indices a refraction hardly bends and its half-vector has no direction.
+constexpr float kMinBend = 1e-3f;
+// Shortest |wo + η wi|, |wo + wi| that still has a direction in float.
+constexpr float kMinLength = 1e-4f;
+
+ShiftedDirection failed(ShiftFailure failure) { return {Vec3(0.0f), 0.0f, failure}; }
+
+ShiftedDirection copy_reflection(const HalfVectorFrame& base, const Vec3& wi, const HalfVectorFrame& offset) {
+  const Vec3 sum = base.wo + wi;
+  const float length = glm::length(sum);
+  if (!(length > kMinLength)) {
+    return failed(ShiftFailure::Jacobian);
+  }
+  const Vec3 h = sum / length;
+  const Vec3 shifted = rotate_between(base.normal, offset.normal, h);
+  // h halves the angle between unit vectors. Its dot product with wi has the error of h, which at grazing angles is large.
+  const float cos_base = 0.5f * length;
+  const float cos_shifted = glm::dot(shifted, offset.wo);
+  if (!(cos_shifted > 0.0f)) {
+    return failed(ShiftFailure::Side);  // the way back would give -h
+  }
+  return {glm::normalize(2.0f * cos_shifted * shifted - offset.wo), cos_shifted / cos_base, ShiftFailure::None};
+}
+
+// wi beyond the microfacet h, which lies on the side where wo + eta·wi points; false: total reflection.
+bool refract_through(const Vec3& wo, const Vec3& h, float eta, Vec3* wi) {
+  const float cos_o = glm::dot(wo, h);
+  const float under_root = 1.0f - (1.0f - cos_o * cos_o) / (eta * eta);
+  if (!(under_root > 0.0f)) {
+    return false;
+  }
+  // Component of wi along h: opposite to wo's.
+  const float cos_i = cos_o > 0.0f ? -std::sqrt(under_root) : std::sqrt(under_root);
+  *wi = glm::normalize(h * cos_i - (wo - h * cos_o) / eta);
+  return true;
+}
+
+ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, const HalfVectorFrame& offset) {
+  if (std::fabs(base.eta - 1.0f) < kMinBend || std::fabs(offset.eta - 1.0f) < kMinBend) {
+    return failed(ShiftFailure::Jacobian);
+  }
+  // H points to the side of the denser medium, while the frames' normals lie on the side of wo on both vertices: a pair that passes from
+  // thin to dense on one path and from dense to thin on the other cannot share a half-vector.
+  if ((base.eta > 1.0f) != (offset.eta > 1.0f)) {
+    return failed(ShiftFailure::Side);
+  }
+  const Vec3 sum = base.wo + base.eta * wi;
+  const float length = glm::length(sum);
+  if (!(length > kMinLength)) {
+    return failed(ShiftFailure::Jacobian);
+  }
+  const Vec3 h = sum / length;
+  const Vec3 shifted = rotate_between(base.normal, offset.normal, h);
+  // wo and wi lie on different sides of h, and wo on the same side on both paths.
+  const float cos_o = glm::dot(base.wo, h);
+  const float cos_o_shifted = glm::dot(offset.wo, shifted);
+  if (!(cos_o * cos_o_shifted > 0.0f)) {
+    return failed(ShiftFailure::Side);
+  }
+  ShiftedDirection result;
+  if (!refract_through(offset.wo, shifted, offset.eta, &result.wi)) {
+    return failed(ShiftFailure::TotalReflection);
+  }
+  const float length_shifted = glm::length(offset.wo + offset.eta * result.wi);
+  const float inverse_base = base.eta * base.eta * std::fabs(glm::dot(wi, h)) / (length * length);
+  const float inverse_shifted = offset.eta * offset.eta * std::fabs(glm::dot(result.wi, shifted)) / (length_shifted * length_shifted);
+  result.jacobian = inverse_base / inverse_shifted;
+  return result;
+}
+
+}  // namespace
+
+Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& v) {
+  // Rodrigues' formula with axis from × to (Möller and Hughes 1999).
+  const float c = glm::dot(from, to);
+  const Vec3 axis = glm::cross(from, to);
+  if (c < -0.99999f) {
+    // Opposite normals: the half turn about an axis that both directions choose alike.
+    const Vec3 a = std::fabs(from.x) > 0.5f ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
+    const Vec3 u = glm::normalize(a - from * glm::dot(a, from));
+    return 2.0f * glm::dot(u, v) * u - v;
+  }
+  return c * v + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1.0f + c));
+}
+
+ShiftedDirection copy_half_vector(const HalfVectorFrame& base, const Vec3& wi, const HalfVectorFrame& offset, bool transmitted) {
+  ShiftedDirection result = transmitted ? copy_refraction(base, wi, offset) : copy_reflection(base, wi, offset);
+  if (result.failure == ShiftFailure::None && !(result.jacobian > 0.0f && is_finite(result.jacobian))) {
+    return failed(ShiftFailure::Jacobian);
+  }
+  return result;
+}
+
+float class_width(const Closures& closures, ScatterClass c) {
+  float width = kInfinity;
+  for (int i = 0; i < closures.count(); ++i) {
+    const Lobe& lobe = closures.lobe(i);
+    if (!is_dirac(lobe.type) && scatters_within(lobe, c)) {
+      width = std::min({width, lobe.alpha_x, lobe.alpha_y});
+    }
+  }
+  return width;
+}
+
+HalfVectorFrame class_frame(const Closures& closures, ScatterClass c, const Vec3& wo) {
+  for (int i = 0; i < closures.count(); ++i) {
+    const Lobe& lobe = closures.lobe(i);
+    if (!is_dirac(lobe.type) && scatters_within(lobe, c)) {
+      return {wo, lobe.normal, lobe.ior};
+    }
+  }
+  return {wo, Vec3(0, 0, 1), 1.0f};
+}
+
+}  // namespace gradus

@@ -1,0 +1,180 @@
+// Segments that offsets trace themselves, before they share the base's.
+#include <utility>
+
+#include "gradient/offset_paths.h"
+#include "gradient/class_match.h"
+
+namespace gradus {
+
+// Traces an offset's ray. first: its nearest hit if it is known. What the two segments show is compared in any case, see seen().
+void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
+  o->advance();
+  o->fresh = true;
+  if (shows_only_lights(context_, base_state_)) {
+    counters_.rays_shift += trace_to_lights(context_, o->state.ray, &o->traced_segment) ? 1 : 0;
+    return;
+  }
+  ++counters_.rays_shift;
+  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->traced_segment, Shading::Later);
+}
+
+// In the base's cell of the lattice an offset's camera ray is that of its pixel's base path.
+CameraVertex* OffsetPaths::known_vertex(int k) const {
+  const int32_t x = sample_->x + kOffsetX[k], y = sample_->y + kOffsetY[k];
+  const bool same_block = pixel_block_of(x) == pixel_block_of(sample_->x) && pixel_block_of(y) == pixel_block_of(sample_->y);
+  return sample_->first != nullptr && same_block ? vertices_.at(x, y) : nullptr;
+}
+
+void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
+  o->here = &v->vertex;
+  o->segment = &v->segment;
+  o->camera = v;
+  o->state.ray = v->ray;
+  o->fresh = true;
+}
+
+// Same position in the pixel, same point of the lens, same moment: the camera's part of r is 1. With a lens the four rays are traced
+// together; without one most are known, and a packet of the one that leaves the cell would take as long as three rays.
+void OffsetPaths::trace_camera(const PathState& state) {
+  Ray rays[kOffsets];
+  Hit hits[kOffsets];
+  bool unknown[kOffsets];
+  bool any = false;
+  for (int k = 0; k < kOffsets; ++k) {
+    OffsetPath& o = offsets_[k];
+    rays[k] = kNoRay;
+    unknown[k] = false;
+    if (o.stage != OffsetStage::Traced) {
+      continue;
+    }
+    CameraVertex* known = known_vertex(k);
+    if (known != nullptr && known->shared) {
+      share(&o, known);
+      continue;
+    }
+    o.state.ray = PathRay{};
+    o.state.ray.visibility = state.ray.visibility;
+    o.state.ray.ray = context_.camera.ray(camera_sample_.moved(Vec2(kOffsetX[k], kOffsetY[k])));
+    if (sample_->first != nullptr) {
+      trace(&o, known != nullptr ? &known->hit : nullptr);
+    } else {
+      rays[k] = o.state.ray.ray;
+      any = unknown[k] = true;
+    }
+  }
+  if (any) {
+    context_.scene.intersect4(rays, state.ray.visibility, hits);
+  }
+  for (int k = 0; k < kOffsets; ++k) {
+    if (unknown[k]) {
+      trace(&offsets_[k], &hits[k]);
+    }
+  }
+}
+
+void OffsetPaths::include_kind(OffsetPath* o) {
+  o->ratio *= std::exchange(o->kind_ratio, 1.0f);
+  if (!(o->ratio > 0.0f)) {
+    fail(o, ShiftFailure::Class);
+  }
+}
+
+// The offset scatters; its ray looks like the base's to the scene.
+void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathState& state) {
+  const uint16_t transparent_depth = o->state.ray.state.transparent_depth;
+  o->state.ray = state.ray;
+  o->state.ray.state.transparent_depth = transparent_depth;
+  o->state.ray.ray = spawn_ray(o->here->point, event.wi);
+  o->state.depth = state.depth;
+  o->state.lpe_state = state.lpe_state;
+  o->state.throughput *= event.factor;
+  o->ratio *= event.ratio;
+  o->kind_ratio = event.kind_ratio;
+  o->event.pdf = event.pdf;
+  o->from_camera = false;
+}
+
+// A class R or T event of the base at its last vertex, replayed at the offsets' last vertices. Behind glass the rays go apart: one by one
+// they are faster than together.
+void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
+  for (OffsetPath& o : offsets_) {
+    if (o.stage != OffsetStage::Traced) {
+      continue;
+    }
+    ++counters_.shifts_half_vector;  // tried: none in a scene for which the planner skips them
+    const ShiftedEvent event = copy_event(*source.vertex, *source.event, *o.here);
+    if (event.failure != ShiftFailure::None) {
+      fail(&o, event.failure);
+      continue;
+    }
+    leave(&o, event, state);
+    o.event.sample.dirac = source.event->sample.dirac;
+    trace(&o, nullptr);
+  }
+}
+
+// A ray of the offset's own after class D. False: it met no surface, and the shift has failed.
+bool OffsetPaths::trace_surface(OffsetPath* o, const ShiftedEvent& event) {
+  ++counters_.shifts_replayed;  // tried, too
+  if (event.failure != ShiftFailure::None) {
+    fail(o, event.failure);
+    return false;
+  }
+  ++counters_.rays_shift;
+  leave(o, event, base_state_);
+  o->event.sample.dirac = false;
+  o->advance();
+  trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->traced_segment);
+  if (o->segment->end != SegmentEnd::Surface) {
+    fail(o, ShiftFailure::Missed);
+    return false;
+  }
+  o->state.throughput *= o->segment->weight;
+  return true;
+}
+
+// Class D before class R or T, away from the base's vertex: in the base's direction. The way back must not share this vertex.
+void OffsetPaths::copy_direction(OffsetPath* o, const ScatterEvent& next) {
+  if (!trace_surface(o, event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f))) {
+    return;
+  }
+  const Vec3& y = o->previous->point.position;
+  if (replays(y, *o->here) || shares(y, *o->here, next.scatter_class) || shares_direction(y, *o->here, next)) {
+    fail(o, ShiftFailure::Class);
+    return;
+  }
+  o->stage = OffsetStage::Traced;
+  o->mixed = false;
+  include_kind(o);
+}
+
+// Class D before z over a short edge. Not at a surface that is sharp alone: there the direction is copied, which nothing forbids at the
+// other end.
+bool OffsetPaths::replays(const Vec3& y, const Vertex& z) const {
+  const bool non_specular = z.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
+  return non_specular && is_short_edge(base_position_, y, z.point.position);
+}
+
+void OffsetPaths::replay_short_edges(const Vertex& vertex) {
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Pending && replays(o.here->point.position, vertex)) {
+      replay(&o, vertex);
+    }
+  }
+}
+
+// By the base's random numbers. The way back must be a replay, too.
+void OffsetPaths::replay(OffsetPath* o, const Vertex& vertex) {
+  if (!trace_surface(o, replay_event(*base_from_, base_event_, sampler_->vertex(base_state_.depth - 1), *o->here))) {
+    return;
+  }
+  if (!replays(o->previous->point.position, *o->here)) {
+    fail(o, ShiftFailure::Class);
+    return;
+  }
+  o->stage = OffsetStage::Traced;
+  o->mixed = !same_classes(vertex.shade.closures, o->here->shade.closures);
+  include_kind(o);
+}
+
+}  // namespace gradus

@@ -1,0 +1,168 @@
+#include "image/color.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include "base/error.h"
+#include "base/types.h"
+#include "image/baked_space.h"
+#include "image/builtin_spaces.h"
+
+namespace OCIO = OCIO_NAMESPACE;
+
+namespace gradus {
+namespace {
+
+// A resolved space: what kind it is, and how to apply it if it is neither data nor sRGB.
+struct Space {
+  ColorTransform kind = ColorTransform::Data;
+  OCIO::ConstCPUProcessorRcPtr processor;
+  std::shared_ptr<const BakedSpace> baked;
+
+  void apply(float* pixels, size_t count, int channels) const {
+    if (kind == ColorTransform::Srgb) {
+      for (size_t i = 0; i < count; i++, pixels += channels) {
+        std::transform(pixels, pixels + 3, pixels, srgb_to_linear);
+      }
+    } else if (kind == ColorTransform::Other) {
+      apply_other(pixels, count, channels);
+    }
+  }
+  void apply_other(float* pixels, size_t count, int channels) const {
+    if (baked) {
+      for (size_t i = 0; i < count; i++, pixels += channels) {
+        const Rgb c = baked->apply(Rgb(pixels[0], pixels[1], pixels[2]));
+        pixels[0] = c.x, pixels[1] = c.y, pixels[2] = c.z;
+      }
+      return;
+    }
+    // In rows, as OpenColorIO counts pixels by long but indexes lines by int.
+    constexpr size_t kRow = 1 << 16;
+    for (size_t first = 0; first < count; first += kRow) {
+      const size_t n = std::min(kRow, count - first);
+      OCIO::PackedImageDesc desc(pixels + first * static_cast<size_t>(channels), static_cast<long>(n), 1, channels);
+      processor->apply(desc);
+    }
+  }
+};
+
+// Values that tell whether a transform is one of the exact ones; some beyond 1, as images may be.
+constexpr std::array<float, 12> kProbe = {0.0f, 0.02f, 0.03f, 0.04f, 0.05f, 0.18f, 0.3f, 0.5f, 0.75f, 0.9f, 1.0f, 0.6f};
+
+// Tables of sRGB in configurations differ from the formula by a few 1e-5.
+ColorTransform recognise(const Space& space) {
+  std::array<float, kProbe.size()> mapped = kProbe;
+  space.apply_other(mapped.data(), mapped.size() / 3, 3);
+  bool same = true;
+  bool srgb = true;
+  for (size_t i = 0; i < kProbe.size(); i++) {
+    same = same && std::abs(mapped[i] - kProbe[i]) < 1e-5f;
+    srgb = srgb && std::abs(mapped[i] - srgb_to_linear(kProbe[i])) < 1e-4f;
+  }
+  return same ? ColorTransform::Data : srgb ? ColorTransform::Srgb : ColorTransform::Other;
+}
+
+}  // namespace
+
+struct ColorManager::State {
+  Warn warn;
+  OCIO::ConstConfigRcPtr config;
+  mutable std::mutex mutex;
+  mutable std::map<std::string, Space> spaces;
+  mutable std::set<std::string> unknown;
+
+  void load(const std::string& path) {
+    if (path.empty()) {
+      return;
+    }
+    try {
+      // The library's parser leaks memory on a stream that cannot be read, as that of a folder.
+      if (std::filesystem::is_directory(path)) throw invalid_argument("it is a folder");
+      OCIO::ConstConfigRcPtr loaded = OCIO::Config::CreateFromFile(path.c_str());
+      if (!loaded->hasRole(OCIO::ROLE_SCENE_LINEAR) || !loaded->getColorSpace(OCIO::ROLE_SCENE_LINEAR)) {
+        warn("colour: the configuration " + path + " has no scene-linear role; sRGB and linear are used");
+        return;
+      }
+      config = loaded;
+    } catch (const std::exception& e) {
+      warn("colour: cannot read the configuration " + path + ", sRGB and linear are used: " + first_line(e.what()));
+    }
+  }
+  static std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+  std::optional<Space> from_config(const std::string& name) const {
+    if (!config || name.empty()) {
+      return std::nullopt;
+    }
+    try {
+      const OCIO::ConstColorSpaceRcPtr source = config->getColorSpace(name.c_str());
+      if (!source) {
+        return std::nullopt;
+      }
+      Space space;
+      if (!source->isData()) {
+        space.processor = config->getProcessor(name.c_str(), OCIO::ROLE_SCENE_LINEAR)->getDefaultCPUProcessor();
+        space.kind = recognise(space);
+      }
+      return space;
+    } catch (const std::exception& e) {
+      warn("colour: the configuration cannot convert " + name + ": " + first_line(e.what()));
+      return std::nullopt;
+    }
+  }
+
+  // The lock is held while a space is made, so that its warning comes once.
+  Space find(const std::string& name, bool is_byte) const {
+    const std::lock_guard lock(mutex);
+    if (const auto found = spaces.find(name); found != spaces.end()) {
+      return found->second;
+    }
+    std::optional<Space> space = from_config(name);
+    if (!space) {
+      if (const auto kind = builtin_transform(name)) {
+        space = Space{*kind, nullptr, nullptr};
+      }
+    }
+    if (space) {
+      return spaces[name] = *space;
+    }
+    if (unknown.insert(name).second) {
+      warn("colour: the space " + name + " is not known; byte images are taken as sRGB, float images as linear");
+    }
+    return Space{is_byte ? ColorTransform::Srgb : ColorTransform::Data, nullptr, nullptr};
+  }
+};
+
+ColorManager::ColorManager(const std::string& config_path, Warn warn) : state_(std::make_unique<State>()) {
+  state_->warn = warn ? std::move(warn) : [](const std::string&) {};
+  state_->load(config_path);
+}
+
+ColorManager::~ColorManager() = default;
+
+void ColorManager::set_override(const GradusColorSpace& space) {
+  if (space.name == nullptr || *space.name == '\0') {
+    throw invalid_argument("colour space: no name");
+  }
+  Space baked;
+  baked.baked = std::make_shared<const BakedSpace>(space);
+  baked.kind = recognise(baked);
+  const std::lock_guard lock(state_->mutex);
+  state_->spaces[space.name] = baked;
+}
+
+ColorTransform ColorManager::transform(const std::string& space, bool is_byte) const { return state_->find(space, is_byte).kind; }
+
+void ColorManager::to_scene_linear(const std::string& space, bool is_byte, float* pixels, size_t pixel_count, int channels) const {
+  state_->find(space, is_byte).apply(pixels, pixel_count, channels);
+}
+
+}  // namespace gradus

@@ -1,0 +1,218 @@
+#include "image/image_convert.h"
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include <half.h>
+
+#include "image/color.h"
+
+namespace gradus {
+namespace {
+
+float half_to_float(uint16_t bits) {
+  Imath::half h;
+  h.setBits(bits);
+  return h;
+}
+// Beyond the range of half: its largest number, not infinity.
+uint16_t float_to_half(float x) { return Imath::half(std::clamp(x, -65504.0f, 65504.0f)).bits(); }
+
+bool has_alpha_channel(uint32_t channels) { return channels == 2 || channels == 4; }
+
+// Row of any format to floats of 3 or 4 channels.
+void unpack_row(const ImageTile& tile, uint32_t y, float* out, uint32_t out_channels) {
+  for (uint32_t x = 0; x < tile.width; x++, out += out_channels) {
+    const Vec4 v = tile.texel(x, y);
+    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+    if (out_channels == 4) {
+      out[3] = v.w;
+    }
+  }
+}
+
+void store_value(uint8_t* pixels, PixelFormat format, size_t index, float value) {
+  if (format == PixelFormat::Half) {
+    const uint16_t bits = float_to_half(value);
+    std::memcpy(pixels + index * 2, &bits, 2);
+  } else {
+    std::memcpy(pixels + index * 4, &value, 4);
+  }
+}
+
+// Every row through the colour transform, to half, or float where the file has floats.
+ImageTile transform_tile(const ImageTile& source, const ColorManager& color, const std::string& space, bool is_byte) {
+  ImageTile tile;
+  tile.number = source.number;
+  tile.width = source.width;
+  tile.height = source.height;
+  tile.channels = has_alpha_channel(source.channels) ? 4 : 3;
+  tile.format = source.format == PixelFormat::Float ? PixelFormat::Float : PixelFormat::Half;
+  tile.pixels = std::make_unique_for_overwrite<uint8_t[]>(tile.size_bytes());
+  std::vector<float> row(static_cast<size_t>(tile.width) * tile.channels);
+  for (uint32_t y = 0; y < tile.height; y++) {
+    unpack_row(source, y, row.data(), tile.channels);
+    color.to_scene_linear(space, is_byte, row.data(), tile.width, static_cast<int>(tile.channels));
+    const size_t first = row.size() * y;
+    for (size_t i = 0; i < row.size(); i++) {
+      store_value(tile.pixels.get(), tile.format, first + i, row[i]);
+    }
+  }
+  return tile;
+}
+
+// 16 bit sRGB in place, by a table of all values; to half.
+void linearise_shorts(ImageTile* tile) {
+  const bool half = tile->format == PixelFormat::Half;
+  std::vector<uint16_t> table(65536);
+  std::vector<uint16_t> alpha_table(65536);
+  for (uint32_t i = 0; i < 65536; i++) {
+    const float value = half ? half_to_float(static_cast<uint16_t>(i)) : static_cast<float>(i) * (1.0f / 65535.0f);
+    table[i] = float_to_half(is_finite(value) ? srgb_to_linear(value) : 0.0f);
+    alpha_table[i] = float_to_half(is_finite(value) ? value : 0.0f);
+  }
+  const uint32_t alpha = has_alpha_channel(tile->channels) ? tile->channels - 1 : UINT32_MAX;
+  uint16_t* values = reinterpret_cast<uint16_t*>(tile->pixels.get());
+  const size_t count = static_cast<size_t>(tile->width) * tile->height;
+  for (size_t i = 0; i < count; i++, values += tile->channels) {
+    for (uint32_t c = 0; c < tile->channels; c++) {
+      values[c] = c == alpha ? alpha_table[values[c]] : table[values[c]];
+    }
+  }
+  tile->format = PixelFormat::Half;
+}
+
+template <typename T, typename Multiply>
+void associate(T* values, size_t count, uint32_t channels, Multiply multiply) {
+  for (size_t i = 0; i < count; i++, values += channels) {
+    for (uint32_t c = 0; c + 1 < channels; c++) {
+      values[c] = multiply(values[c], values[channels - 1]);
+    }
+  }
+}
+
+void associate_alpha(ImageTile* tile) {
+  const size_t count = static_cast<size_t>(tile->width) * tile->height;
+  uint8_t* pixels = tile->pixels.get();
+  switch (tile->format) {
+    case PixelFormat::Byte:
+      associate(pixels, count, tile->channels, [](uint8_t c, uint8_t a) { return static_cast<uint8_t>((c * a + 127) / 255); });
+      break;
+    case PixelFormat::Short:
+      associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels,
+                [](uint16_t c, uint16_t a) { return static_cast<uint16_t>((static_cast<uint32_t>(c) * a + 32767u) / 65535u); });
+      break;
+    case PixelFormat::Half:
+      associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels,
+                [](uint16_t c, uint16_t a) { return float_to_half(half_to_float(c) * half_to_float(a)); });
+      break;
+    case PixelFormat::Float:
+      associate(reinterpret_cast<float*>(pixels), count, tile->channels, [](float c, float a) { return c * a; });
+      break;
+  }
+}
+
+// A texel with a number that is not finite becomes 0 as a whole, as in Cycles.
+template <typename T, typename Finite>
+void clean(T* values, size_t count, uint32_t channels, Finite finite) {
+  for (size_t i = 0; i < count; i++, values += channels) {
+    if (!std::all_of(values, values + channels, finite)) {
+      std::fill(values, values + channels, T(0));
+    }
+  }
+}
+
+void clean_tile(ImageTile* tile) {
+  const size_t count = static_cast<size_t>(tile->width) * tile->height;
+  if (tile->format == PixelFormat::Half) {
+    clean(reinterpret_cast<uint16_t*>(tile->pixels.get()), count, tile->channels, [](uint16_t h) { return (h & 0x7c00) != 0x7c00; });
+  } else if (tile->format == PixelFormat::Float) {
+    clean(reinterpret_cast<float*>(tile->pixels.get()), count, tile->channels, [](float x) { return is_finite(x); });
+  }
+}
+
+template <class T>
+const T* as(const uint8_t* pixels) {
+  return reinterpret_cast<const T*>(pixels);
+}
+
+// One texel of 1 to 4 channels, without a loop over them: the most frequent read of all.
+template <class T, class ToFloat>
+Vec4 expand(const T* v, uint32_t channels, ToFloat&& to_float) {
+  const float first = to_float(v[0]);
+  if (channels <= 2) return Vec4(first, first, first, channels == 2 ? to_float(v[1]) : 1.0f);
+  return Vec4(first, to_float(v[1]), to_float(v[2]), channels == 4 ? to_float(v[3]) : 1.0f);
+}
+
+}  // namespace
+
+Vec4 ImageTile::texel(uint32_t x, uint32_t y) const {
+  const size_t first = (static_cast<size_t>(y) * width + x) * channels;
+  switch (format) {
+    case PixelFormat::Byte:
+      return expand(pixels.get() + first, channels, [](uint8_t v) { return static_cast<float>(v) * (1.0f / 255.0f); });
+    case PixelFormat::Short:
+      return expand(as<uint16_t>(pixels.get()) + first, channels, [](uint16_t v) { return static_cast<float>(v) * (1.0f / 65535.0f); });
+    case PixelFormat::Half:
+      return expand(as<uint16_t>(pixels.get()) + first, channels, half_to_float);
+    case PixelFormat::Float:
+      return expand(as<float>(pixels.get()) + first, channels, [](float v) { return v; });
+  }
+  return Vec4(0.0f);
+}
+
+ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool associate) {
+  ImageTile tile;
+  tile.width = decoded.width;
+  tile.height = decoded.height;
+  tile.channels = decoded.channels;
+  tile.format = decoded.format;
+  tile.pixels = std::move(decoded.pixels);
+  const bool integer = tile.format == PixelFormat::Byte || tile.format == PixelFormat::Short;
+  const ColorTransform transform = color.transform(space, integer);
+  if (transform == ColorTransform::Srgb && tile.format == PixelFormat::Byte) {
+    tile.srgb = true;
+  } else if (transform == ColorTransform::Srgb && tile.format != PixelFormat::Float) {
+    linearise_shorts(&tile);
+  } else if (transform != ColorTransform::Data) {
+    tile = transform_tile(tile, color, space, integer);
+  }
+  if (associate && !decoded.associated_alpha && has_alpha_channel(tile.channels)) {
+    associate_alpha(&tile);
+  }
+  clean_tile(&tile);
+  return tile;
+}
+
+Rgb mean_color(const ImageTile& tile) {
+  const uint64_t count = static_cast<uint64_t>(tile.width) * tile.height;
+  // An odd step, so that it does not meet the same columns in each row.
+  const uint64_t step = (count >> 20) | 1u;
+  double sum[3] = {0.0, 0.0, 0.0};
+  uint64_t n = 0;
+  for (uint64_t i = 0; i < count; i += step, n++) {
+    const Vec4 v = decode_texel(tile, tile.texel(static_cast<uint32_t>(i % tile.width), static_cast<uint32_t>(i / tile.width)));
+    sum[0] += static_cast<double>(v.x);
+    sum[1] += static_cast<double>(v.y);
+    sum[2] += static_cast<double>(v.z);
+  }
+  const double scale = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
+  return {static_cast<float>(sum[0] * scale), static_cast<float>(sum[1] * scale), static_cast<float>(sum[2] * scale)};
+}
+
+bool has_transparency(const ImageTile& tile) {
+  if (!has_alpha_channel(tile.channels)) {
+    return false;
+  }
+  for (uint32_t y = 0; y < tile.height; y++) {
+    for (uint32_t x = 0; x < tile.width; x++) {
+      if (tile.texel(x, y).w < 1.0f) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace gradus

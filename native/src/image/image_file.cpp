@@ -1,0 +1,65 @@
+#include "image/image_file.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace gradus {
+namespace {
+
+constexpr off_t kLargestFile = off_t{1} << 34;
+
+class Descriptor {
+ public:
+  // Not blocking: a pipe or device that is named by mistake must not stop a render.
+  explicit Descriptor(const char* path) : value_(::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  ~Descriptor() {
+    if (value_ >= 0) {
+      ::close(value_);
+    }
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return value_; }
+
+ private:
+  int value_;
+};
+
+}  // namespace
+
+bool read_file(const std::string& path, std::vector<uint8_t>* bytes, std::string* problem) {
+  const Descriptor file(path.c_str());
+  struct stat info {};
+  if (path.empty() || file.get() < 0 || ::fstat(file.get(), &info) != 0) {
+    *problem = path.empty() ? "no file is named" : std::strerror(errno);
+    return false;
+  }
+  if (!S_ISREG(info.st_mode)) {
+    *problem = S_ISDIR(info.st_mode) ? "it is a folder" : "it is not a file";
+    return false;
+  }
+  if (info.st_size > kLargestFile) {
+    *problem = "it is too large";
+    return false;
+  }
+  bytes->resize(static_cast<size_t>(info.st_size));
+  size_t done = 0;
+  while (done < bytes->size()) {
+    const ssize_t n = ::read(file.get(), bytes->data() + done, bytes->size() - done);
+    if (n < 0 && errno == EINTR) {
+      continue;
+    }
+    if (n <= 0) {
+      *problem = n < 0 ? std::strerror(errno) : "it became shorter while it was read";
+      return false;
+    }
+    done += static_cast<size_t>(n);
+  }
+  return true;
+}
+
+}  // namespace gradus

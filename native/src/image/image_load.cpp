@@ -1,0 +1,82 @@
+// Decoding of all tiles of an image.
+#include <utility>
+
+#include "base/hash.h"
+#include "image/color.h"
+#include "image/image.h"
+#include "image/image_convert.h"
+#include "image/image_file.h"
+#include "image/image_store.h"
+
+namespace gradus {
+namespace {
+
+// What an artist sees in place of an image that is not there, in Cycles as here.
+constexpr Rgb kMissingColor(1.0f, 0.0f, 1.0f);
+
+// The caller's own pixels; float or byte RGBA, bottom row first.
+bool wrap_pixels(const ImageSource::Tile& tile, DecodedImage* image, std::string* problem) {
+  const PixelFormat format = tile.source == GRADUS_IMAGE_FLOAT ? PixelFormat::Float : PixelFormat::Byte;
+  if (!allocate(image, tile.width, tile.height, 4, format, tile.data.size(), 1, problem)) {
+    return false;
+  }
+  std::copy(tile.data.begin(), tile.data.end(), image->pixels.get());
+  return true;
+}
+
+bool decode_tile(const ImageSource::Tile& tile, DecodedImage* image, std::string* problem, ContentHash* hash) {
+  for (const uint32_t v : {tile.number, tile.width, tile.height}) hash->value(v);
+  hash->array(tile.data);
+  if (tile.source == GRADUS_IMAGE_FLOAT || tile.source == GRADUS_IMAGE_BYTE) {
+    return wrap_pixels(tile, image, problem);
+  }
+  if (tile.source == GRADUS_IMAGE_ENCODED) {
+    return read_image(tile.data, image, problem);
+  }
+  std::vector<uint8_t> bytes;
+  const bool is_read = read_file(tile.path, &bytes, problem);
+  hash->array(bytes);
+  return is_read && read_image(bytes, image, problem);
+}
+
+std::string describe(const ImageSource& source, const ImageSource::Tile& tile, const std::string& problem) {
+  const std::string where = tile.path.empty() ? "(packed)" : tile.path;
+  return "image " + source.name + ": " + where + ": " + problem;
+}
+
+}  // namespace
+
+std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorManager& color) {
+  auto image = std::make_shared<Image>();
+  image->name = source.name;
+  image->ignores_alpha = source.alpha_mode == GRADUS_ALPHA_NONE;
+  ContentHash hash;
+  hash.value(source.color_space);
+  for (const uint32_t v : {source.alpha_mode, uint32_t(source.is_float)}) hash.value(v);
+  Rgb sum(0.0f);
+  for (const ImageSource::Tile& tile : source.tiles) {
+    DecodedImage decoded;
+    std::string problem;
+    ImageTile stored;
+    Rgb mean = kMissingColor;
+    if (decode_tile(tile, &decoded, &problem, &hash)) {
+      problem = decoded.warning;
+      stored = convert_tile(std::move(decoded), color, source.color_space, source.alpha_mode == GRADUS_ALPHA_STRAIGHT);
+      mean = mean_color(stored);
+      image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
+    }
+    if (!problem.empty()) {
+      image->warnings.push_back(describe(source, tile, problem));
+    }
+    stored.number = tile.number;
+    image->tiles.push_back(std::move(stored));
+    sum += mean;
+  }
+  image->mean = image->tiles.empty() ? kMissingColor : sum / static_cast<float>(image->tiles.size());
+  image->content_hash = hash.result();
+  return image;
+}
+
+const std::vector<std::string>& warnings_of(const Image& image) { return image.warnings; }
+
+}  // namespace gradus

@@ -1,0 +1,197 @@
+// Look-ups in images: extension, interpolation, UDIM tiles, as Cycles has them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "image/color.h"
+#include "image/image.h"
+#include "image/image_store.h"
+
+namespace gradus {
+namespace {
+
+const Vec4 kMissing(1.0f, 0.0f, 1.0f, 1.0f);
+
+// The sRGB curve by linear interpolation: exact in the straight part, 1e-6 elsewhere.
+class SrgbTable {
+ public:
+  SrgbTable() {
+    for (size_t i = 0; i < values_.size(); i++) {
+      values_[i] = srgb_to_linear(static_cast<float>(i) / kSteps);
+    }
+  }
+  float operator()(float x) const {
+    if (!(x >= 0.0f && x < 1.0f)) {
+      return srgb_to_linear(x);
+    }
+    const float position = x * kSteps;
+    const size_t i = static_cast<size_t>(position);
+    return values_[i] + (values_[i + 1] - values_[i]) * (position - static_cast<float>(i));
+  }
+
+ private:
+  static constexpr float kSteps = 1024.0f;
+  std::array<float, 1026> values_;
+};
+
+// Beyond this a clipped image is empty, whatever its size: cubic weights reach two texels out.
+constexpr float kEmpty = 3.0f;
+
+// One axis: brings any coordinate close to 0…1 without changing what it means, then texel numbers into the image.
+float reduce(float u, Extension extension) {
+  if (!is_finite(u)) {
+    return 0.0f;
+  }
+  switch (extension) {
+    case Extension::Repeat:
+      return u - std::floor(u);
+    case Extension::Mirror:
+      return u - 2.0f * std::floor(0.5f * u);
+    case Extension::Clip:
+      return std::clamp(u, -kEmpty, 1.0f + kEmpty);
+    default:
+      return std::clamp(u, 0.0f, 1.0f);
+  }
+}
+
+uint32_t wrap(int i, uint32_t size, Extension extension) {
+  const int n = static_cast<int>(size);
+  switch (extension) {
+    case Extension::Repeat:
+      // Close to the image already, by reduce(): faster than a division.
+      while (i < 0) {
+        i += n;
+      }
+      while (i >= n) {
+        i -= n;
+      }
+      return static_cast<uint32_t>(i);
+    case Extension::Mirror: {
+      const int m = std::abs(i + (i < 0 ? 1 : 0)) % (2 * n);
+      return static_cast<uint32_t>(m >= n ? 2 * n - m - 1 : m);
+    }
+    default:
+      return static_cast<uint32_t>(std::clamp(i, 0, n - 1));
+  }
+}
+
+// Texels and weights along one axis.
+template <int N>
+struct Taps {
+  std::array<uint32_t, N> texel;
+  std::array<float, N> weight;
+};
+
+// The texels from number `first` on. Around a clipped image lies nothing: interpolation fades its border, as in Cycles.
+template <int N>
+Taps<N> make_taps(int first, const std::array<float, N>& weight, uint32_t size, Extension extension) {
+  Taps<N> taps{{}, weight};
+  for (int k = 0; k < N; k++) {
+    taps.texel[size_t(k)] = wrap(first + k, size, extension);
+    if (extension == Extension::Clip && (first + k < 0 || first + k >= static_cast<int>(size))) {
+      taps.weight[size_t(k)] = 0.0f;
+    }
+  }
+  return taps;
+}
+
+Taps<1> closest_taps(float u, uint32_t size, Extension extension) {
+  return make_taps<1>(static_cast<int>(std::floor(u * static_cast<float>(size))), {1.0f}, size, extension);
+}
+
+Taps<2> linear_taps(float u, uint32_t size, Extension extension) {
+  const float x = u * static_cast<float>(size) - 0.5f;
+  const float first = std::floor(x);
+  const float t = x - first;
+  return make_taps<2>(static_cast<int>(first), {1.0f - t, t}, size, extension);
+}
+
+// Uniform cubic B-spline: smooth, and not interpolating, as in Cycles.
+Taps<4> cubic_taps(float u, uint32_t size, Extension extension) {
+  const float x = u * static_cast<float>(size) - 0.5f;
+  const float first = std::floor(x);
+  const float t = x - first;
+  const float t2 = t * t;
+  const float t3 = t2 * t;
+  return make_taps<4>(static_cast<int>(first) - 1,
+                      {(1.0f - 3.0f * t + 3.0f * t2 - t3) / 6.0f, (4.0f - 6.0f * t2 + 3.0f * t3) / 6.0f,
+                       (1.0f + 3.0f * t + 3.0f * t2 - 3.0f * t3) / 6.0f, t3 / 6.0f},
+                      size, extension);
+}
+
+template <int N>
+Vec4 gather(const ImageTile& tile, const Taps<N>& x, const Taps<N>& y) {
+  Vec4 sum(0.0f);
+  for (size_t j = 0; j < N; j++) {
+    Vec4 row(0.0f);
+    for (size_t i = 0; i < N; i++) {
+      row += x.weight[i] * tile.texel(x.texel[i], y.texel[j]);
+    }
+    sum += y.weight[j] * row;
+  }
+  return sum;
+}
+
+Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolation, Extension extension) {
+  const float u = reduce(uv.x, extension);
+  const float v = reduce(uv.y, extension);
+  switch (interpolation) {
+    case Interpolation::Closest:
+      return gather(tile, closest_taps(u, tile.width, extension), closest_taps(v, tile.height, extension));
+    case Interpolation::Cubic:
+      return gather(tile, cubic_taps(u, tile.width, extension), cubic_taps(v, tile.height, extension));
+    default:
+      return gather(tile, linear_taps(u, tile.width, extension), linear_taps(v, tile.height, extension));
+  }
+}
+
+// The tile that holds uv, and uv within it; nullptr: none.
+const ImageTile* find_tile(const Image& image, Vec2* uv) {
+  if (image.tiles.empty()) {
+    return nullptr;
+  }
+  if (image.tiles[0].number == 0) {
+    return &image.tiles[0];
+  }
+  const float column = std::floor(uv->x);
+  const float row = std::floor(uv->y);
+  if (!(column >= 0.0f && column < 10.0f && row >= 0.0f && row < 1000.0f)) {
+    return nullptr;
+  }
+  const uint32_t number = 1001u + static_cast<uint32_t>(column) + 10u * static_cast<uint32_t>(row);
+  const auto found = std::find_if(image.tiles.begin(), image.tiles.end(), [&](const ImageTile& t) { return t.number == number; });
+  *uv -= Vec2(column, row);
+  return found == image.tiles.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Vec4 decode_texel(const ImageTile& tile, const Vec4& stored) {
+  static const SrgbTable table;
+  return tile.srgb ? Vec4(table(stored.x), table(stored.y), table(stored.z), stored.w) : stored;
+}
+
+Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension, bool unassociate) const {
+  if (index >= size()) {
+    return kMissing;
+  }
+  const Image& image = *images_[index];
+  Vec2 local = uv;
+  const ImageTile* tile = find_tile(image, &local);
+  if (tile == nullptr || tile->width == 0) {
+    return kMissing;
+  }
+  Vec4 value = interpolate(*tile, local, interpolation, extension);
+  if (image.ignores_alpha) {
+    value.w = 1.0f;
+  }
+  if (unassociate && value.w != 0.0f && value.w != 1.0f) {
+    const float alpha = value.w;
+    value /= alpha;
+    value = tile->srgb ? glm::min(value, Vec4(1.0f)) : value;
+    value.w = alpha;
+  }
+  return decode_texel(*tile, value);
+}
+
+}  // namespace gradus

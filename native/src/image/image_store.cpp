@@ -1,0 +1,52 @@
+#include "image/image_store.h"
+
+#include "image/image.h"
+
+namespace gradus {
+
+uint32_t ImageStore::add(uint64_t key, std::shared_ptr<const Image> image) {
+  const auto [entry, is_new] = index_.try_emplace(key, size());
+  if (is_new) {
+    images_.push_back(std::move(image));
+  } else {
+    images_[entry->second] = std::move(image);
+  }
+  return entry->second;
+}
+
+uint32_t ImageStore::index_of(uint64_t key) const {
+  const auto found = index_.find(key);
+  return found == index_.end() ? kNone : found->second;
+}
+
+Rgb ImageStore::mean(uint32_t index) const { return index < size() ? images_[index]->mean : Rgb(1.0f, 0.0f, 1.0f); }
+
+bool ImageStore::has_alpha(uint32_t index) const { return index < size() && images_[index]->has_alpha; }
+
+uint32_t ImageStore::width(uint32_t index) const {
+  return index < size() && !images_[index]->tiles.empty() ? images_[index]->tiles[0].width : 0;
+}
+
+uint32_t ImageStore::height(uint32_t index) const {
+  return index < size() && !images_[index]->tiles.empty() ? images_[index]->tiles[0].height : 0;
+}
+
+std::vector<std::string> ImageStore::warnings() const {
+  std::vector<std::string> all;
+  for (const auto& image : images_) {
+    all.insert(all.end(), image->warnings.begin(), image->warnings.end());
+  }
+  return all;
+}
+
+size_t ImageStore::memory_bytes() const {
+  size_t sum = 0;
+  for (const auto& image : images_) {
+    for (const ImageTile& tile : image->tiles) {
+      sum += tile.size_bytes();
+    }
+  }
+  return sum;
+}
+
+}  // namespace gradus

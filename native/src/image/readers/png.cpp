@@ -1,0 +1,107 @@
+// PNG of all kinds, through libpng: 8 or 16 bit, grey to RGBA. libpng reports errors by longjmp: the functions that may be left so hold
+// nothing with a destructor.
+#include <csetjmp>
+#include <cstring>
+#include <vector>
+
+#include <png.h>
+
+#include "image/readers/decoded.h"
+
+namespace gradus {
+namespace {
+
+struct Source {
+  const uint8_t* data;
+  size_t size;
+  size_t position;
+  char message[200];
+};
+
+void read_bytes(png_structp png, png_bytep out, png_size_t length) {
+  Source* source = static_cast<Source*>(png_get_io_ptr(png));
+  if (length > source->size - source->position) {
+    png_error(png, "it is truncated");
+  }
+  std::memcpy(out, source->data + source->position, length);
+  source->position += length;
+}
+
+void on_error(png_structp png, png_const_charp text) {
+  Source* source = static_cast<Source*>(png_get_error_ptr(png));
+  std::strncpy(source->message, text, sizeof(source->message) - 1);
+  longjmp(png_jmpbuf(png), 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+// Reads the header and asks for 8 or 16 bit grey or RGB, with alpha where there is any.
+bool read_header(png_structp png, png_infop info, Source* source) {
+  if (setjmp(png_jmpbuf(png))) {
+    return false;
+  }
+  png_set_read_fn(png, source, read_bytes);
+  // Not larger than any image we take, so that libpng itself refuses the rest.
+  png_set_user_limits(png, static_cast<png_uint_32>(kMaxSide), static_cast<png_uint_32>(kMaxSide));
+  png_set_chunk_malloc_max(png, 16u << 20);
+  png_read_info(png, info);
+  png_set_expand(png);
+  if (png_get_bit_depth(png, info) == 16) {
+    png_set_swap(png);  // the file is big-endian
+  }
+  png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  return true;
+}
+
+bool read_rows(png_structp png, png_bytepp rows) {
+  if (setjmp(png_jmpbuf(png))) {
+    return false;
+  }
+  png_read_image(png, rows);
+  return true;
+}
+
+bool decode(png_structp png, png_infop info, Source* source, DecodedImage* image, std::string* problem) {
+  if (!read_header(png, info, source)) {
+    *problem = source->message;
+    return false;
+  }
+  const PixelFormat format = png_get_bit_depth(png, info) == 16 ? PixelFormat::Short : PixelFormat::Byte;
+  // Deflate reaches about 1030:1.
+  if (!allocate(image, png_get_image_width(png, info), png_get_image_height(png, info), png_get_channels(png, info), format, source->size,
+                1100, problem)) {
+    return false;
+  }
+  if (image->channels < 1 || image->channels > 4 || png_get_rowbytes(png, info) != image->row_bytes()) {
+    *problem = "its layout is not supported";
+    return false;
+  }
+  std::vector<png_bytep> rows(image->height);
+  for (uint32_t y = 0; y < image->height; y++) {
+    rows[y] = image->row_from_top(y);
+  }
+  if (!read_rows(png, rows.data())) {
+    *problem = source->message;
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool read_png(Bytes file, DecodedImage* image, std::string* problem) {
+  Source source{file.data(), file.size(), 0, {}};
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, on_error, on_warning);
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  bool ok = false;
+  if (info) {
+    ok = decode(png, info, &source, image, problem);
+  } else {
+    *problem = "libpng does not start";
+  }
+  png_destroy_read_struct(&png, &info, nullptr);
+  return ok;
+}
+
+}  // namespace gradus

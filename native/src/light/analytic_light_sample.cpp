@@ -1,0 +1,190 @@
+// Sampling of lights, and the density with which a given point would be sampled: both from the same receiver-dependent quantities.
+#include <algorithm>
+#include <cmath>
+
+#include "base/cone.h"
+#include "base/orthonormal_basis.h"
+#include "light/analytic_light.h"
+#include "light/spherical_rectangle.h"
+
+namespace gradus {
+
+namespace {
+
+Vec2 uniform_disk(const Vec2& u) {
+  const float r = std::sqrt(u.x), phi = 2.0f * kPi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+// 1 - cos of the half angle under which a sphere is seen; 2 from inside: then all directions are sampled.
+float sphere_one_minus_cos(const AnalyticLight& light, const Vec3& to_centre) {
+  const float sine2 = light.radius * light.radius / glm::dot(to_centre, to_centre);
+  if (!(sine2 < 1.0f)) return 2.0f;
+  return sine2 / (1.0f + std::sqrt(1.0f - sine2));
+}
+
+// Normal of the visible side at a point sampled uniformly in solid angle (pbrt-v4 section 6.2.4): by the angle at the centre, because
+// the difference of points would cancel for a small or distant sphere.
+Vec3 sample_visible_normal(const Vec3& axis, float one_minus_cos, const Vec2& u) {
+  const float max_sine2 = one_minus_cos * (2.0f - one_minus_cos);
+  const float h = u.x * one_minus_cos;
+  const float sine2 = h * (2.0f - h);
+  const float ratio2 = std::min(sine2 / max_sine2, 1.0f);
+  const float cosine = sine2 / std::sqrt(max_sine2) + (1.0f - h) * std::sqrt(1.0f - ratio2);
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+  Vec3 x, y;
+  orthonormal_basis(axis, &x, &y);
+  const float phi = 2.0f * kPi * u.y;
+  return glm::normalize((x * std::cos(phi) + y * std::sin(phi)) * sine - axis * cosine);
+}
+
+// From inside: uniform directions, and where they leave the sphere.
+Vec3 sample_normal_from_inside(const AnalyticLight& light, const Vec3& to_centre, const Vec2& u) {
+  const Vec3 direction = Cone{Vec3(0, 0, 1), 2.0f}.sample(u);
+  const float middle = glm::dot(to_centre, direction);
+  const Vec3 closest = to_centre - direction * middle;
+  const float half_chord = std::sqrt(std::max(0.0f, light.radius * light.radius - glm::dot(closest, closest)));
+  return glm::normalize(direction * half_chord - closest);
+}
+
+void sample_sphere(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point) {
+  const Vec3 to_centre = light.position - from;
+  const float one_minus_cos = sphere_one_minus_cos(light, to_centre);
+  point->normal = one_minus_cos < 2.0f ? sample_visible_normal(glm::normalize(to_centre), one_minus_cos, u)
+                                       : sample_normal_from_inside(light, to_centre, u);
+  point->position = light.position + point->normal * light.radius;
+}
+
+Vec3 facing_disk_position(const AnalyticLight& light, const Vec3& from, const Vec2& on_disk, Vec3* normal) {
+  const Vec3 to_receiver = from - light.position;
+  const float distance = glm::length(to_receiver);
+  *normal = distance > 0.0f ? to_receiver / distance : Vec3(0, 0, 1);
+  Vec3 x, y;
+  orthonormal_basis(*normal, &x, &y);
+  return light.position + light.radius * (x * on_disk.x + y * on_disk.y);
+}
+
+SphericalRectangle seen_from(const AnalyticLight& light, const Vec3& from) {
+  return SphericalRectangle(light.position, light.axis_x, light.axis_y, light.half_width, light.half_height, from);
+}
+
+Vec3 sample_rectangle(const AnalyticLight& light, const Vec3& from, const Vec2& u, float* solid_angle) {
+  const SphericalRectangle seen = seen_from(light, from);
+  *solid_angle = seen.sampled_solid_angle();
+  if (seen.usable()) return seen.sample(u);
+  return light.position + light.axis_x * (light.half_width * (2.0f * u.x - 1.0f)) + light.axis_y * (light.half_height * (2.0f * u.y - 1.0f));
+}
+
+bool in_front(const AnalyticLight& light, const Vec3& from) { return glm::dot(from - light.position, light.emission_direction) > 0.0f; }
+
+}  // namespace
+
+bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point, float* solid_angle) {
+  *solid_angle = 0.0f;
+  point->kind = LightKind::AnalyticLight;
+  point->dirac = light.dirac();
+  point->found_by_rays = light.found_by_rays();
+  switch (light.shape) {
+    case AnalyticLight::Shape::Point:
+      point->position = light.position;
+      return true;
+    case AnalyticLight::Shape::Sphere:
+      sample_sphere(light, from, u, point);
+      return true;
+    case AnalyticLight::Shape::FacingDisk:
+      // The disk turns with the receiver: what stays the same from another one are the coordinates on it.
+      point->barycentric = uniform_disk(u);
+      point->position = facing_disk_position(light, from, point->barycentric, &point->normal);
+      return true;
+    case AnalyticLight::Shape::Rectangle:
+      if (!in_front(light, from)) return false;
+      point->position = sample_rectangle(light, from, u, solid_angle);
+      point->normal = light.emission_direction;
+      return true;
+    case AnalyticLight::Shape::Ellipse: {
+      if (!in_front(light, from)) return false;
+      const Vec2 d = uniform_disk(u);
+      point->position = light.position + light.axis_x * (light.half_width * d.x) + light.axis_y * (light.half_height * d.y);
+      point->normal = light.emission_direction;
+      return true;
+    }
+    case AnalyticLight::Shape::Direction:
+      point->direction = -light.emission_direction;
+      return true;
+    case AnalyticLight::Shape::Cone:
+      point->direction = Cone{-light.emission_direction, light.one_minus_cos_sun}.sample(u);
+      return true;
+  }
+  return false;
+}
+
+namespace {
+
+// Share of a spot's strength along a direction that leaves it (Cycles' kernel/light/spot.h: smoothstep over the blend).
+float spot_falloff(const AnalyticLight& light, const Vec3& leaving) {
+  if (!light.is_spot) return 1.0f;
+  const float cosine = glm::dot(leaving, light.emission_direction);
+  if (cosine <= light.cos_cone) return 0.0f;
+  const float t = std::min((cosine - light.cos_cone) * light.cone_slope, 1.0f);
+  return t * t * (3.0f - 2.0f * t) * (light.spot_cosine ? std::max(cosine, 0.0f) : 1.0f);
+}
+
+float spread_falloff(const AnalyticLight& light, float cosine) {
+  if (!is_finite(light.tan_spread)) return 1.0f;
+  const float tangent = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+  return std::max((light.tan_spread - tangent) * light.spread_scale, 0.0f);
+}
+
+void view_at_infinity(const AnalyticLight& light, const LightPoint& point, LightEvaluation* view) {
+  view->direction = point.direction;
+  view->radiance = light.intensity;
+  view->pdf = light.shape == AnalyticLight::Shape::Cone ? 1.0f / (2.0f * kPi * light.one_minus_cos_sun) : 1.0f;
+}
+
+void view_sphere(const AnalyticLight& light, const Vec3& normal, const Vec3& from, LightEvaluation* view) {
+  const Vec3 to_centre = light.position - from;
+  const float one_minus_cos = sphere_one_minus_cos(light, to_centre);
+  const float cosine = -glm::dot(normal, view->direction);
+  view->cosine = std::fabs(cosine);
+  if (one_minus_cos < 2.0f && cosine <= 0.0f) return;  // the far side
+  view->pdf = 1.0f / (2.0f * kPi * one_minus_cos);
+  view->radiance = light.intensity * spot_falloff(light, -view->direction);
+}
+
+void view_flat(const AnalyticLight& light, const Vec3& normal, const Vec3& from, const float* solid_angle, LightEvaluation* view) {
+  const float cosine = -glm::dot(normal, view->direction);
+  if (!(cosine > 0.0f) || (light.shape != AnalyticLight::Shape::FacingDisk && !in_front(light, from))) return;
+  view->cosine = cosine;
+  view->pdf = view->distance * view->distance / (cosine * light.area);
+  if (light.shape == AnalyticLight::Shape::Rectangle) {
+    const float angle = solid_angle != nullptr ? *solid_angle : seen_from(light, from).sampled_solid_angle();
+    if (angle > 0.0f) view->pdf = 1.0f / angle;
+  }
+  view->radiance = light.intensity * spread_falloff(light, cosine) * spot_falloff(light, -view->direction);
+}
+
+}  // namespace
+
+void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point, const Vec3& from, const float* solid_angle, LightEvaluation* view) {
+  view->casts_shadow = light.casts_shadow;
+  view->visibility = light.visibility;
+  view->max_bounces = light.max_bounces;
+  if (light.at_infinity()) return view_at_infinity(light, point, view);
+  Vec3 position = point.position, normal = point.normal;
+  if (light.shape == AnalyticLight::Shape::FacingDisk) position = facing_disk_position(light, from, point.barycentric, &normal);
+  const Vec3 to_light = position - from;
+  const float distance = glm::length(to_light);
+  if (!(distance > 0.0f)) return;
+  view->distance = distance;
+  view->direction = to_light / distance;
+  if (light.shape == AnalyticLight::Shape::Point) {
+    view->radiance = light.intensity * (spot_falloff(light, -view->direction) / (distance * distance));
+    view->pdf = 1.0f;
+  } else if (light.shape == AnalyticLight::Shape::Sphere) {
+    view_sphere(light, normal, from, view);
+  } else {
+    view_flat(light, normal, from, solid_angle, view);
+  }
+}
+
+}  // namespace gradus

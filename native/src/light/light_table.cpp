@@ -1,0 +1,75 @@
+#include "light/light_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/cone.h"
+
+namespace gradus {
+
+namespace {
+
+// Every group that can shine at all gets its share of this part of the samples, whatever the estimates say.
+constexpr double kDefensive = 0.2;
+
+float sun_importance(float irradiance, const AnalyticLight& sun, const Receiver& receiver) {
+  return irradiance * Cone{-sun.emission_direction, sun.one_minus_cos_sun}.highest_cosine(receiver.normal, receiver.transmits);
+}
+
+double defended(double weight, double sum, int groups) {
+  return weight > 0.0 ? (1.0 - kDefensive) * weight / sum + kDefensive / groups : 0.0;
+}
+
+}  // namespace
+
+const LightChoice& LightTable::choose(const Receiver& receiver, LightChoice* room) const {
+  LightChoice* choice = receiver.memo != nullptr ? receiver.memo : room;
+  if (!choice->known || !(choice->receiver == receiver)) {
+    tree.cut(receiver, &choice->cut);
+    choice->group = choose_group(receiver, choice->cut);
+    choice->receiver = receiver;
+    choice->known = true;
+  }
+  return *choice;
+}
+
+GroupChoice LightTable::choose_group(const Receiver& receiver, const LightTree::Cut& cut) const {
+  if (suns.empty() && world.black()) return {tree.empty() ? 0.0 : 1.0, 0.0, 0.0};
+  if (suns.empty() && tree.empty()) return {0.0, 0.0, 1.0};
+  const double in_tree = cut.irradiance();
+  const double in_suns = irradiance_of_suns(receiver);
+  const double in_world = world.irradiance(receiver);
+  const double sum = in_tree + in_suns + in_world;
+  const int groups = (in_tree > 0.0) + (in_suns > 0.0) + (in_world > 0.0);
+  if (groups == 0 || !std::isfinite(sum)) return {};
+  return {defended(in_tree, sum, groups), defended(in_suns, sum, groups), defended(in_world, sum, groups)};
+}
+
+double LightTable::irradiance_of_suns(const Receiver& receiver) const {
+  double sum = 0.0;
+  for (size_t i = 0; i < suns.size(); ++i) sum += sun_importance(sun_irradiance[i], analytic_lights[suns[i]], receiver);
+  return sum;
+}
+
+double LightTable::sun_probability(size_t sun, const Receiver& receiver) const {
+  const double sum = irradiance_of_suns(receiver);
+  return sum > 0.0 ? sun_importance(sun_irradiance[sun], analytic_lights[suns[sun]], receiver) / sum : 0.0;
+}
+
+uint32_t LightTable::sample_sun(const Receiver& receiver, double u, double* probability) const {
+  const double sum = irradiance_of_suns(receiver);
+  double below = 0.0;
+  for (size_t i = 0;; ++i) {
+    *probability = sum > 0.0 ? sun_importance(sun_irradiance[i], analytic_lights[suns[i]], receiver) / sum : 0.0;
+    below += *probability;
+    if (u < below || i + 1 == suns.size()) return suns[i];
+  }
+}
+
+uint32_t LightTable::find_triangle(uint32_t instance, uint32_t triangle) const {
+  const auto first = triangles.begin() + first_triangle[instance], last = triangles.begin() + first_triangle[instance + 1];
+  const auto found = std::lower_bound(first, last, triangle, [](const EmissiveTriangle& t, uint32_t id) { return t.triangle < id; });
+  return found != last && found->triangle == triangle ? uint32_t(found - triangles.begin()) : UINT32_MAX;
+}
+
+}  // namespace gradus

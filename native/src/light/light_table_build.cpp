@@ -1,0 +1,146 @@
+// The emitters of a commit: lights, emissive triangles with their power, the tree.
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+#include "light/light_table.h"
+#include "light/light_bounds.h"
+#include "geometry/mesh.h"
+#include "base/commit_monitor.h"
+#include "light/lit_scene.h"
+#include "light/world_map.h"
+#include "shading/material.h"
+#include "shading/shade.h"
+
+namespace gradus {
+
+namespace {
+
+// More emissive triangles than this are left to BSDF sampling: 100 bytes and 2 µs of building each.
+constexpr size_t kMaxTriangles = 4u << 20;
+// Triangles whose textured emission is measured point by point; beyond, the material's estimate serves for all.
+constexpr size_t kMaxMeasured = 1u << 19;
+
+bool is_light(const MaterialData* material) { return material && material->emits && material->sample_as_light; }
+
+bool any_light(const LitScene& scene, const InstanceData& instance) {
+  if (instance.materials.empty()) return is_light(scene.materials[0].get());
+  return std::any_of(instance.materials.begin(), instance.materials.end(),
+                     [&](uint32_t m) { return is_light(scene.materials[m].get()); });
+}
+
+void find_triangles(const LitScene& scene, const CommitMonitor& monitor, LightTable* table) {
+  std::vector<EmissiveTriangle>& triangles = table->triangles;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    table->first_triangle.push_back(uint32_t(triangles.size()));
+    const InstanceData& instance = scene.instances[i];
+    if (!any_light(scene, instance)) continue;
+    if (triangles.size() + instance.mesh->triangle_count > kMaxTriangles) {
+      table->beyond_limit.push_back(i);
+      continue;
+    }
+    monitor.check();
+    for (uint32_t t = 0; t < instance.mesh->triangle_count; ++t) {
+      if (instance.mesh->is_dropped(t) || !is_light(scene.materials[scene.material_of(i, t)].get())) continue;
+      const std::array<Vec3, 3> p = scene.corners(i, t, 0.5f);
+      const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+      if (area > 0.0f && is_finite(area)) triangles.push_back({i, t, area});
+    }
+  }
+  table->first_triangle.push_back(uint32_t(triangles.size()));
+}
+
+// Mean radiance of a triangle over four points and both sides.
+float measure_radiance(const LitScene& scene, const EmissiveTriangle& triangle) {
+  constexpr float kPoints[4][2] = {{1 / 3.0f, 1 / 3.0f}, {0.15f, 0.15f}, {0.7f, 0.15f}, {0.15f, 0.7f}};
+  RayState state;
+  state.flags = 0;
+  float sum = 0.0f;
+  for (const auto& b : kPoints) {
+    Hit hit;
+    hit.instance = triangle.instance;
+    hit.triangle = triangle.triangle;
+    hit.barycentric = Vec2(b[0], b[1]);
+    const SurfacePoint point = scene.surface_point(hit);
+    for (const float side : {1.0f, -1.0f}) {
+      const float value = mean_component(glm::abs(shade_emission(scene, point, point.geometric_normal * side, state)));
+      if (is_finite(value)) sum += std::min(value, 1e30f);
+    }
+  }
+  return sum / 8.0f;
+}
+
+float radiance_estimate(const LitScene& scene, const EmissiveTriangle& triangle, bool measure) {
+  const MaterialData& material = *scene.materials[scene.material_of(triangle.instance, triangle.triangle)];
+  if (material.emission_is_constant) return mean_component(glm::abs(material.constant_emission));
+  if (!measure) return std::max(material.emission_estimate, 1e-6f);
+  // The points may all lie on dark texels: keep a part of the estimate for the whole material.
+  return measure_radiance(scene, triangle) + 0.05f * std::max(material.emission_estimate, 0.0f) + 1e-6f;
+}
+
+// Without its power.
+LightBounds bounds_of_corners(const std::array<Vec3, 3>& p) {
+  LightBounds b;
+  b.lower = glm::min(p[0], glm::min(p[1], p[2]));
+  b.upper = glm::max(p[0], glm::max(p[1], p[2]));
+  const Vec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const float length = glm::length(n);
+  if (length > 0.0f) b.axis = n / length;
+  b.two_sided = true;
+  return b;
+}
+
+// All places where it is while the shutter is open, as far as a few moments tell: only the choice among lights depends on them.
+LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& triangle, bool measure) {
+  constexpr int kMoments = 5;
+  const bool moves = scene.instances[triangle.instance].moves();
+  LightBounds b = bounds_of_corners(scene.corners(triangle.instance, triangle.triangle, 0.0f));
+  for (int i = 1; i < kMoments && moves; ++i)
+    b = unite(b, bounds_of_corners(scene.corners(triangle.instance, triangle.triangle, float(i) / (kMoments - 1))));
+  b.power = std::min(radiance_estimate(scene, triangle, measure) * triangle.area, 1e30f);
+  return b;
+}
+
+std::vector<LightBounds> all_bounds(const LitScene& scene, const LightTable& table, const CommitMonitor& monitor) {
+  std::vector<LightBounds> bounds;
+  for (const uint32_t light : table.tree_lights) bounds.push_back(light_bounds(table.analytic_lights[light]));
+  const size_t analytic_lights = bounds.size();
+  bounds.resize(analytic_lights + table.triangles.size());
+  const bool measure = table.triangles.size() <= kMaxMeasured;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, table.triangles.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
+    if (!monitor.is_running()) return;
+    for (size_t i = range.begin(); i < range.end(); ++i) bounds[analytic_lights + i] = triangle_bounds(scene, table.triangles[i], measure);
+  });
+  monitor.check();
+  return bounds;
+}
+
+void sort_lights(LightTable* table) {
+  for (uint32_t i = 0; i < table->analytic_lights.size(); ++i) {
+    const AnalyticLight& light = table->analytic_lights[i];
+    auto& list = light.at_infinity() ? table->suns : table->tree_lights;
+    table->slot.push_back(uint32_t(list.size()));
+    list.push_back(i);
+    if (!light.at_infinity()) continue;
+    // Irradiance facing the disk: radiance times its projected solid angle pi sin².
+    const float projected = kPi * light.one_minus_cos_sun * (2.0f - light.one_minus_cos_sun);
+    table->sun_irradiance.push_back(mean_component(glm::abs(light.intensity)) * (light.dirac() ? 1.0f : projected));
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector<AnalyticLight> analytic_lights, WorldMap* world,
+                                             const CommitMonitor& monitor) {
+  auto table = std::make_shared<LightTable>();
+  table->analytic_lights = std::move(analytic_lights);
+  sort_lights(table.get());
+  find_triangles(scene, monitor, table.get());
+  table->tree.build(all_bounds(scene, *table, monitor), [&] { return !monitor.is_running(); });
+  monitor.check();
+  table->world = build_world(scene, world, monitor);
+  return table;
+}
+
+}  // namespace gradus

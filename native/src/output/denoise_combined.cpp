@@ -1,0 +1,121 @@
+#include "output/denoise_combined.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/device.h"
+#include "base/threads.h"
+#include "base/error.h"
+#include "base/types.h"
+#include "output/denoise.h"
+#include "film/features.h"
+#include "reconstruct/feature_filter.h"
+#include "reconstruct/solver_planes.h"
+#include "output/pass_read.h"
+
+namespace gradus {
+namespace {
+
+// In the mean of a regression on features and of what the network makes of the noisy image: they err in different places, and their mean
+// errs less than either. A geometric one, since the larger of two is more often wrong, of light above a tenth of the median
+// (docs/method.md).
+constexpr float kShareOfNetwork = 0.7f, kDark = 0.1f;
+// Of REGULARIZED's: 0.68 at 8 samples, 0.76 at 32.
+constexpr float kErrorOfMean = 0.7f;
+
+// The part of an RGB picture of `whole` that lies in `region`.
+std::vector<float> crop(const std::vector<float>& rgb, const Region& whole, const Region& region) {
+  std::vector<float> part;
+  part.reserve(3 * size_t(region.area()));
+  for (int32_t y = region.y0; y < region.y1; ++y) {
+    const auto row = rgb.begin() + 3 * (ptrdiff_t(y - whole.y0) * whole.width() + (region.x0 - whole.x0));
+    part.insert(part.end(), row, row + 3 * ptrdiff_t(region.width()));
+  }
+  return part;
+}
+
+// Without its noise, of the region.
+std::vector<float> read_guide(const Film& film, uint32_t pass, const Region& region) {
+  return crop(filter_feature(read_feature(film, pass), film.region.width(), film.region.height()).values, film.region, region);
+}
+
+// `combined`, RGBA, becomes its mean with `image`, RGB.
+void blend(const std::vector<float>& image, std::vector<float>* combined) {
+  std::vector<float> light;
+  light.reserve(image.size() / 3);
+  for (size_t i = 0; i < combined->size(); i += 4) {
+    const float sum = (*combined)[i] + (*combined)[i + 1] + (*combined)[i + 2];
+    if (sum > 0.0f && is_finite(sum)) light.push_back(sum / 3.0f);
+  }
+  const float dark = kDark * median_or_one(&light), minimum = 1e-3f * dark;
+  for (size_t i = 0; i < image.size(); ++i) {
+    float& value = (*combined)[i / 3 * 4 + i % 3];
+    if (!is_finite(value)) continue;
+    const float regressed = std::max(value + dark, minimum), denoised = std::max(image[i] + dark, minimum);
+    value = std::max(regressed * std::pow(denoised / regressed, kShareOfNetwork) - dark, 0.0f);
+  }
+}
+
+// `combined`, RGBA, becomes `image`, RGB.
+void replace(const std::vector<float>& image, std::vector<float>* combined) {
+  for (size_t i = 0; i < image.size(); ++i) (*combined)[i / 3 * 4 + i % 3] = image[i];
+}
+
+}  // namespace
+
+std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Device* device, std::string* why_not) {
+  if (denoiser > GRADUS_DENOISER_OIDN) throw invalid_argument("there is no denoiser " + std::to_string(denoiser));
+  *why_not = "denoiser is none";
+  if (denoiser == GRADUS_DENOISER_NONE) return nullptr;
+  auto library = find_oidn({device ? device->denoiser_path() : ""}, why_not);
+  if (!library && denoiser == GRADUS_DENOISER_OIDN) throw unsupported("denoiser oidn: " + *why_not + ": use denoiser auto or none");
+  return library;
+}
+
+namespace {
+
+std::vector<float> denoise_or_throw(const OidnLibrary& library, const Film& film, uint32_t reconstruction, const Region& region,
+                                    uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined) {
+  // Samples are there around a region, too; a reconstruction is not.
+  const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED, sampled = blends || reconstruction == GRADUS_RECONSTRUCTION_NONE;
+  const Region& seen = sampled ? film.region : region;
+  std::vector<float> albedo, normal;
+  if (has_features(film)) {
+    tbb::task_arena(arena_size(threads)).execute([&] {
+      albedo = read_guide(film, GRADUS_PASS_DENOISING_ALBEDO, seen);
+      normal = read_guide(film, GRADUS_PASS_DENOISING_NORMAL, seen);
+    });
+  }
+  std::vector<float> noisy;
+  if (sampled) {
+    noisy.resize(4 * size_t(seen.area()));
+    read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, seen, noisy.data());
+  }
+  NoisyPicture picture{seen.width(), seen.height(), sampled ? noisy.data() : combined.data(), 4};
+  if (!albedo.empty()) picture.albedo = albedo.data();
+  if (!normal.empty()) picture.normal = normal.data();
+  const std::vector<float> image = crop(denoise(library, picture, threads, cancel), seen, region);
+  std::vector<float> result = combined;
+  blends ? blend(image, &result) : replace(image, &result);
+  return result;
+}
+
+}  // namespace
+
+float denoised_error(uint32_t reconstruction) { return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kErrorOfMean : 1.0f; }
+
+std::vector<float> denoise_combined(const OidnLibrary& library, const Film& film, uint32_t reconstruction, const Region& region,
+                                    uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined, std::string* failure) {
+  const char* const what = "the picture was not denoised: ";
+  try {
+    return denoise_or_throw(library, film, reconstruction, region, threads, cancel, combined);
+  } catch (const Error& e) {
+    if (e.code() == GRADUS_ERROR_CANCELLED) throw;
+    *failure = std::string(what) + e.what();
+  } catch (const std::bad_alloc&) {
+    *failure = std::string(what) + "out of memory";
+  }
+  return {};
+}
+
+}  // namespace gradus

@@ -1,0 +1,329 @@
+#include "path/pass_recorder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/finite_check.h"
+#include "geometry/mesh.h"
+#include "schema/pass_table.h"
+#include "shading/material.h"
+
+namespace gradus {
+
+namespace {
+
+PassShare whole(LightPass pass) {
+  PassShare share{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
+  share[static_cast<int>(pass)] = Rgb(1.0f);
+  return share;
+}
+
+// Per channel; where a channel has no light at all it does not matter who gets it.
+PassShare share_of(const std::array<Rgb, 3>& parts) {
+  const Rgb sum = parts[0] + parts[1] + parts[2];
+  PassShare share;
+  for (int pass = 0; pass < 3; ++pass) {
+    for (int c = 0; c < 3; ++c) {
+      share[pass][c] = sum[c] != 0.0f ? parts[pass][c] / sum[c] : (pass == 0 ? 1.0f : 0.0f);
+    }
+  }
+  return share;
+}
+
+constexpr uint32_t first_pass(int light_pass) { return GRADUS_PASS_DIFFUSE_DIRECT + 3u * static_cast<uint32_t>(light_pass); }
+
+// As Blender's pass has it: u, v, 1; 0 without a UV map.
+Vec3 uv_of(const MeshData& mesh, const Hit& hit) {
+  const MeshAttribute* map = default_uv_map(mesh);
+  if (map == nullptr) {
+    return Vec3(0.0f);
+  }
+  const Vec4 uv = interpolate(corner_values(mesh, *map, hit.triangle), hit.barycentric);
+  return Vec3(uv.x, uv.y, 1.0f);
+}
+
+// Of a length.
+float inverse_of(float length) { return 1.0f / std::max(length, 1e-10f); }
+
+Vec3 shown_normal(const Vertex& vertex) {
+  if (!vertex.shade.closures.empty()) {
+    return vertex.shade.closures.average_normal();
+  }
+  const Vec3 n = vertex.point.shading_normal;
+  return glm::dot(n, vertex.wo) < 0.0f ? -n : n;
+}
+
+}  // namespace
+
+PassRecorder::PassRecorder(const PathContext& context, Film* film, Counters* counters) : context_(context), counters_(counters) {
+  for (PassPlane& plane : film->passes) {
+    planes_[plane.pass] = &plane;
+    active_ = true;
+    lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
+    const bool is_feature = pass_info(plane.pass).kind == PassKind::Feature;
+    features_ |= is_feature;
+    others_ |= !is_feature;
+  }
+  records_non_specular_ = !film->components[0].non_specular[0].empty();
+  records_details_ = !film->components[0].details.empty();
+  if (records_non_specular_ || records_details_) {
+    components_ = &film->components;
+    active_ = true;
+  }
+}
+
+void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool adds_components) {
+  pixel_ = pixel;
+  half_ = half;
+  number_ = number;
+  first_sample_ = number == context_.settings.first_sample;
+  adds_components_ = adds_components;
+  features_done_ = !features_ || adds_components;
+  seeks_non_specular_ = components_ != nullptr && !adds_components;
+  detail_components_ = vertex_components_ = 0;
+  path_length_ = 0.0f;
+  albedo_ = Rgb(0.0f);
+}
+
+void PassRecorder::add(uint32_t pass, const Vec4& value) {
+  PassPlane* target = plane(pass);
+  if (target != nullptr && (first_sample_ || !target->first_sample_only)) {
+    add_feature(&value.x, 1.0f, pixel_, half_, target, counters_);
+  }
+}
+
+void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass) {
+  if (!lights_) {
+    return;
+  }
+  if (scatterings == 0) {
+    add(direct_pass, value);
+    return;
+  }
+  for (int pass = 0; pass < 3; ++pass) {
+    add(first_pass(pass) + (scatterings > 1 ? 1u : 0u), value * share[pass]);
+  }
+}
+
+void PassRecorder::light(const PathState& state, const Vertex& vertex, ScatterClass c, const LightSample& light, const Rgb& value) {
+  if (!lights_) {
+    return;
+  }
+  const bool first = state.depth == 0;
+  add_light(state.depth + 1, value, first ? share_of(light_by_pass(context_, vertex, c, light, state.ray.state)) : share_,
+            GRADUS_PASS_EMISSION);
+}
+
+void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
+  seeks_non_specular_ = seeks_non_specular_ && event.scatter_class != ScatterClass::Diffuse;
+  detail_components_ = vertex_components_ = 0;
+  if (depth > 0 || !lights_) {
+    return;
+  }
+  const Closures& closures = vertex.shade.closures;
+  if (event.sample.dirac) {
+    share_ = whole(closures.lobe(event.sample.lobe).pass);
+    return;
+  }
+  std::array<Rgb, 3> parts = closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi, event.sample.transmitted);
+  for (int pass = 0; pass < 3 && event.by_kind; ++pass) {
+    if ((static_cast<LightPass>(pass) == LightPass::Diffuse) != event.sample.diffuse) parts[pass] = Rgb(0.0f);
+  }
+  share_ = share_of(parts);
+}
+
+void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
+  path_length_ += segment.length;
+  if (state.depth == 0 && others_ && !adds_components_) {
+    camera_surface(sampler, state.throughput, vertex);
+  }
+  if (!features_done_) {
+    features(state, vertex);
+  }
+  if (seeks_non_specular_) {
+    if (records_non_specular_) non_specular_vertex(state, vertex);
+    if (records_details_) details(state, vertex);
+  }
+}
+
+void PassRecorder::escaped(const PathState& state) {
+  if (state.depth > 0 || adds_components_) {
+    return;
+  }
+  add(GRADUS_PASS_MIST, 1.0f);
+  if (plane(GRADUS_PASS_VECTOR) != nullptr) {
+    background_motion(state.ray.ray.direction);
+  }
+}
+
+void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex) {
+  colors(weight, vertex);
+  if (plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr) {
+    ambient_occlusion(sampler, weight, vertex);
+  }
+  mist(weight, vertex.point.position, vertex.point.hit.time);
+  if (1.0f - mean_component(vertex.shade.transparency) < context_.settings.alpha_threshold) {
+    return;  // too thin for data passes
+  }
+  const InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
+  add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position, vertex.point.hit.time));
+  add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
+  add(GRADUS_PASS_OBJECT_INDEX, static_cast<float>(instance.pass_index));
+  add(GRADUS_PASS_MATERIAL_INDEX, static_cast<float>(context_.scene.materials[vertex.point.material]->pass_index));
+  add(GRADUS_PASS_NORMAL, shown_normal(vertex));
+  if (plane(GRADUS_PASS_UV) != nullptr) {
+    add(GRADUS_PASS_UV, uv_of(*instance.mesh, vertex.point.hit));
+  }
+  if (plane(GRADUS_PASS_VECTOR) != nullptr) {
+    motion(vertex);
+  }
+}
+
+void PassRecorder::colors(const Rgb& weight, const Vertex& vertex) {
+  for (int pass = 0; pass < 3 && lights_; ++pass) {
+    if (plane(first_pass(pass) + 2) != nullptr) {
+      add(first_pass(pass) + 2, weight * vertex.shade.closures.albedo(static_cast<LightPass>(pass), vertex.wo));
+    }
+  }
+}
+
+void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex) {
+  const Vec2 u = sampler.get2(dimension::kFirstVertex + dimension::kOcclusion);
+  const Vec3 n = shown_normal(vertex);
+  const Vec3 t = glm::normalize(std::fabs(n.x) > 0.5f ? glm::cross(n, Vec3(0, 1, 0)) : glm::cross(n, Vec3(1, 0, 0)));
+  const float radius = std::sqrt(u.x);
+  const float angle = 2.0f * kPi * u.y;
+  const Vec3 direction = glm::normalize(t * (radius * std::cos(angle)) + glm::cross(n, t) * (radius * std::sin(angle)) +
+                                        n * std::sqrt(std::max(0.0f, 1.0f - u.x)));
+  if (!(glm::dot(direction, vertex.facing_normal()) > 0.0f)) {
+    return;
+  }
+  const float limit = context_.scene.world.ao_distance;
+  const bool blocked = context_.scene.occluded(spawn_ray(vertex.point, direction, limit > 0.0f ? limit : kInfinity));
+  ++counters_->rays_shadow;
+  add(GRADUS_PASS_AMBIENT_OCCLUSION, blocked ? Rgb(0.0f) : weight);
+}
+
+void PassRecorder::mist(const Rgb& weight, const Vec3& position, float time) {
+  if (plane(GRADUS_PASS_MIST) == nullptr) {
+    return;
+  }
+  const GradusWorld& world = context_.scene.world;
+  const bool orthographic = context_.scene.camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
+  const float distance =
+      orthographic ? std::fabs(context_.camera.depth(position, time)) : glm::length(position - context_.camera.position(time));
+  const float range = std::max(world.mist_depth, 1e-6f);
+  float value = std::clamp((distance - world.mist_start) / range, 0.0f, 1.0f);
+  if (world.mist_falloff == GRADUS_MIST_QUADRATIC) {
+    value *= value;
+  } else if (world.mist_falloff == GRADUS_MIST_INVERSE_QUADRATIC) {
+    value = std::sqrt(value);
+  }
+  add(GRADUS_PASS_MIST, 1.0f - mean_component(weight) * (1.0f - value));
+}
+
+template <class Project>
+void PassRecorder::add_motion(const Project& project) {
+  Vec2 now, previous, next;
+  if (project(Moment::Now, &now) && project(Moment::Previous, &previous) && project(Moment::Next, &next)) {
+    add(GRADUS_PASS_VECTOR, Vec4(context_.camera.film_displacement(now, previous), context_.camera.film_displacement(next, now)));
+  }
+}
+
+void PassRecorder::motion(const Vertex& vertex) {
+  add_motion([&](Moment moment, Vec2* film) {
+    return context_.camera.project(context_.scene.position_at(vertex.point.hit, moment), moment, film);
+  });
+}
+
+void PassRecorder::background_motion(const Vec3& direction) {
+  add_motion([&](Moment moment, Vec2* film) { return context_.camera.project_direction(direction, moment, film); });
+}
+
+// Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles, where what shines counts as an
+// albedo, too: lights and the sky, which have no closures, would else look like black.
+void PassRecorder::features(const PathState& state, const Vertex& vertex) {
+  const Closures& closures = vertex.shade.closures;
+  add_albedo(state.throughput * vertex.shade.emission);
+  const bool mirror = !closures.empty() && closures.class_probability(ScatterClass::Diffuse) < 0.25f;
+  if (mirror && !state.emission_only) {
+    return;
+  }
+  features_done_ = true;
+  if (plane(GRADUS_PASS_DENOISING_ALBEDO) != nullptr) {
+    add_albedo(state.throughput * closures.albedo(vertex.wo));
+  }
+  add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
+  add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
+}
+
+// The first rough vertex of all paths that scatter here in class D; some of them may have been seen in a mirror on the way.
+uint32_t PassRecorder::components_of_non_specular(const PathState& state, const Vertex& vertex) const {
+  if (!(vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f)) {
+    return 0;
+  }
+  return context_.components.ahead(context_.components.next(state.lpe_state, ScatterClass::Diffuse));
+}
+
+void PassRecorder::non_specular_vertex(const PathState& state, const Vertex& vertex) {
+  const uint32_t ahead = components_of_non_specular(state, vertex);
+  if (ahead == 0) {
+    return;
+  }
+  record(ahead, NonSpecularVertices{vertex.shade.closures.albedo(vertex.wo), shown_normal(vertex), inverse_of(path_length_), 1.0f});
+}
+
+// Of a surface that is rough, or that shines.
+void PassRecorder::details(const PathState& state, const Vertex& vertex) {
+  uint32_t components = components_of_non_specular(state, vertex);
+  if (!is_black(vertex.shade.emission)) components |= uint32_t{1} << context_.components.component(state.lpe_state);
+  if (components == 0) {
+    return;
+  }
+  const Hit& hit = vertex.point.hit;
+  const InstanceData& instance = context_.scene.instances[hit.instance];
+  const auto object = static_cast<float>(instance.pass_index), face = static_cast<float>(instance.mesh->face(hit.triangle));
+  record(components, {uv_of(*instance.mesh, hit), vertex.shade.emission, 0.0f, object, face, number_});
+}
+
+// What a segment shows counts once, be it several lights and the surface behind them.
+void PassRecorder::record(uint32_t components, const NonSpecularDetails& here) {
+  for (size_t c = 0; c < components_->size(); ++c) {
+    if ((components >> c & 1) == 0) continue;
+    NonSpecularDetails once = here;
+    once.segments = (detail_components_ >> c & 1) == 0 ? 1.0f : 0.0f;
+    add_details(once, &(*components_)[c].details[pixel_], counters_);
+  }
+  detail_components_ |= components;
+}
+
+// Likewise: it is as far as the first of these, and reflects no more than all light.
+void PassRecorder::record(uint32_t components, const NonSpecularVertices& here) {
+  for (size_t c = 0; c < components_->size(); ++c) {
+    if ((components >> c & 1) == 0) continue;
+    const bool is_first = (vertex_components_ >> c & 1) == 0;
+    const Rgb before = is_first ? Rgb(0.0f) : recorded_reflectance_[c];
+    recorded_reflectance_[c] = glm::clamp(before + here.reflectance, Rgb(0.0f), Rgb(1.0f));
+    NonSpecularVertices once = here;
+    once.reflectance = recorded_reflectance_[c] - before;
+    if (!is_first) once.inverse_depth = once.samples = 0.0f;
+    add_non_specular(once, &(*components_)[c].non_specular[half_][pixel_], counters_);
+  }
+  vertex_components_ |= components;
+}
+
+void PassRecorder::record_emission(int component, const Rgb& light, float further) {
+  if (!seeks_non_specular_ || !records_non_specular_ || is_black(light)) {
+    return;
+  }
+  record(uint32_t{1} << component, NonSpecularVertices{light, Vec3(0.0f), inverse_of(path_length_ + further), 1.0f});
+}
+
+// A sample's albedo stays in [0, 1], as denoisers expect it.
+void PassRecorder::add_albedo(const Rgb& value) {
+  const Rgb sum = glm::clamp(albedo_ + value, Rgb(0.0f), Rgb(1.0f));
+  add(GRADUS_PASS_DENOISING_ALBEDO, sum - albedo_);
+  albedo_ = sum;
+}
+
+}  // namespace gradus

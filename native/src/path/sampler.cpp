@@ -1,0 +1,93 @@
+#include "path/sampler.h"
+
+#include "path/hash.h"
+
+namespace gradus {
+
+namespace {
+
+uint32_t reverse_bits(uint32_t x) {
+  x = (x << 16) | (x >> 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+// Owen scrambling by a hash in which bit i depends only on bits below it: Laine and Karras 2011, in the form of Burley 2020 ("Practical
+// Hash-based Owen Scrambling"), with Vegdahl's constants. Works on bit-reversed values.
+uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+// Second Sobol dimension, bit-reversed: Pascal's matrix mod 2, which is a Kronecker power and so factors into log₂ 32 steps.
+uint32_t pascal(uint32_t x) {
+  x ^= (x >> 1) & 0x55555555u;
+  x ^= (x >> 2) & 0x33333333u;
+  x ^= (x >> 4) & 0x0f0f0f0fu;
+  x ^= (x >> 8) & 0x00ff00ffu;
+  return x ^ ((x >> 16) & 0x0000ffffu);
+}
+
+// The 24 high bits, so that the result stays below 1. Signed: what vector units convert.
+float to_unit(uint32_t bits) { return static_cast<float>(static_cast<int32_t>(bits >> 8)) * 0x1p-24f; }
+
+// Point of a block as 32-bit fractions. Padding: each block is the same 2-D net, its points in an order of its own.
+struct Bits {
+  uint32_t x, y;
+};
+[[gnu::always_inline]] inline Bits net_point(uint32_t stream_hash, uint32_t block, uint32_t reversed_index) {
+  const uint32_t seed = combine(stream_hash, block);
+  const uint32_t index = reverse_bits(scramble_reversed(reversed_index, seed));
+  return {reverse_bits(scramble_reversed(index, mix(seed ^ 0x68bc21ebu))),
+          reverse_bits(scramble_reversed(pascal(index), mix(seed ^ 0x02e5be93u)))};
+}
+
+}  // namespace
+
+Sampler::Sampler(const SampleKey& key, bool independent)
+    : index_(key.index >> 1), reversed_index_(reverse_bits(index_)), independent_(independent) {
+  uint32_t h = combine(0x67726164u, key.seed);
+  h = combine(h, static_cast<uint32_t>(key.kind));
+  h = combine(h, key.stream);
+  h = combine(h, static_cast<uint32_t>(key.stream_frame));
+  stream_hash_ = combine(h, key.index & 1u);  // the half: its own shuffle and scramble
+}
+
+Vec2 Sampler::get2(uint32_t block) const {
+  if (independent_) {
+    const uint32_t h = combine(combine(stream_hash_, block), index_);
+    return Vec2(to_unit(h), to_unit(mix(h ^ 0x5bd1e995u)));
+  }
+  const Bits bits = net_point(stream_hash_, block, reversed_index_);
+  return Vec2(to_unit(bits.x), to_unit(bits.y));
+}
+
+VertexSample Sampler::vertex(int depth) const {
+  constexpr uint32_t lanes = 8;
+  static_assert(dimension::kRoulette < lanes);
+  const uint32_t first = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
+  float x[lanes], y[lanes];
+  if (independent_) {
+    for (uint32_t i = 0; i <= dimension::kRoulette; ++i) {
+      const Vec2 u = get2(first + i);
+      x[i] = u.x;
+      y[i] = u.y;
+    }
+  } else {
+    for (uint32_t i = 0; i < lanes; ++i) {
+      const Bits bits = net_point(stream_hash_, first + i, reversed_index_);
+      x[i] = to_unit(bits.x);
+      y[i] = to_unit(bits.y);
+    }
+  }
+  const auto at = [&](uint32_t block) { return Vec2(x[block], y[block]); };
+  return {at(dimension::kBsdf), at(dimension::kLobe), at(dimension::kLight), at(dimension::kLightChoice), at(dimension::kRoulette)};
+}
+
+}  // namespace gradus

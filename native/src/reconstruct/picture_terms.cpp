@@ -1,0 +1,107 @@
+#include "reconstruct/picture_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reconstruct/box_mean.h"
+#include "reconstruct/field_values.h"
+#include "reconstruct/solver_planes.h"
+
+namespace gradus {
+namespace {
+
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
+
+// What was sampled there errs by no more, and where nothing of a part was met there is nothing to be wrong.
+void limit_by_noise(const Field& half_difference, Field* error) {
+  const int w = error->width(), h = error->height();
+  const Field noise = box_mean(make_field(w, h, [&](int x, int y) { return mean_of_squares(half_difference, x, y); }), 1);
+  for_values(error, [&](float& value, int x, int y, int) { value = std::min(value, noise.row(y)[x]); });
+}
+
+// Squares of strong light are beyond single precision.
+void scale_error(float scale, Field* error) {
+  for_values(error, [scale](float& value, int, int, int) { value = std::min(scale * (scale * value), kMaxFloat); });
+}
+
+// A value of one channel and pixel in one part. In double: weights are squares.
+struct Share {
+  double value, weight, minimum;
+};
+
+// All of `lack` by weight, what may not go below its least value no further than that. Returns what is left of it.
+double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const Share&)) {
+  for (size_t round = 0; round < shares.size() && lack != 0.0; ++round) {
+    const auto is_open = [lack](const Share& share) { return lack > 0.0 || share.value > share.minimum; };
+    double total = 0.0;
+    for (const Share& share : shares) total += is_open(share) ? weight_of(share) : 0.0;
+    if (!(total > 0.0)) return lack;
+    double left = 0.0;
+    for (Share& share : shares) {
+      if (!is_open(share)) continue;
+      const double wanted = share.value + lack * (weight_of(share) / total);
+      share.value = lack > 0.0 ? wanted : std::max(wanted, share.minimum);
+      left += wanted - share.value;
+    }
+    lack = left;
+  }
+  return lack;
+}
+
+void distribute(double whole, std::vector<Share>& shares) {
+  double lack = whole;
+  for (const Share& share : shares) lack -= share.value;
+  lack = spread(lack, shares, [](const Share& share) { return share.weight; });
+  lack = spread(lack, shares, [](const Share& share) { return std::fabs(share.value); });
+  if (!shares.empty()) shares.back().value += lack;
+}
+
+}  // namespace
+
+PictureTerm regress_term(const Features& guides, HalvedImage sampled, const CancelCheck& cancel) {
+  PictureTerm term;
+  term.may_be_negative = any_value(sampled.mean, [](float value) { return value < 0.0f; });
+  if (is_black(sampled.half_difference)) {
+    term.error = Field(sampled.mean.width(), sampled.mean.height(), 1);
+    term.image = std::move(sampled.mean);
+    return term;
+  }
+  const float scale = robust_scale(sampled.mean);
+  normalise(scale, &sampled);
+  const FeatureRegression regression(guides, sampled, cancel);
+  term.image = regression.image();
+  term.error = regression.error();
+  limit_by_noise(sampled.half_difference, &term.error);
+  scale_light(scale, &term.image);
+  scale_error(scale, &term.error);
+  if (!term.may_be_negative) for_values(&term.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
+  return term;
+}
+
+void add_up(const Field& whole, std::vector<PictureTerm>* terms) {
+  for_rows(whole.height(), [&](int y) {
+    std::vector<Share> shares;
+    std::vector<float*> values;
+    for (int c = 0; c < whole.channels(); ++c) {
+      for (int x = 0; x < whole.width(); ++x) {
+        shares.clear();
+        values.clear();
+        for (PictureTerm& term : *terms) {
+          float* const value = term.image.row(y, c) + x;
+          const double room = term.room.width() > 0 ? term.room.row(y, c)[x] : 1.0;
+          if (room == 0.0) {
+            *value = 0.0f;
+          } else {
+            shares.push_back({*value, room * room * term.error.row(y)[x], term.may_be_negative ? -INFINITY : 0.0});
+            values.push_back(value);
+          }
+        }
+        distribute(whole.row(y, c)[x], shares);
+        for (size_t i = 0; i < values.size(); ++i) *values[i] = std::clamp(float(shares[i].value), -kMaxFloat, kMaxFloat);
+      }
+    }
+  });
+}
+
+}  // namespace gradus

@@ -1,0 +1,91 @@
+// Row by row over the pixels that are linked.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "reconstruct/field.h"
+#include "base/rows.h"
+#include "reconstruct/space_time/correspondence_map.h"
+#include "reconstruct/space_time/screened_laplacian.h"
+
+namespace gradus {
+
+// F_t: to[i] = next[φ(i)] in row y, all channels; pixels without a link are left alone.
+inline void gather_row(const CorrespondenceMap& correspondence, int y, const Field& next, RollingRows* to) {
+  correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
+    for (int c = 0; c < next.channels(); ++c) {
+      std::copy_n(next.row(y + dy, c) + begin + dx, end - begin, to->row(y, c) + begin);
+    }
+  });
+}
+
+// F_t x_{t+1} − x_t: to[i] = next[φ(i)] − x[i] in row y, all channels; pixels without a link are left alone.
+inline void subtract_row(const CorrespondenceMap& correspondence, int y, const Field& x, const Field& next, RollingRows* to) {
+  correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
+    for (int c = 0; c < x.channels(); ++c) {
+      const float *here = x.row(y, c), *there = next.row(y + dy, c) + dx;
+      float* out = to->row(y, c);
+      for (int i = begin; i < end; ++i) out[i] = there[i] - here[i];
+    }
+  });
+}
+
+// F_tᵀ: next[φ(i)] += from[i] in row y, of the rows of all channels one after another.
+inline void scatter_row(const CorrespondenceMap& correspondence, int y, const float* from, Field* next) {
+  correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
+    for (int c = 0; c < next->channels(); ++c) {
+      const float* row = from + ptrdiff_t(c) * correspondence.width();
+      float* to = next->row(y + dy, c) + dx;
+      for (int i = begin; i < end; ++i) to[i] += row[i];
+    }
+  });
+}
+
+// Passes over all rows, in pieces with scratch of their own: Pass has make(y), called for each row with the ones before and behind it, and
+// rows beyond the border among them, and then use(y).
+template <class MakePass>
+void roll_over_rows(int height, const MakePass& make_pass) {
+  constexpr int kGrain = 64;  // a row on each side of a piece is made twice
+  for_pieces(
+      height,
+      [&](int begin, int end) {
+        auto pass = make_pass();
+        pass.make(begin - 1);
+        pass.make(begin);
+        for (int y = begin; y < end; ++y) {
+          pass.make(y + 1);
+          pass.use(y);
+        }
+      },
+      kGrain);
+}
+
+// Passes over the rows of K v, where fill(y, &rows) makes row y of v out of zeros and use(y, &rows, products) takes row y of v
+// and of the product, all channels one after another.
+template <class Fill, class Use>
+void for_product_rows(const ScreenedLaplacian& k, int channels, const Fill& fill, const Use& use) {
+  struct Pass {
+    void make(int y) {
+      for (int c = 0; c < channels; ++c) std::fill_n(rows.row(y, c), k.width(), 0.0f);
+      if (y >= 0 && y < k.height()) fill(y, &rows);
+    }
+    void use(int y) {
+      weights.load(k, y);
+      for (int c = 0; c < channels; ++c) {
+        weights.apply(rows.row(y - 1, c), rows.row(y, c), rows.row(y + 1, c), products.data() + ptrdiff_t(c) * k.width());
+      }
+      take(y, &rows, products.data());
+    }
+    const ScreenedLaplacian& k;
+    int channels;
+    const Fill& fill;
+    const Use& take;
+    RollingRows rows{k.width(), channels};
+    LaplacianRow weights{k.width()};
+    std::vector<float> products = std::vector<float>(size_t(k.width()) * size_t(channels));
+  };
+  roll_over_rows(k.height(), [&] { return Pass{k, channels, fill, use}; });
+}
+
+}  // namespace gradus

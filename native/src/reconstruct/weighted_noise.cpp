@@ -1,0 +1,35 @@
+#include "reconstruct/weighted_noise.h"
+
+#include "reconstruct/minimise_by_noise.h"
+#include "reconstruct/twicing.h"
+
+namespace gradus {
+namespace {
+
+// The estimate needs no more digits than this.
+constexpr CgGoal kGoal{.residual = 1e-2f, .row_error = 0.1f};
+constexpr int kMaxSteps = 10;
+
+}  // namespace
+
+NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, float alpha, const CancelCheck& cancel) {
+  alpha = chosen_alpha(GRADUS_RECONSTRUCTION_L1, alpha);
+  SolveReport report;
+  Minimum minimum = minimise_by_noise(images, cancel, &report);
+  const int channels = minimum.solution.channels();
+  Field noise(images.width, images.height, channels);
+  minimum.system.solve(load_planes(planes_of(half_differences, 0), images.width, images.height, channels), kGoal, kMaxSteps, cancel,
+                       &noise);
+  const Twicing twicing(images, minimum.solution, alpha);
+  const size_t stride = size_t(images.channels);
+  NoiseLeft left{std::vector<float>(images.primal.size()), std::vector<float>(images.primal.size())};
+  for (int c = 0; c < channels; ++c) {
+    store_channel(minimum.solution, c, stride, left.image.data() + c);
+    twicing.apply(planes_of(images, c), left.image.data() + c);
+    store_channel(noise, c, stride, left.noise.data() + c);
+    twicing.apply(planes_of(half_differences, c), left.noise.data() + c);
+  }
+  return left;
+}
+
+}  // namespace gradus

@@ -1,0 +1,111 @@
+#include "render/block_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct/error_estimate.h"
+#include "reconstruct/weighted_noise.h"
+#include "reconstruct/reconstruct_film.h"
+#include "reconstruct/regularized.h"
+#include "base/rows.h"
+
+namespace gradus {
+namespace {
+
+// Keeps the relative error of black areas finite; radiance² at display exposure (the measures' constant).
+constexpr double kEpsilon = 1e-3;
+
+// Of all components together.
+struct FilmNoise {
+  std::vector<float> image;  // what is delivered
+  ErrorTerms terms;
+  std::vector<float> by_its_weights;  // noise; empty where these do not follow it
+  std::vector<float> error;           // of a reconstruction that estimates it itself, in place of the terms
+};
+
+void add_terms(const Film& film, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
+               const CancelCheck& cancel, FilmNoise* sum) {
+  ErrorTerms terms = error_terms(film, component, reconstruction, alpha, image, cancel);
+  add_image(std::move(terms.noise), &sum->terms.noise);
+  add_image(std::move(terms.apart), &sum->terms.apart);
+}
+
+// Estimates the noise of L1 by weights of the measured noise, which are close to L1's weights and need no iteration.
+void add_l1(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel, FilmNoise* sum) {
+  GradientImages images = read_images(film, component);
+  read_deviations(film, component, &images);
+  NoiseLeft left = noise_left(images, read_half_differences(film, component), alpha, cancel);
+  images = {};
+  add_terms(film, component, reconstruction, alpha, left.image, cancel, sum);
+  add_image(std::move(left.image), &sum->image);
+  add_image(std::move(left.noise), &sum->by_its_weights);
+}
+
+void add_other(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel, FilmNoise* sum) {
+  SolveReport report;
+  std::vector<float> image = reconstruct_component(film, component, reconstruction, alpha, cancel, &report);
+  add_terms(film, component, reconstruction, alpha, image, cancel, sum);
+  add_image(std::move(image), &sum->image);
+}
+
+FilmNoise noise_of(const Film& film, uint32_t reconstruction, float alpha, const CancelCheck& cancel) {
+  FilmNoise sum;
+  if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    SolveReport report;
+    Reconstructed picture = regularize(film, false, cancel, &report);
+    sum.image = std::move(picture.image);
+    sum.error = std::move(picture.error);
+    return sum;
+  }
+  const auto add_component = reconstruction == GRADUS_RECONSTRUCTION_L1 ? add_l1 : add_other;
+  for (int component = 0; component < int(film.components.size()); ++component) {
+    add_component(film, component, reconstruction, alpha, cancel, &sum);
+  }
+  return sum;
+}
+
+// Mean over RGB.
+double gray(const float* pixel) { return (double(pixel[0]) + pixel[1] + pixel[2]) / 3.0; }
+
+// Of a pixel, squared; `i` is its index, `v` that of its first value.
+struct PixelNoise {
+  double noise = 0.0, apart = 0.0;  // see squared_error()
+  double own = 0.0;                 // by the own weights
+};
+
+PixelNoise noise_of_pixel(const FilmNoise& images, size_t i, size_t v) {
+  PixelNoise pixel;
+  pixel.noise = images.error.empty() ? mean_square(&images.terms.noise[v]) : double(images.error[i]);
+  if (!images.terms.apart.empty()) pixel.apart = mean_square(&images.terms.apart[v]);
+  pixel.own = images.by_its_weights.empty() ? pixel.noise : mean_square(&images.by_its_weights[v]);
+  return pixel;
+}
+
+BlockNoise noise_of_block(const Film& film, const FilmNoise& images, const Region& block) {
+  const double exposure = double(film.settings.film_exposure) * film.settings.film_exposure;
+  double noise = 0.0, apart = 0.0, signal = 0.0, relative = 0.0;
+  for (int32_t y = block.y0; y < block.y1; ++y) {
+    for (int32_t x = block.x0; x < block.x1; ++x) {
+      const size_t i = film.index(x, y), v = i * size_t(film.channels);
+      const PixelNoise pixel = noise_of_pixel(images, i, v);
+      const double g = gray(&images.image[v]), s = exposure * g * g + kEpsilon;
+      noise += exposure * pixel.noise;
+      apart += exposure * pixel.apart;
+      signal += s;
+      relative += exposure * pixel.own / s;
+    }
+  }
+  return {std::sqrt(squared_error(noise, apart) / signal), std::sqrt(relative / double(block.area()))};
+}
+
+}  // namespace
+
+std::vector<BlockNoise> estimate_noise(const Film& film, const std::vector<Region>& blocks, uint32_t reconstruction, float alpha,
+                                      const CancelCheck& cancel) {
+  const FilmNoise images = noise_of(film, reconstruction, alpha, cancel);
+  std::vector<BlockNoise> result(blocks.size());
+  for_rows(int(blocks.size()), [&](int i) { result[size_t(i)] = noise_of_block(film, images, blocks[size_t(i)]); });
+  return result;
+}
+
+}  // namespace gradus

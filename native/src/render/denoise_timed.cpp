@@ -1,0 +1,20 @@
+#include "render/denoise_timed.h"
+
+#include "base/scoped_timer.h"
+
+namespace gradus {
+
+std::vector<float> denoise_timed(const OidnLibrary& library, const Film& film, const Region& region, uint32_t threads,
+                                    const CancelCheck& cancel, const std::vector<float>& combined, RenderStats* stats) {
+  const ScopedTimer timer(&stats->seconds.denoise, &stats->cpu_seconds.denoise);
+  std::string failure;
+  std::vector<float> rgba = denoise_combined(library, film, film.settings.reconstruction, region, threads, cancel, combined, &failure);
+  if (rgba.empty()) {
+    stats->warnings.push_back(failure);
+  } else {
+    stats->denoiser = library.name();
+  }
+  return rgba;
+}
+
+}  // namespace gradus

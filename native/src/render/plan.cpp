@@ -1,0 +1,239 @@
+#include "render/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.h"
+#include "base/text_list.h"
+#include "bsdf/ggx.h"
+#include "schema/options.h"
+#include "schema/pass_table.h"
+
+namespace gradus {
+namespace {
+
+// Below this the variance estimated from two halves says too little (contract 5.3).
+constexpr uint32_t kFirstCheck = 16;
+
+std::string choice_of(const char* option, uint32_t value) { return choice_name(*find_option(option), value); }
+
+bool needs_gradients(uint32_t reconstruction) {
+  return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_L1;
+}
+
+// Samples from which the host's denoiser takes more off the error than those that its time would buy (docs/method.md).
+constexpr uint32_t kDenoiserPays = 8;
+static_assert(kDenoiserPays <= kFirstCheck);  // tiles that stop by their noise have enough
+
+std::string too_few_to_denoise() { return "with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples"; }
+
+void choose_automatically(const GradusSettings& settings, Plan* plan) {
+  const bool wants_differences = has_bit(settings.passes, GRADUS_PASS_GRADIENT_X) || has_bit(settings.passes, GRADUS_PASS_GRADIENT_Y);
+  if (!needs_gradients(settings.reconstruction) && !wants_differences) {  // on all of 13 scenes (docs/method.md)
+    plan->integrator = GRADUS_INTEGRATOR_PATH;
+    const bool none = settings.reconstruction == GRADUS_RECONSTRUCTION_NONE;
+    plan->chosen.emplace_back("integrator path", none ? "automatic: nothing is reconstructed from differences"
+                                                      : "automatic: features make more of more paths than of differences");
+    return;
+  }
+  plan->integrator = GRADUS_INTEGRATOR_GRADIENT;
+  plan->pilot = !wants_differences;
+  plan->chosen.emplace_back("integrator gradient", plan->pilot ? "automatic: wherever it pays" : "automatic: its passes are asked for");
+}
+
+void choose_integrator(const GradusSettings& settings, Plan* plan) {
+  switch (settings.integrator) {
+    case GRADUS_INTEGRATOR_AUTO:
+      choose_automatically(settings, plan);
+      break;
+    default:
+      plan->integrator = settings.integrator;
+      plan->chosen.emplace_back("integrator " + choice_of("integrator", plan->integrator), "set by the user");
+      break;
+  }
+  plan->gradients = plan->integrator == GRADUS_INTEGRATOR_GRADIENT;
+  if (!plan->gradients) plan->skipped.emplace_back("gradients", "the integrator is path");
+}
+
+void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
+  const uint32_t requested = settings.reconstruction;
+  if (needs_gradients(requested) && !plan->gradients) {
+    throw invalid_argument("reconstruction " + choice_of("reconstruction", requested) + " needs gradients, but the integrator is path: use " +
+                           "integrator gradient or reconstruction none");
+  }
+  plan->reconstruction = requested;
+  if (requested == GRADUS_RECONSTRUCTION_AUTO) {  // whoever asks for plain paths wants to see them
+    const bool plain = settings.integrator == GRADUS_INTEGRATOR_PATH;
+    plan->reconstruction = plain ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_REGULARIZED;
+  }
+  plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
+  const char* why = requested != GRADUS_RECONSTRUCTION_AUTO ? "set by the user"
+                                                        : "automatic: features of the surfaces and all samples, by their measured noise";
+  if (plan->solves) {
+    plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
+  } else {
+    plan->skipped.emplace_back("reconstruction", requested == GRADUS_RECONSTRUCTION_AUTO
+                                                     ? "the integrator is path: the noisy image is delivered"
+                                                     : "reconstruction is none: the noisy image is delivered");
+  }
+}
+
+void choose_denoiser(const GradusSettings& settings, const HostDenoiser& denoiser, Plan* plan) {
+  const bool automatic = settings.denoiser == GRADUS_DENOISER_AUTO;
+  if (denoiser.name.empty()) {
+    plan->skipped.emplace_back("denoiser", denoiser.why_not);
+  } else if (automatic && !denoiser_pays(settings.samples)) {
+    plan->skipped.emplace_back("denoiser", "automatic: " + too_few_to_denoise());
+  } else {
+    plan->denoises = true;
+    plan->denoiser = denoiser.name;
+    plan->denoises_if_it_pays = automatic && settings.time_limit > 0.0f;
+    if (plan->denoises_if_it_pays) return;
+    plan->chosen.emplace_back("denoiser " + denoiser.name, automatic ? "automatic: it is there" : "set by the user");
+  }
+}
+
+void choose_region(const GradusSettings& settings, Plan* plan) {
+  const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
+  const uint32_t* r = settings.region;
+  const bool whole = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
+  if (!whole && (r[0] >= r[2] || r[1] >= r[3] || r[2] > settings.width || r[3] > settings.height)) {
+    throw invalid_argument("the region is empty or reaches beyond the frame");
+  }
+  plan->delivered = whole ? full : Region{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
+  plan->sampled = plan->delivered;
+  if (plan->solves || plan->denoises) {
+    plan->sampled.x0 = std::max(full.x0, plan->delivered.x0 - kGuardRing);
+    plan->sampled.y0 = std::max(full.y0, plan->delivered.y0 - kGuardRing);
+    if (plan->reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {  // its windows and squares begin where those of the full frame do
+      plan->sampled.x0 -= plan->sampled.x0 % kMaxRegressionBlock;
+      plan->sampled.y0 -= plan->sampled.y0 % kMaxRegressionBlock;
+    }
+    plan->sampled.x1 = std::min(full.x1, plan->delivered.x1 + kGuardRing);
+    plan->sampled.y1 = std::min(full.y1, plan->delivered.y1 + kGuardRing);
+  }
+  if (plan->sampled.area() > plan->delivered.area()) {
+    plan->chosen.emplace_back("guard ring of 35 pixels",
+                              "the region is a part of the frame, and its picture should hardly feel the border");
+  }
+}
+
+void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* plan) {
+  if (!(snapshot.camera.aperture_radius > 0.0f)) plan->skipped.emplace_back("lens samples", "the camera is a pinhole");
+  if (!snapshot.features.has_transparent_shadows) plan->skipped.emplace_back("transparent shadows", "no material is transparent");
+  if (snapshot.features.min_alpha >= std::max(settings.roughness_threshold, kSmallestAlpha))
+    plan->skipped.emplace_back("half-vector shifts", "no material is sharper than the roughness threshold");
+  if (!snapshot.features.has_lights) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
+  if (snapshot.features.only_lights_emit)
+    plan->skipped.emplace_back("surfaces at the ends of paths", "no material emits light or lets it through");
+  if (plan->channels == 3) plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
+}
+
+// Bits of the classes by which some surface may scatter.
+uint32_t events_of(const GradusSettings& settings, const SceneFeatures& features) {
+  const float sharp = std::max(settings.roughness_threshold, kSmallestAlpha);
+  const auto bit = [](ScatterClass c) { return 1u << uint32_t(c); };
+  return bit(ScatterClass::Diffuse) | (features.min_alpha < sharp ? bit(ScatterClass::Reflection) : 0) |
+         (features.min_refracting_alpha < sharp ? bit(ScatterClass::Transmission) : 0);
+}
+
+bool shows_light(const SceneFeatures& features) {
+  return features.world_emits || features.has_lights_with_extent || !features.only_lights_emit;
+}
+
+void choose_components(const GradusSettings& settings, const SceneFeatures& features, Plan* plan) {
+  if (settings.use_decomposition == 0) return;
+  const std::string text = get_text(settings, *find_option("components"));
+  const ComponentSet all = ComponentSet::parse(text);
+  const uint32_t seen = shows_light(features) ? 1u << all.component(LpeState{0}) : 0;
+  plan->non_specular_vertices = any_wanted(settings.component_passes, is_of_non_specular_vertices);
+  plan->non_specular_details = any_wanted(settings.component_passes, is_of_non_specular_details);
+  plan->component_motion = any_wanted(settings.component_passes, is_motion);
+  const uint32_t kept = all.reached(events_of(settings, features)) | seen;
+  plan->components = all.without_empty(kept);
+  // Data of what has no light may be wanted all the same.
+  plan->merges_components = text.empty() && !plan->non_specular_vertices && !plan->non_specular_details && !plan->component_motion;
+  std::string names, absent;
+  for (int i = 0; i < all.count(); ++i) add_item(plan->components.find(all[i].name) >= 0 ? &names : &absent, all[i].name);
+  plan->chosen.emplace_back("components " + names, text.empty() ? "automatic: the default set" : "set by the user");
+  if (!absent.empty()) plan->skipped.emplace_back("components " + absent, "by the scene's surfaces and lights no path is of their kind");
+}
+
+void choose_passes(const GradusSettings& settings, Plan* plan) {
+  plan->passes = settings.passes;
+  if (!features_wanted(*plan)) return;
+  plan->passes |= feature_passes();
+  plan->chosen.emplace_back("denoising features",
+                            plan->denoises ? "the denoiser is guided by them" : "the reconstruction is guided by them");
+}
+
+void list_passes(Plan* plan) {
+  std::string names;
+  for (uint32_t pass = GRADUS_PASS_NOISY_IMAGE; pass < GRADUS_PASS_COUNT; ++pass) {
+    if (!has_bit(plan->passes, pass)) add_item(&names, pass_info(pass).name);
+  }
+  if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
+}
+
+// What `min_samples` 0 means. Along a straight edge all pixels of a cell, which share their jitter, are wrong by the same share of
+// coverage, and both halves agree on it two times out of three. n samples leave an error of about 0.2/n of the cell (docs/method.md), so no
+// fewer are believed than leave the threshold.
+uint32_t first_check(const GradusSettings& settings) {
+  const double minimum = 0.16 / std::max(1e-6, double(settings.noise_threshold));
+  return std::max(kFirstCheck, settings.min_samples > 0 ? settings.min_samples : uint32_t(std::lround(minimum)));
+}
+
+}  // namespace
+
+Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser) {
+  check_settings(settings);
+  Plan plan;
+  choose_denoiser(settings, denoiser, &plan);
+  choose_integrator(settings, &plan);
+  choose_reconstruction(settings, &plan);
+  choose_region(settings, &plan);
+  plan.channels = settings.film_transparent || snapshot.features.has_holdouts ? 4 : 3;
+  plan.first_check = first_check(settings);
+  plan.adaptive = settings.noise_threshold > 0.0f && settings.samples > kFirstCheck;
+  if (plan.adaptive) {
+    plan.chosen.emplace_back("samples where the noise is",
+                             "noise_threshold is set: tiles below it stop, others share samples by their noise");
+  } else {
+    plan.skipped.emplace_back("samples where the noise is",
+                              settings.noise_threshold > 0.0f ? "too few samples to judge by" : "noise_threshold is 0");
+  }
+  const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
+  plan.unbiased = !plan.adaptive && !clamps;
+  list_scene(settings, snapshot, &plan);
+  choose_components(settings, snapshot.features, &plan);
+  choose_passes(settings, &plan);
+  list_passes(&plan);
+  return plan;
+}
+
+bool features_wanted(const Plan& plan) { return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED || plan.denoises; }
+
+uint32_t without_gradients(const Plan& plan) {
+  return needs_gradients(plan.reconstruction) ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan.reconstruction;
+}
+
+bool denoiser_pays(double samples) { return samples >= kDenoiserPays; }
+
+bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped) {
+  if (!plan.denoises_if_it_pays) return plan.denoises;
+  char taken[80];
+  std::snprintf(taken, sizeof(taken), "automatic: %.1f samples were taken within the time limit", samples);
+  if (!denoiser_pays(samples)) {
+    skipped->emplace_back("denoiser", taken + std::string(": ") + too_few_to_denoise());
+    return false;
+  }
+  chosen->emplace_back("denoiser " + plan.denoiser, taken);
+  return true;
+}
+
+bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises) {
+  return plan.unbiased && !denoises && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
+}
+
+}  // namespace gradus

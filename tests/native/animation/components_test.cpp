@@ -1,0 +1,238 @@
+// Components of animations: each has windows of its own, and they add up.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "film_io/store.h"
+#include "animation/sequence_fixture.h"
+#include "schema/options.h"
+
+namespace gradus {
+namespace {
+
+using namespace test;
+
+constexpr int32_t kLast = 3;
+
+GradusSettings settings_for(int32_t frame, uint32_t reconstruction, const char* components) {
+  GradusSettings settings = settings_of(frame);
+  settings.reconstruction = reconstruction;
+  if (components == nullptr) return settings;
+  settings.use_decomposition = 1;
+  settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
+  settings.component_replays = 1;
+  set_text(&settings, *find_option("components"), components);
+  return settings;
+}
+
+// Pictures of all frames, and beside each the sum of its components.
+struct Pictures {
+  std::vector<std::vector<float>> combined, sums;
+  std::vector<double> light;  // of each component, in the last frame
+};
+
+std::shared_ptr<Device> device_with_stand_in() {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  settings.threads = 2;
+  settings.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+  return std::make_shared<Device>(settings);
+}
+
+Pictures rendered(uint32_t reconstruction, const char* components, Scenario scenario = Scenario::Glass,
+                  uint32_t denoiser = GRADUS_DENOISER_NONE) {
+  Pan pan(1.0f, scenario);
+  const auto sequence = std::make_shared<Sequence>(device_with_stand_in(), SequenceSettings{0, kLast, 1, {}, ""});
+  for (int32_t frame = 0; frame <= kLast; ++frame) {
+    GradusSettings settings = settings_for(frame, reconstruction, components);
+    settings.denoiser = denoiser;
+    sample(sequence.get(), pan.at(frame), settings);
+  }
+  Pictures pictures;
+  for (int32_t frame = 0; frame <= kLast; ++frame) {
+    const auto task = delivered(sequence.get(), frame);
+    pictures.combined.push_back(read(*task, GRADUS_PASS_COMBINED, 4));
+    if (components == nullptr) continue;
+    std::vector<float> sum(3 * kSide * kSide), part(sum);
+    pictures.light.clear();
+    for (const ComponentPlanes& planes : task->film()->components) {
+      task->read_component(planes.name, GRADUS_COMPONENT_COLOR, part.data());
+      double light = 0.0;
+      for (size_t i = 0; i < sum.size(); ++i) light += part[i];
+      for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+      pictures.light.push_back(light);
+    }
+    pictures.sums.push_back(std::move(sum));
+  }
+  return pictures;
+}
+
+// Half of a frame's samples replay those of the frame before; what their paths show is of this frame all the same.
+TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
+  const Folder folder;
+  const auto settings_with = [](int32_t frame, uint32_t pass) {
+    GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
+    settings.component_passes |= 1u << pass;
+    return settings;
+  };
+  for (const bool again : {false, true}) {  // from files alone
+    Pan pan(1.0f);
+    const auto sequence = make_sequence(0, 2, folder.path());
+    for (int32_t frame = 0; frame <= 2; ++frame) sample(sequence.get(), pan.at(frame), settings_with(frame, GRADUS_COMPONENT_FACE_INDEX));
+    const auto task = delivered(sequence.get(), 1);
+    const Film& frame = *task->film();
+    const auto& details = frame.components[size_t(find_component(frame, "Diffuse"))].details;
+    const size_t middle = size_t(kSide) * kSide / 2 + kSide / 2;
+    ASSERT_EQ(details.size(), size_t(kSide) * kSide);
+    EXPECT_EQ(details[middle].segments, float(samples_at(frame, middle)));
+    EXPECT_EQ(details[middle].segments, 8.0f);
+    std::vector<float> faces(kSide * kSide);
+    task->read_component("Diffuse", GRADUS_COMPONENT_FACE_INDEX, faces.data());
+    for (size_t i = 0; i < faces.size(); ++i) ASSERT_EQ(faces[i], details[i].face) << again;
+    EXPECT_GE(faces[middle], 0.0f);
+  }
+  Pan pan(1.0f);
+  EXPECT_THROW(sample(make_sequence(0, 2, folder.path()).get(), pan.at(0), settings_with(0, GRADUS_COMPONENT_NORMAL)), Error);
+}
+
+// Motion is kept with a frame's own half, and was asked of the other one, too: no store with it could be gone on with.
+TEST(SequenceDetails, AStoreWithMotionIsGoneOnWith) {
+  const Folder folder;
+  const auto settings_with_motion = [](int32_t frame) {
+    GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
+    settings.component_passes |= 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_IRRADIANCE_MOTION;
+    return settings;
+  };
+  std::vector<std::vector<float>> pictures;
+  for (const int32_t last : {1, 2, 2}) {
+    Pan pan(1.0f);
+    const auto sequence = make_sequence(0, last, folder.path());
+    for (int32_t frame = 0; frame <= last; ++frame) sample(sequence.get(), pan.at(frame), settings_with_motion(frame));
+    for (int32_t frame = 0; frame < last; ++frame) delivered(sequence.get(), frame);
+    pictures.push_back(read(*delivered(sequence.get(), last), GRADUS_PASS_COMBINED, 4));
+  }
+  EXPECT_EQ(pictures[1], pictures[2]);
+}
+
+class SequenceComponents : public testing::TestWithParam<uint32_t> {};
+
+void expect_to_add_up(const Pictures& pictures) {
+  EXPECT_GE(std::count_if(pictures.light.begin(), pictures.light.end(), [](double light) { return light > 1.0; }), 3);
+  for (size_t frame = 0; frame <= size_t(kLast); ++frame) {
+    const std::vector<float>&sum = pictures.sums[frame], &rgba = pictures.combined[frame];
+    for (size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(sum[i], rgba[i / 3 * 4 + i % 3], 1e-5f * (std::fabs(sum[i]) + 1.0f)) << frame;
+  }
+}
+
+TEST_P(SequenceComponents, AddUpToEveryFrame) { expect_to_add_up(rendered(GetParam(), "")); }
+
+// The stand-in adds light everywhere, also where no component has any.
+TEST_P(SequenceComponents, AddUpBehindADenoiser) {
+  const Pictures denoised = rendered(GetParam(), "", Scenario::Glass, GRADUS_DENOISER_OIDN);
+  expect_to_add_up(denoised);
+  EXPECT_GT(denoised.combined[1][0], rendered(GetParam(), "").combined[1][0] + 0.5f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceComponents,
+                         testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_L1},
+                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+
+// The weights of L2 over time are the same for all, where all go the surfaces' ways.
+TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOne) {
+  const Pictures many = rendered(GRADUS_RECONSTRUCTION_L2, "Once=E.L;Twice=E..L", Scenario::DiffuseArea);
+  const Pictures one = rendered(GRADUS_RECONSTRUCTION_L2, nullptr, Scenario::DiffuseArea);
+  EXPECT_GE(std::count_if(many.light.begin(), many.light.end(), [](double light) { return light > 1.0; }), 2);
+  for (size_t frame = 0; frame <= size_t(kLast); ++frame) {
+    const std::vector<float>&a = many.combined[frame], &b = one.combined[frame];
+    const float scale = *std::max_element(b.begin(), b.end());
+    for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-4f * scale) << frame;
+  }
+}
+
+// A path of glass goes one way or the other: what one component has too much of the other lacks.
+TEST(ComponentsOfSequences, ErrorsOfWhatMakesUpForEachOtherAreNotAddedUp) {
+  const auto errors = [](const char* components) {
+    Pan pan(1.0f, Scenario::Glass);
+    const auto sequence = make_sequence(0, kLast);
+    for (int32_t frame = 0; frame <= kLast; ++frame) {
+      GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, components);
+      settings.component_replays = 0;  // all go the surfaces' ways, and the sum is the picture without components
+      settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+      sample(sequence.get(), pan.at(frame), settings);
+    }
+    return read(*delivered(sequence.get(), 1), GRADUS_PASS_ERROR, 1);
+  };
+  const std::vector<float> many = errors(""), one = errors(nullptr);
+  const float largest = *std::max_element(one.begin(), one.end());
+  ASSERT_GT(largest, 0.0f);
+  for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(many[i], one[i], 1e-3f * largest) << i;
+}
+
+// A camera that moves past balls of glass: what they show goes other ways than they do. The replay of such a component is of where it was.
+TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
+  Pan pan(1.0f, Scenario::Glass);
+  const Folder folder;
+  const auto sequence = make_sequence(0, 1, folder.path());
+  for (int32_t frame = 0; frame <= 1; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, GRADUS_RECONSTRUCTION_L2, ""));
+  const auto replayed = SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed);
+  const ReplayMap& replay_map = replayed->replayed;
+  const int diffuse = find_component(*replayed, "Diffuse");
+  EXPECT_FALSE(replay_map.has_component_map(diffuse));
+  size_t apart = 0;
+  for (const char* name : {"Reflection", "Transmission"}) {
+    const int component = find_component(*replayed, name);
+    ASSERT_TRUE(replay_map.has_component_map(component)) << name;
+    const std::vector<int32_t>& own = replay_map.of_component[size_t(component)].pixel;
+    std::set<int32_t> taken;
+    for (size_t i = 0; i < own.size(); ++i) {
+      apart += own[i] != kNoCorrespondence && own[i] != replay_map.correspondence.pixel[i] ? 1 : 0;
+      EXPECT_TRUE(own[i] == kNoCorrespondence || taken.insert(own[i]).second) << name;
+    }
+  }
+  EXPECT_GT(apart, 50u);
+  const auto whole =
+      load_component(SequenceFolder(folder.path()).path(1, FrameSamples::kReplayed), "Transmission", StoredContent::kAll, [] { return false; });
+  EXPECT_EQ(whole->replayed.correspondence, replay_map.of_component[size_t(find_component(*replayed, "Transmission"))]);
+}
+
+TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
+  Pan pan(1.0f, Scenario::Glass);
+  const Folder folder;
+  const auto sequence = make_sequence(0, 1, folder.path());
+  for (int32_t frame = 0; frame <= 1; ++frame) {
+    GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
+    settings.component_replays = 0;
+    sample(sequence.get(), pan.at(frame), settings);
+  }
+  EXPECT_TRUE(SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed)->replayed.of_component.empty());
+}
+
+// Whatever the links say, a replay is a sample of its pixel.
+TEST(ComponentsOfSequences, ReplaysAlongOwnWaysHaveTheLightOfPlainSamples) {
+  GradusSettings plain = settings_for(1, GRADUS_RECONSTRUCTION_L2, "");
+  plain.samples = 512;
+  Pan pan(1.0f, Scenario::Glass);
+  const Folder folder;
+  const auto sequence = make_sequence(0, 1, folder.path());
+  for (int32_t frame = 0; frame <= 1; ++frame) {
+    plain.frame = frame;
+    sample(sequence.get(), pan.at(frame), plain);
+  }
+  const auto light = [&](FrameSamples part, const char* name) {
+    const auto frame = load_component(SequenceFolder(folder.path()).path(1, part), name, StoredContent::kAll, [] { return false; });
+    double sum = 0.0;
+    for (const float value : read_images(*frame, 0).primal) sum += value;
+    return sum;
+  };
+  // Reflections of the light come by few samples.
+  const std::pair<const char*, double> bounds[] = {{"Reflection", 0.12}, {"Transmission", 0.03}, {"Diffuse", 0.03}};
+  for (const auto& [name, bound] : bounds) {
+    const double base = light(FrameSamples::kFresh, name), replayed = light(FrameSamples::kReplayed, name);
+    EXPECT_GT(base, 1.0) << name;
+    EXPECT_NEAR(replayed, base, bound * base) << name;
+  }
+}
+
+}  // namespace
+}  // namespace gradus

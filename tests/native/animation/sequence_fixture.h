@@ -1,0 +1,135 @@
+// Small animations for tests of sequences: a scene before which the camera pans, and what is delivered of it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "animation/sequence.h"
+#include "support/path_scene.h"
+
+namespace gradus::test {
+namespace fs = std::filesystem;
+
+inline constexpr uint32_t kSide = 32;
+
+inline GradusSettings settings_of(int32_t frame, uint32_t samples = 8) {
+  GradusSettings settings = test_settings(kSide, kSide);
+  settings.frame = frame;
+  settings.samples = samples;
+  settings.independent_sampler = 0;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  settings.filter_width = 0.01f;  // edges would be wrong by their coverage, all of them alike
+  return settings;
+}
+
+// A folder that goes with the test.
+class Folder {
+ public:
+  Folder() : path_((fs::temp_directory_path() / "gradus-test-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  }
+  ~Folder() { fs::remove_all(path_); }
+  const std::string& path() const { return path_; }
+  void remove(int32_t frame, const std::string& part = "") const {
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      if (entry.path().filename().string().find(std::to_string(frame).append(".").append(part)) != std::string::npos)
+        fs::remove(entry.path());
+    }
+  }
+
+ private:
+  std::string path_;
+};
+
+// A camera that goes aside by some pixels from frame to frame.
+class Pan {
+ public:
+  explicit Pan(float pixels, Scenario scenario = Scenario::DiffuseArea) : pixels_(pixels) { build(scenario, &scene_); }
+
+  std::shared_ptr<const Snapshot> at(int32_t frame) {
+    const float x = pixels_ * 1.8f * 3.2f / (2.0f * kSide) * float(frame);
+    scene_.camera(Vec3(x, 0, 3.2f), Vec3(x, 0, 0), 0.9f);
+    return scene_.context(settings_of(frame)).snapshot;
+  }
+  std::shared_ptr<const Snapshot> turned(float angle) {
+    scene_.camera(Vec3(0, 0, 3.2f), Vec3(std::sin(angle), 0, 3.2f - std::cos(angle)), 0.9f);
+    return scene_.context(settings_of(0)).snapshot;
+  }
+
+ private:
+  PathScene scene_;
+  float pixels_;
+};
+
+struct Delivered {
+  std::vector<float> combined, noisy, difference, link;
+  nlohmann::json stats;
+};
+
+inline void run(RenderTask* task) {
+  task->run();
+  std::string text;
+  ASSERT_EQ(task->outcome(&text), GRADUS_OK) << text;
+}
+
+inline std::vector<float> read(const RenderTask& task, uint32_t pass, size_t channels) {
+  std::vector<float> pixels(size_t(task.delivered().area()) * channels);
+  task.read_pass(pass, pixels.data());
+  return pixels;
+}
+
+// The task that has delivered it.
+inline std::unique_ptr<RenderTask> delivered(Sequence* sequence, int32_t frame) {
+  auto task = sequence->deliver(frame, nullptr);
+  run(task.get());
+  return task;
+}
+
+inline Delivered deliver(Sequence* sequence, int32_t frame) {
+  const auto task = delivered(sequence, frame);
+  return {read(*task, GRADUS_PASS_COMBINED, 4), read(*task, GRADUS_PASS_NOISY_IMAGE, 4), read(*task, GRADUS_PASS_GRADIENT_T, 3),
+          read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3), nlohmann::json::parse(task->stats())};
+}
+
+inline std::shared_ptr<Device> two_threads() {
+  GradusDeviceSettings settings{};
+  settings.struct_size = sizeof(settings);
+  settings.threads = 2;
+  return std::make_shared<Device>(settings);
+}
+
+inline std::shared_ptr<Sequence> make_sequence(int32_t first, int32_t last, const std::string& folder = "") {
+  return std::make_shared<Sequence>(two_threads(), SequenceSettings{first, last, 1, {}, folder});
+}
+
+inline GradusSettings with_passes(GradusSettings settings) {
+  settings.passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_T | uint64_t{1} << GRADUS_PASS_GRADIENT_T_LINK;
+  return settings;
+}
+
+inline void sample(Sequence* sequence, const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
+  run(sequence->sample(snapshot, with_passes(settings)).get());
+}
+
+inline std::vector<Delivered> render(Pan* pan, Sequence* sequence, int32_t first, int32_t last, uint32_t samples = 8,
+                                     uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
+  std::vector<Delivered> frames;
+  int32_t sampled = first;
+  for (int32_t frame = first; frame <= last; ++frame) {
+    for (; sampled <= sequence->needs(frame).last; ++sampled) {
+      GradusSettings settings = settings_of(sampled, samples);
+      settings.reconstruction = reconstruction;
+      sample(sequence, pan->at(sampled), settings);
+    }
+    frames.push_back(deliver(sequence, frame));
+  }
+  return frames;
+}
+
+}  // namespace gradus::test

@@ -1,0 +1,182 @@
+// Light passes beside a reconstructed picture: they are as clean, and add up to it (contract 6.5).
+#include "output/light_passes.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "scene/device.h"
+#include "base/error.h"
+#include "render/scene_render.h"
+#include "schema/pass_table.h"
+#include "support/light_sum.h"
+
+namespace gradus {
+namespace {
+
+using test::PathScene;
+using test::rendered;
+using test::Scenario;
+
+constexpr int kSide = 40;
+
+GradusSettings settings_for(uint32_t reconstruction, uint64_t passes = light_passes()) {
+  GradusSettings settings = test::test_settings(kSide, kSide);
+  settings.independent_sampler = 0;
+  settings.samples = 8;
+  settings.threads = 2;
+  settings.passes = needed_passes(passes);
+  settings.reconstruction = reconstruction;
+  if (reconstruction != GRADUS_RECONSTRUCTION_NONE) settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
+  return settings;
+}
+
+std::vector<float> read(const Render& render, uint32_t pass) {
+  std::vector<float> pixels(pass_info(pass).channels * kSide * kSide);
+  render.read_pass(pass, pixels.data(), pixels.size());
+  return pixels;
+}
+
+void expect_to_add_up(const Render& render) {
+  test::expect_light_to_add_up([&](uint32_t pass) { return read(render, pass); }, read(render, GRADUS_PASS_COMBINED));
+}
+
+class LightPassesBy : public testing::TestWithParam<uint32_t> {};
+
+TEST_P(LightPassesBy, AddUpToCombined) {
+  for (const Scenario scenario : {Scenario::Glass, Scenario::GlossyFloor, Scenario::LightsSeen}) {
+    GradusSettings settings = settings_for(GetParam());
+    settings.film_exposure = 1.7f;
+    expect_to_add_up(*rendered(scenario, settings));
+  }
+}
+
+TEST_P(LightPassesBy, AddUpBesideComponents) {
+  GradusSettings settings = settings_for(GetParam());
+  settings.use_decomposition = 1;
+  settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
+  expect_to_add_up(*rendered(Scenario::Glass, settings));
+}
+
+TEST_P(LightPassesBy, AddUpOnATransparentFilm) {
+  GradusSettings settings = settings_for(GetParam());
+  settings.film_transparent = 1;
+  expect_to_add_up(*rendered(Scenario::World, settings));
+}
+
+// The stand-in adds light everywhere, also where nothing was met.
+TEST_P(LightPassesBy, AddUpBehindADenoiser) {
+  GradusDeviceSettings of_device{};
+  of_device.struct_size = sizeof(of_device);
+  of_device.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
+  GradusSettings settings = settings_for(GetParam());
+  settings.denoiser = GRADUS_DENOISER_OIDN;
+  PathScene scene;
+  test::build(Scenario::Glass, &scene);
+  Render render(std::make_shared<Device>(of_device), scene.context(settings).snapshot, settings);
+  render.wait(-1.0);
+  expect_to_add_up(render);
+  EXPECT_GT(read(render, GRADUS_PASS_COMBINED)[0], read(render, GRADUS_PASS_NOISY_IMAGE)[0] + 0.5f);
+}
+
+// What was smoothed into a pixel without a colour was divided by 0 and lost.
+TEST_P(LightPassesBy, LightBesideBlackIsNotLost) {
+  PathScene scene;
+  test::add_box(&scene, test::matte(Rgb(0.0f)));
+  test::add_ceiling_light(&scene, 8.0f, 0.6f);
+  scene.ball(Vec3(0.0f, -0.3f, 0.0f), 0.4f, scene.material(test::matte(Rgb(0.8f, 0.0f, 0.4f))), 10, true);
+  expect_to_add_up(*rendered(&scene, settings_for(GetParam())));
+}
+
+INSTANTIATE_TEST_SUITE_P(Reconstructions, LightPassesBy,
+                         testing::Values(uint32_t{GRADUS_RECONSTRUCTION_NONE}, uint32_t{GRADUS_RECONSTRUCTION_L2},
+                                         uint32_t{GRADUS_RECONSTRUCTION_L1}, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+
+std::vector<float> light_of(const Render& render, uint32_t pass) {
+  std::vector<float> light = read(render, pass);
+  const std::vector<float> color = read(render, pass_info(pass).color);
+  for (size_t i = 0; i < light.size(); ++i) light[i] *= color[i];
+  return light;
+}
+
+// Not of squares, which the few pixels at the edges of a light decide.
+double distance(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += std::fabs(double(a[i]) - b[i]);
+  return sum;
+}
+
+// By how much two renders with other random numbers differ.
+double noise_of(uint32_t pass, uint32_t reconstruction) {
+  GradusSettings settings = settings_for(reconstruction);
+  const auto a = light_of(*rendered(Scenario::GlossyFloor, settings), pass);
+  settings.seed = 9;
+  const auto b = light_of(*rendered(Scenario::GlossyFloor, settings), pass);
+  return distance(a, b);
+}
+
+TEST(LightPasses, AreCleanerThanSampled) {
+  for (const uint32_t pass : {GRADUS_PASS_DIFFUSE_DIRECT, GRADUS_PASS_DIFFUSE_INDIRECT, GRADUS_PASS_GLOSSY_INDIRECT}) {
+    const double noisy = noise_of(pass, GRADUS_RECONSTRUCTION_NONE);
+    ASSERT_GT(noisy, 0.0);
+    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_REGULARIZED), 0.75 * noisy) << pass_info(pass).name;
+    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_L1), 0.85 * noisy) << pass_info(pass).name;
+  }
+}
+
+// What lacked of the brighter picture went to the noisy ones, and the sum was right.
+TEST(LightPasses, AreExposedAsThePictureIs) {
+  GradusSettings settings = settings_for(GRADUS_RECONSTRUCTION_REGULARIZED);
+  const auto once = rendered(Scenario::GlossyFloor, settings);
+  settings.film_exposure = 4.0f;
+  const auto bright = rendered(Scenario::GlossyFloor, settings);
+  for (const PassInfo& info : stored_passes(light_passes())) {
+    if (!is_of_light(info.kind)) continue;
+    const std::vector<float> a = read(*once, info.pass), b = read(*bright, info.pass);
+    for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(4.0f * a[i], b[i], 1e-3f * (1.0f + b[i])) << info.name;
+  }
+}
+
+TEST(LightPasses, OfTheNoisyImageAreThoseSampled) {
+  const auto render = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_NONE));
+  const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE), combined = read(*render, GRADUS_PASS_COMBINED);
+  EXPECT_EQ(noisy, combined);
+  expect_to_add_up(*render);
+}
+
+// A pass is a part of the picture, whoever else is there: what nobody asked for is one part more.
+TEST(LightPasses, OneAloneIsCleanToo) {
+  const auto direct = uint64_t{1} << GRADUS_PASS_DIFFUSE_DIRECT;
+  const auto alone = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, direct));
+  const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
+  const auto noisy = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_NONE));
+  const std::vector<float> light = light_of(*all, GRADUS_PASS_DIFFUSE_DIRECT);
+  EXPECT_LT(distance(light_of(*alone, GRADUS_PASS_DIFFUSE_DIRECT), light),
+            0.3 * distance(light_of(*noisy, GRADUS_PASS_DIFFUSE_DIRECT), light));
+  EXPECT_THROW(read(*alone, GRADUS_PASS_DIFFUSE_INDIRECT), Error);
+}
+
+TEST(LightPasses, ThatNobodyAskedForTakeNoRoom) {
+  const auto none = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, 0));
+  EXPECT_FALSE(has_light_passes(*none->film()));
+  const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
+  const auto kept = [](const Render& render) { return render.progress().memory_bytes - render.film()->memory_bytes(); };
+  EXPECT_EQ(kept(*all) - kept(*none), 8 * 3 * sizeof(float) * kSide * kSide);
+}
+
+// With one sample nothing is known of the noise.
+TEST(LightPasses, OfOneSampleAddUp) {
+  GradusSettings settings = settings_for(GRADUS_RECONSTRUCTION_REGULARIZED);
+  settings.samples = 1;
+  expect_to_add_up(*rendered(Scenario::Glass, settings));
+}
+
+TEST(LightPasses, OfACancelledRenderAreThoseSampled) {
+  const CancelCheck at_once = [] { return true; };
+  const auto render = rendered(Scenario::Glass, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
+  const std::vector<float> rgba = read(*render, GRADUS_PASS_COMBINED);
+  EXPECT_THROW(LightPasses(*render->film(), {0, 0, kSide, kSide}, rgba, at_once), Error);
+}
+
+}  // namespace
+}  // namespace gradus

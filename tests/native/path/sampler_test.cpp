@@ -1,0 +1,163 @@
+#include "path/sampler.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace gradus {
+namespace {
+
+SampleKey key_of(uint32_t seed, uint32_t stream, uint32_t index) {
+  SampleKey key;
+  key.seed = seed;
+  key.stream = stream;
+  key.index = index;
+  return key;
+}
+
+TEST(L4_Sampler, ValueIsPureFunctionOfKeyAndBlock) {
+  std::vector<Vec2> forward;
+  for (uint32_t index = 0; index < 32; ++index) {
+    for (uint32_t block = 0; block < 32; ++block) {
+      forward.push_back(Sampler(key_of(7, 123, index)).get2(block));
+    }
+  }
+  for (uint32_t index = 32; index-- > 0;) {
+    const Sampler sampler(key_of(7, 123, index));
+    for (uint32_t block = 32; block-- > 0;) {
+      EXPECT_EQ(sampler.get2(block), forward[index * 32 + block]);
+      EXPECT_EQ(sampler.get1(block), forward[index * 32 + block].x);
+    }
+  }
+}
+
+TEST(L4_Sampler, VertexHoldsTheBlocksOfItsDepth) {
+  for (const bool independent : {false, true}) {
+    for (int depth = 0; depth < 40; ++depth) {
+      const Sampler sampler(key_of(7, 123, static_cast<uint32_t>(3 * depth)), independent);
+      const uint32_t first = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
+      const VertexSample u = sampler.vertex(depth);
+      EXPECT_EQ(u.bsdf, sampler.get2(first + dimension::kBsdf));
+      EXPECT_EQ(u.lobe, sampler.get2(first + dimension::kLobe));
+      EXPECT_EQ(u.light, sampler.get2(first + dimension::kLight));
+      EXPECT_EQ(u.light_choice, sampler.get2(first + dimension::kLightChoice));
+      EXPECT_EQ(u.roulette, sampler.get2(first + dimension::kRoulette));
+    }
+  }
+}
+
+TEST(L4_Sampler, EachPartOfTheKeyCounts) {
+  const SampleKey base = key_of(1, 2, 6);
+  std::vector<SampleKey> others(6, base);
+  others[0].seed = 2;
+  others[1].kind = StreamKind::Pilot;
+  others[2].stream = 3;
+  others[3].stream_frame = 1;
+  others[4].index = 8;  // same half
+  others[5].index = 7;  // other half, same number within it
+  for (const SampleKey& other : others) {
+    EXPECT_NE(Sampler(base).get2(4), Sampler(other).get2(4));
+  }
+}
+
+// Each aligned block of 2^k points of one half is a (0, k, 2)-net: one point in every elementary interval.
+TEST(L4_Sampler, HalvesAreNets) {
+  for (uint32_t half = 0; half < 2; ++half) {
+    for (int log_x = 0; log_x <= 6; ++log_x) {
+      std::vector<int> cells(64, 0);
+      for (uint32_t i = 0; i < 64; ++i) {
+        const Vec2 u = Sampler(key_of(3, 99, 2 * i + half)).get2(11);
+        ASSERT_GE(u.x, 0.0f);
+        ASSERT_LT(u.x, 1.0f);
+        ASSERT_LT(u.y, 1.0f);
+        const int x = static_cast<int>(u.x * static_cast<float>(1 << log_x));
+        const int y = static_cast<int>(u.y * static_cast<float>(64 >> log_x));
+        ++cells[static_cast<size_t>((x << (6 - log_x)) + y)];
+      }
+      for (int count : cells) {
+        EXPECT_EQ(count, 1) << "split " << log_x;
+      }
+    }
+  }
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double ma = 0.0;
+  double mb = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    ma += a[i] / static_cast<double>(a.size());
+    mb += b[i] / static_cast<double>(b.size());
+  }
+  double saa = 0.0;
+  double sbb = 0.0;
+  double sab = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    saa += (a[i] - ma) * (a[i] - ma);
+    sbb += (b[i] - mb) * (b[i] - mb);
+    sab += (a[i] - ma) * (b[i] - mb);
+  }
+  return sab / std::sqrt(saa * sbb);
+}
+
+// Means of few samples of a smooth function, as pixels see them.
+std::vector<double> residuals(uint32_t seed, uint32_t stream_step, uint32_t block) {
+  std::vector<double> means;
+  for (uint32_t pixel = 0; pixel < 10000; ++pixel) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < 4; ++i) {
+      const Vec2 u = Sampler(key_of(seed, pixel + stream_step, i)).get2(block);
+      sum += std::sin(3.0 * u.x) * u.y;
+    }
+    means.push_back(sum);
+  }
+  return means;
+}
+
+TEST(A10_Seeds, SamplerResidualsAreUncorrelated) {
+  const std::vector<double> base = residuals(1, 0, 4);
+  EXPECT_LT(std::fabs(correlation(base, residuals(2, 0, 4))), 0.05) << "seeds";
+  EXPECT_LT(std::fabs(correlation(base, residuals(1, 1, 4))), 0.05) << "neighbouring pixels";
+  EXPECT_LT(std::fabs(correlation(base, residuals(1, 1920, 4))), 0.05) << "neighbouring rows";
+  EXPECT_LT(std::fabs(correlation(base, residuals(1, 0, 5))), 0.05) << "dimensions";
+}
+
+// (A − B)²/4 estimates the variance of the mean (contract 1.2): the halves are independent of each other.
+TEST(A8_Variance, HalvesOfTheSampler) {
+  double estimated = 0.0;
+  double mean = 0.0;
+  double squares = 0.0;
+  constexpr int pixels = 20000;
+  for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    double half[2] = {0.0, 0.0};
+    for (uint32_t i = 0; i < 16; ++i) {
+      const Vec2 u = Sampler(key_of(5, pixel, i)).get2(9);
+      half[i % 2] += std::exp(u.x) * u.y * u.y / 8.0;
+    }
+    const double value = 0.5 * (half[0] + half[1]);
+    estimated += 0.25 * (half[0] - half[1]) * (half[0] - half[1]) / pixels;
+    mean += value / pixels;
+    squares += value * value / pixels;
+  }
+  const double ratio = estimated / (squares - mean * mean);
+  EXPECT_GT(ratio, 0.9);
+  EXPECT_LT(ratio, 1.1);
+}
+
+TEST(Sampler, IndependentValuesHaveTheVarianceOfRandomNumbers) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (uint32_t pixel = 0; pixel < 4000; ++pixel) {
+    double mean = 0.0;
+    for (uint32_t i = 0; i < 16; ++i) {
+      mean += Sampler(key_of(5, pixel, i), true).get2(9).y / 16.0;
+    }
+    sum += mean / 4000;
+    squares += mean * mean / 4000;
+  }
+  EXPECT_NEAR(sum, 0.5, 0.005);
+  EXPECT_NEAR((squares - sum * sum) * 16.0, 1.0 / 12.0, 0.01);
+}
+
+}  // namespace
+}  // namespace gradus

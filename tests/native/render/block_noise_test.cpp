@@ -1,0 +1,77 @@
+// What stops cells is the same estimate that the pass Error shows.
+#include "render/block_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "reconstruct/feature_frame.h"
+#include "reconstruct/reconstruct_film.h"
+
+namespace gradus {
+namespace {
+
+const CancelCheck kNever = [] { return false; };
+constexpr float kExposure = 2.0f;
+
+Film noisy_room(bool gradients) {
+  test::FeatureFilm description = test::room(40, 32);
+  description.gradients = gradients;
+  Film film = test::make_feature_film(description);
+  film.settings.film_exposure = kExposure;
+  return film;
+}
+
+// Root of mean squared error over mean squared gray, by the estimate's sum over the cell.
+double relative_error(const Film& film, const Reconstructed& result, const Region& block, double error) {
+  double signal = 0.0;
+  for (int32_t y = block.y0; y < block.y1; ++y) {
+    for (int32_t x = block.x0; x < block.x1; ++x) {
+      const float* v = &result.image[3 * film.index(x, y)];
+      const double gray = kExposure * (double(v[0]) + v[1] + v[2]) / 3.0;
+      signal += gray * gray + 1e-3;
+    }
+  }
+  return std::sqrt(kExposure * kExposure * error / signal);
+}
+
+double sum_over(const Film& film, const std::vector<float>& pixels, const Region& block) {
+  double sum = 0.0;
+  for (int32_t y = block.y0; y < block.y1; ++y) {
+    for (int32_t x = block.x0; x < block.x1; ++x) sum += pixels[film.index(x, y)];
+  }
+  return sum;
+}
+
+// Noise of the halves, which a reconstruction by features hides, says nothing of its error: its own estimate has to be taken.
+TEST(BlockNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
+  for (const bool gradients : {false, true}) {
+    const Film film = noisy_room(gradients);
+    SolveReport report;
+    const Reconstructed result = reconstruct_film(film, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, {.error = true}, kNever, &report);
+    const std::vector<Region> blocks = {{0, 0, 16, 16}, {16, 0, 40, 32}};
+    const std::vector<BlockNoise> noise = estimate_noise(film, blocks, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, kNever);
+    ASSERT_EQ(noise.size(), blocks.size());
+    for (size_t k = 0; k < blocks.size(); ++k) {
+      const double error = sum_over(film, result.error, blocks[k]);
+      ASSERT_GT(error, 0.0);
+      EXPECT_NEAR(noise[k].relative_error / relative_error(film, result, blocks[k], error), 1.0, 1e-5);
+      EXPECT_GT(noise[k].spread, 0.0);
+    }
+  }
+}
+
+// The whole picture as one cell: what the windows of the pass spread stays in it, but for what the border cuts off.
+TEST(BlockNoise, OfAllIsTheSumOfThePass) {
+  const Film film = noisy_room(true);
+  for (const uint32_t how : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
+    SolveReport report;
+    const Reconstructed result = reconstruct_film(film, how, 0.0f, {.error = true}, kNever, &report);
+    const BlockNoise noise = estimate_noise(film, {film.region}, how, 0.0f, kNever).front();
+    const double error = sum_over(film, result.error, film.region);
+    EXPECT_NEAR(noise.relative_error / relative_error(film, result, film.region, error), 1.0, 0.02) << how;
+  }
+}
+
+}  // namespace
+}  // namespace gradus
