@@ -26,13 +26,13 @@ render-animation: ## frames by blender -b -a, and a film strip: SCENE=sample_ble
 test:           ## all tests that every change must pass; last line: N passed, N failed
 	@tools/test.sh all
 
-test-full:      ## and those that take longer
+test-full:      ## and those that take longer, and everything in all hosts
 	@tools/test.sh --full all
 
 test-native:    ## only the tests of the library
 	@tools/test.sh native
 
-test-addon:     ## only those in Blender 3.4, 4.5 and 5.0: HOSTS=bpy45 TESTS=tests/addon/x_test.py
+test-addon:     ## only those of the add-on; with HOSTS=bpy45,bpy52 all of them in these hosts: TESTS=tests/addon/x_test.py
 	@tools/test.sh addon
 
 stress:         ## numerical stability: hard scenes, their dropped samples and failed shifts as a table
@@ -97,7 +97,7 @@ picture-components: ## docs/images/components.webp, a frame taken apart, of the 
 	@SCENE=sample_blends/components.blend FRAMES=12 OUT=out/picture ARGS='--gradus-samples 128' COMPONENTS=default BLENDER='$(BLENDER)' tools/render.sh
 	@.venv/bpy45/bin/python3 tools/component_sheet.py out/picture/components_0012.exr docs/images/components.webp
 
-package:        ## dist/gradus-<version>.zip, for Blender 3.4 to 5.0
+package:        ## dist/gradus-<version>.zip, for Blender 3.4 to 5.2
 	@tools/build.sh package
 
 schema:         ## what schema/*.toml determine: headers, tables of the library and of the add-on, tables of the user guide

@@ -1,4 +1,4 @@
-"""What tests in a host share. They run inside Blender 3.4 and inside the bpy modules (tools/test.py starts them).
+"""Fixtures and marks of all tests. They run in Blender 3.4, in the bpy modules, and in plain Python (tools/test.py starts them).
 
 Fixtures: `host_version`, `library`, `scene`, `render`, `blender` (3.4 only), `shared_scenes`; the add-on is registered throughout.
 Temporary folders are pytest's `tmp_path`.
@@ -11,20 +11,26 @@ import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import bpy
 import pytest
-from support import application, images
+from support import application
+
+try:
+    import bpy
+except ImportError:  # plain Python, for test files that do not import bpy
+    bpy = None
 
 ROOT = Path(__file__).resolve().parent.parent
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leaves out what belongs to another host or to the long run; skips, visibly, what lacks the shared scenes."""
+    """Leaves out the tests of another host or of the long run. Tests that start Blender get the mark "application" from their fixture."""
+    is_module = bpy is not None and getattr(bpy.app, "module", False)
     out = []
-    for item in list(items):
-        needs_application = "blender" in getattr(item, "fixturenames", ()) or item.get_closest_marker("application")
-        module = getattr(bpy.app, "module", False)
-        wrong_host = needs_application and module or item.get_closest_marker("module") and not module
+    for item in items:
+        if "blender" in getattr(item, "fixturenames", ()):
+            item.add_marker("application")
+        wrong_host = is_module and item.get_closest_marker("application") or not is_module and item.get_closest_marker("module")
         if wrong_host or (item.get_closest_marker("full") and os.environ.get("GRADUS_TEST_FULL") != "1"):
             out.append(item)
     items[:] = [item for item in items if item not in out]
@@ -33,9 +39,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture(scope="session", autouse=True)
 def addon() -> Iterator[object]:
-    """The add-on, registered once for the process."""
+    """The add-on, registered once for each test file; in plain Python, where it cannot be, only imported."""
     import gradus
 
+    if bpy is None:
+        yield gradus
+        return
     gradus.register()
     yield gradus
     gradus.unregister()
@@ -61,8 +70,10 @@ def library(library_path: Path) -> ctypes.CDLL:
 
 
 @pytest.fixture
-def scene() -> bpy.types.Scene:
+def scene() -> object:
     """An empty scene in an empty file: 64×36 pixels, 4 samples, view transform Standard, engine Gradus."""
+    from support import images
+
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)
@@ -70,8 +81,10 @@ def scene() -> bpy.types.Scene:
 
 
 @pytest.fixture
-def render(tmp_path: Path) -> Callable[..., images.Passes]:
+def render(tmp_path: Path) -> Callable[..., dict]:
     """render(scene, frame=1, **settings): the passes of a frame, see support/images.py."""
+    from support import images
+
     return lambda scene, **settings: images.render(scene, tmp_path, **settings)
 
 

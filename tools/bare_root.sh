@@ -13,7 +13,7 @@ if [ ! -e "$root/.complete" ]; then
   rm -rf --one-file-system "$root"
   mmdebstrap --quiet --mode=root --variant=apt --include="$packages" bookworm "$root" \
     "deb ${GRADUS_DEBIAN_MIRROR:-http://deb.debian.org/debian} bookworm main" >&2
-  mkdir -p "$root/opt/bpy45" "$root/opt/bpy50" "$root/work"
   touch "$root/.complete"
 fi
+mkdir -p "$root"/opt/{bpy45,bpy50,bpy52,python} "$root/work"
 echo "$root"

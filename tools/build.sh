@@ -1,6 +1,12 @@
 #!/usr/bin/env bash
-# Builds what is out of date. usage: build.sh [library | tests | sanitizers | package]     default: library and tool
-# sanitizers: the native tests with address and undefined-behaviour sanitizers, in build-sanitize/.
+# Builds what is out of date. usage: build.sh [library | tests | checks [--full] | package]     default: library and tool
+#
+# checks: three more builds, which find faults that the tests do not see.
+#   build-sanitize/  some native tests with the sanitizers of addresses and undefined behaviour
+#   build-thread/    the same tests with the sanitizer of threads, and an instrumented TBB
+#   build-odr/       objects for link-time optimisation; linking them (ninja -C build-odr gradus) is the test, which finds types and
+#                    variables that two sources define differently under one name
+# With --full, the first two have all native tests, and the first one the stress tests, too.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tools/setup/setup build
@@ -13,9 +19,17 @@ build() {  # FOLDER TARGET...
   ninja -C "$@" | sed -u -e '/Entering directory/d' -e '/Re-checking globbed/d' -e '/no work to do/d' >&2
 }
 
-if [ "${1:-}" = sanitizers ]; then
-  configure build-sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DGRADUS_SANITIZE=ON
-  build build-sanitize gradus_native_tests gradus_stress_tests
+if [ "${1:-}" = checks ]; then
+  tools/setup/setup checks
+  tbb=${XDG_CACHE_HOME:-$HOME/.cache}/gradus/tbb-2021.8.0-thread/lib/cmake/TBB
+  debug=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1)
+  configure build-sanitize "${debug[@]}" -DGRADUS_SANITIZE=address
+  build build-sanitize gradus_sanitized_tests ${2:+gradus_native_tests gradus_stress_tests}
+  configure build-thread "${debug[@]}" -DGRADUS_SANITIZE=thread -DTBB_DIR="$tbb"
+  build build-thread gradus_sanitized_tests ${2:+gradus_native_tests}
+  configure build-odr -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O0 -flto" -DGRADUS_TESTS=OFF -DGRADUS_FLOW=OFF \
+    -DCMAKE_SHARED_LINKER_FLAGS="-O0 -flto=2 -Wodr -Werror=odr -Wlto-type-mismatch -Werror=lto-type-mismatch"
+  build build-odr gradus_core
   exit
 fi
 

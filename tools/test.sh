@@ -8,8 +8,8 @@ case " $* " in
 esac
 tools/build.sh tests
 case " $* " in
-  *" addon "*) ;;
-  *" --full "*) tools/setup/setup full; tools/build.sh sanitizers ;;
+  *" --full all "* | *" --full native "*) tools/setup/setup full; tools/build.sh checks --full ;;
+  *" all "*) tools/build.sh checks ;;
 esac
 case " $* " in
   *" stress "*) GRADUS_TEST_FULL=1 exec build/tests/gradus_stress_tests --gtest_brief=1 ;;

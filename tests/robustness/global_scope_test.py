@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import bpy  # noqa: F401  (runs in every host)
 import pytest
 from support import one_ray
 

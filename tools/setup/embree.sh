@@ -6,7 +6,7 @@
 #
 # usage: embree.sh PREFIX      PREFIX is complete when PREFIX/.complete exists; builds of several checkouts may share it.
 set -euo pipefail
-
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 prefix=${1:?usage: embree.sh PREFIX}
 version=3.13.5
 [ -e "$prefix/.complete" ] && exit 0
@@ -19,23 +19,27 @@ flock 9
 work=$(mktemp -d "$prefix.build.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-
-# A private source list: the system's own has no deb-src lines and stays as it is.
-mkdir -p lists/partial
-cat > sources.list <<LIST
-deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main
-LIST
-apt_options=(-o "Dir::Etc::sourcelist=$work/sources.list" -o Dir::Etc::sourceparts=- -o "Dir::State::lists=$work/lists")
-apt-get "${apt_options[@]}" update
-# The packaging archive may be missing on a mirror (exit code 100); what counts is the orig archive, checked below.
-apt-get "${apt_options[@]}" source --download-only "embree=$version*" || apt-get "${apt_options[@]}" source --download-only embree || true
-
-orig=$(ls embree_${version}*.orig.tar.xz)
-source_sha256=$(awk -v f="$orig" '/^Checksums-Sha256:/ {on=1; next} /^[A-Z]/ {on=0} on && $3 == f {print $1}' embree_*.dsc)
-echo "$source_sha256  $orig" | sha256sum --check --strict
-tar -xf "$orig"
-cd "$(find . -maxdepth 1 -type d -name 'embree*' | head -n 1)"
+"$here/debian_source.sh" embree "$version" source
+cd "$(find source -maxdepth 1 -type d -name 'embree*' | head -n 1)"
 touch readme.pdf                 # removed from Debian's archive, but named by the install step
+
+# Embree compiles the sources of all kinds of geometry even where the options below switch them off, and with a single instruction set
+# it compiles most sources twice, into embree3 and embree_avx2, of which the linker takes the former. Neither reaches libgradus.so
+# (a linker map shows it), and they are three quarters of the time. A kind of geometry that is switched on needs its sources here again.
+cat > unused.cmake <<'LIST'
+LIST(REMOVE_ITEM EMBREE_LIBRARY_FILES
+  common/rtcore_builder.cpp common/scene_curves.cpp common/scene_line_segments.cpp common/scene_grid_mesh.cpp
+  common/scene_points.cpp common/scene_quad_mesh.cpp common/motion_derivative.cpp
+  subdiv/bezier_curve.cpp subdiv/bspline_curve.cpp subdiv/catmullrom_curve.cpp
+  geometry/curve_intersector_virtual_4v.cpp geometry/curve_intersector_virtual_4i.cpp geometry/curve_intersector_virtual_4i_mb.cpp
+  geometry/curve_intersector_virtual_8v.cpp geometry/curve_intersector_virtual_8i.cpp geometry/curve_intersector_virtual_8i_mb.cpp
+  bvh/bvh_builder_hair.cpp bvh/bvh_builder_hair_mb.cpp)
+LIST(FILTER EMBREE_LIBRARY_FILES_AVX2 EXCLUDE REGEX "curve_intersector_virtual|common/scene_|bvh_builder_hair")
+LIST(REMOVE_ITEM EMBREE_LIBRARY_FILES_AVX2 ${EMBREE_LIBRARY_FILES})
+LIST
+lists_are_complete='# replaces all .cpp files with a dummy file'
+grep -q "^$lists_are_complete" kernels/CMakeLists.txt
+sed -i "/^$lists_are_complete/r unused.cmake" kernels/CMakeLists.txt
 
 cmake -S . -B build -G Ninja \
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$work/install" -DCMAKE_INSTALL_LIBDIR=lib \

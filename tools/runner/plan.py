@@ -1,0 +1,156 @@
+"""Says which tests run where.
+
+Every test of the add-on runs once: in plain Python where it does not need Blender, else in bpy45. The other hosts run the tests of
+tests/smoke.txt, and Blender 3.4 also every test that needs the application. The full run has every file in every host.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from .hosts import HOSTS, TestFile
+from .imports import needs_blender
+from .programs import Program
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+SMOKE = ROOT / "tests" / "smoke.txt"
+COMPLETE = "bpy45"
+
+LIMIT = {"native": 900, "host": 300, "full": 3600}  # seconds for one program or file
+
+# Programs by how many processes share their tests: long ones must not be the last job beside an idle core.
+SHARDS = {"gradus_native_tests": 6, "gradus_statistics_tests": 4, "gradus_stress_tests": 3, "gradus_regression_tests": 2}
+# Tests that compare elapsed time with a limit. They run when nothing else does.
+ALONE = "*K1_*:LiveView.*:*TimeLimit*"
+
+# L6: a picture of 160 x 120 pixels with all passes, and scenes, commits, renders, reconstruction and frames in the tests of the C API;
+# nothing of them depends on the clock. J2: animations that change or are cancelled. Memory that is lost is an error, too.
+VALGRIND = (
+    "valgrind",
+    "-q",
+    "--error-exitcode=9",
+    "--num-callers=20",
+    "--leak-check=full",
+    f"--suppressions={ROOT / 'tests/support/valgrind.supp'}",
+)
+VALGRIND_TESTS = (
+    "L6_*:J2_*:Integrators/L1_Determinism.L3_Border*:G2_Pointers.*:All/Passes.LightAddsUp*/World:All/Passes.LightAddsUp*/RoughGlass"
+)
+
+
+# Sanitizers: folder of the build → environment. ThreadSanitizer's suppressions name their reasons.
+SANITIZERS = {
+    "build-sanitize": {},
+    "build-thread": {"TSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/tsan.supp'} die_after_fork=0 second_deadlock_stack=1"},
+}
+
+
+def test_files(selection: str) -> list[Path]:
+    if selection:
+        return [ROOT / name for name in selection.split(",")]
+    folders = (ROOT / "tests" / "addon", ROOT / "tests" / "robustness")
+    return sorted({path for folder in folders for pattern in ("*_test.py", "test_*.py") for path in folder.rglob(pattern)})
+
+
+@dataclass
+class Plan:
+    """Jobs by lane. A lane is a host or "native"; the jobs in `alone` run after all others, one at a time."""
+
+    lanes: dict[str, list[TestFile | Program]]
+    alone: dict[str, list[TestFile | Program]]
+
+
+def smoke() -> dict[str, dict[Path, tuple[str, ...]]]:
+    """Host → file → names of tests; no names: the whole file."""
+    found: dict[str, dict[Path, tuple[str, ...]]] = {host: {} for host in HOSTS}
+    for number, line in enumerate(SMOKE.read_text().splitlines(), 1):
+        entry, _, reason = line.partition("#")
+        if not entry.strip():
+            continue
+        hosts, name = entry.split()
+        file, _, test = name.partition("::")
+        path = ROOT / file
+        if not reason.strip() or not path.is_file() or not set(hosts.split(",")) <= {"all", *HOSTS}:
+            raise SystemExit(f"{SMOKE}:{number}: wants hosts, a test file that exists, and a reason: {line}")
+        for host in [host for host in HOSTS if host not in ("plain", COMPLETE)] if hosts == "all" else hosts.split(","):
+            tests = found[host].get(path, ())
+            found[host][path] = (*tests, test) if test else ()
+    return found
+
+
+def hosts_plan(hosts: list[str] | None, files: list[Path], full: bool) -> dict[str, list[TestFile]]:
+    """Host → its files. Named hosts run all of the files that they can."""
+    limit = LIMIT["full" if full else "host"]
+    chosen = smoke()
+    result: dict[str, list[TestFile]] = {}
+    for host in hosts or HOSTS:
+        for path in files:
+            everything = TestFile(path, limit)
+            if needs_blender(path):
+                file = everything if hosts or full or host == COMPLETE else in_other_host(host, path, limit, chosen)
+            elif host == "plain" or hosts:
+                file = everything
+            else:
+                file = TestFile(path, limit, "not application") if full else None
+            if file and not (host == "plain" and needs_blender(path)):
+                result.setdefault(host, []).append(file)
+    return result
+
+
+def in_other_host(host: str, path: Path, limit: float, chosen: dict[str, dict[Path, tuple[str, ...]]]) -> TestFile | None:
+    """What a host that does not run everything runs of a file."""
+    if path in chosen[host]:
+        return TestFile(path, limit, tests=chosen[host][path])
+    return TestFile(path, limit, "application") if host == "3.4" and has_application_tests(path) else None
+
+
+def has_application_tests(path: Path) -> bool:
+    """A quick look before a host collects the file: the mark or the fixture of tests/conftest.py."""
+    text = path.read_text()
+    return "mark.application" in text or "blender" in text
+
+
+def split_alone(lanes: dict[str, list[TestFile]]) -> tuple[dict[str, list[TestFile]], dict[str, list[TestFile]]]:
+    """Separates the tests that measure time (mark "alone") from the others."""
+    together: dict[str, list[TestFile]] = {}
+    alone: dict[str, list[TestFile]] = {}
+    for host, files in lanes.items():
+        for file in files:
+            if "mark.alone" not in file.path.read_text():
+                together.setdefault(host, []).append(file)
+                continue
+            for lane, mark in ((together, "not alone"), (alone, "alone")):
+                marks = f"{file.marks} and {mark}" if file.marks else mark
+                lane.setdefault(host, []).append(TestFile(file.path, file.limit, marks, file.tests))
+    return together, alone
+
+
+def native_plan(full: bool) -> tuple[list[Program], list[Program]]:
+    """The native programs in parts, and their tests that must run alone."""
+    limit = LIMIT["full" if full else "native"]
+    together, alone = [], []
+    for path in sorted((ROOT / "build" / "tests").glob("gradus_*_tests")):
+        shards = SHARDS.get(path.name, 1)
+        together += [Program(path, limit, f"*-{ALONE}", shard, shards) for shard in range(shards)]
+        alone.append(Program(path, limit, ALONE))
+    return together, alone
+
+
+def sanitized_plan(full: bool) -> list[Program]:
+    """The programs under the sanitizers, and in the full run those under valgrind. Their counts are short ones in any case."""
+    programs = []
+    for folder, variables in SANITIZERS.items():
+        environment = variables | {"GRADUS_TEST_FULL": "0"}
+        for name in ("gradus_native_tests", "gradus_stress_tests") if full else ("gradus_sanitized_tests",):
+            path = ROOT / folder / "tests" / name
+            shards = SHARDS.get(name, 2)
+            if name == "gradus_stress_tests" and folder == "build-thread":
+                continue  # renders of hard scenes have no threads that the others lack
+            programs += [
+                Program(path, LIMIT["full"], f"*-{ALONE}", shard, shards, environment=environment) for shard in range(shards)
+            ]
+    if full:
+        native = ROOT / "build" / "tests" / "gradus_native_tests"
+        programs.append(Program(native, LIMIT["full"], VALGRIND_TESTS, under=VALGRIND, environment={"GRADUS_TEST_FULL": "0"}))
+    return programs
