@@ -1,6 +1,6 @@
 """Regularising image reconstruction with feature patches (Manzi, Vicini, Zwicker 2016; thesis, chapter 8), complete.
 
-Names as in its figure 8; what was chosen where it can be read in several ways: docs/benchmark/designs.md.
+Names are those of its figure 8. The docstring of the package says how ambiguous places were read.
 """
 
 from __future__ import annotations
@@ -46,7 +46,10 @@ class Guide:
     @cached_property
     def tolerance(self) -> np.ndarray:
         """V_j = max(10⁻³, Var_j, ‖∇_j‖²)."""
-        slopes = sum((np.gradient(self.values, axis=axis) ** 2 for axis in (0, 1) if self.values.shape[axis] > 1), np.float64(0.0))
+        slopes = sum(
+            (np.gradient(self.values, axis=axis) ** 2 for axis in (0, 1) if self.values.shape[axis] > 1),
+            np.float64(0.0),
+        )
         return np.maximum(np.maximum(1e-3, self.variance), slopes)
 
 
@@ -72,7 +75,10 @@ def with_features(frame: Frame, features: list[np.ndarray]) -> Frame:
 def filtered_features(frame: Frame) -> list[np.ndarray]:
     """Line 2: each channel by its own distances, k_f = 1, t_f = 3."""
     guide = Guide.of_halves(frame[0].features, frame[1].features)
-    return [nlm.average(half.features, FILTER_RADIUS, lambda offset: nlm.weight(feature_distance(guide, offset, 3))) for half in frame]
+    return [
+        nlm.average(half.features, FILTER_RADIUS, lambda offset: nlm.weight(feature_distance(guide, offset, 3)))
+        for half in frame
+    ]
 
 
 def colour_weight(guide: Guide, offset: tuple[int, int], k_c: float) -> np.ndarray:
@@ -102,11 +108,21 @@ def post_filtered(halves: list[np.ndarray], features: Guide) -> list[np.ndarray]
     return [nlm.average(half, FILTER_RADIUS, weight) for half in halves]
 
 
-def estimated_errors(images: list[np.ndarray], spreads: list[np.ndarray], sampled: np.ndarray, colour: Guide) -> list[np.ndarray]:
-    """Section 7: variance plus squared bias, seen where both images are smoothed alike (k_c = 0.6); over 3×3, mean of channels."""
-    smooth = nlm.average(np.concatenate([sampled, *images], axis=2), BIAS_RADIUS, lambda offset: colour_weight(colour, offset, 0.6))
+def estimated_errors(
+    images: list[np.ndarray], spreads: list[np.ndarray], sampled: np.ndarray, colour: Guide
+) -> list[np.ndarray]:
+    """Section 7: variance plus squared bias, seen where both images are smoothed alike (k_c = 0.6).
+
+    Over 3×3, mean of channels.
+    """
+    smooth = nlm.average(
+        np.concatenate([sampled, *images], axis=2), BIAS_RADIUS, lambda offset: colour_weight(colour, offset, 0.6)
+    )
     unbiased, *smoothed = np.split(smooth, len(images) + 1, axis=2)
-    return [nlm.box((spread + (x - unbiased) ** 2).mean(axis=2, keepdims=True), 1) for spread, x in zip(spreads, smoothed, strict=True)]
+    return [
+        nlm.box((spread + (x - unbiased) ** 2).mean(axis=2, keepdims=True), 1)
+        for spread, x in zip(spreads, smoothed, strict=True)
+    ]
 
 
 def combined(images: list[np.ndarray], errors: list[np.ndarray]) -> np.ndarray:

@@ -1,4 +1,7 @@
-"""A stored frame (`gradus render -o FILE.exr`) as two half-buffers of images, differences and features. Rows as in the file, top first."""
+"""A stored frame (`gradus render -o FILE.exr`) as two half-buffers of images, differences and features.
+
+Rows as in the file, top first.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,9 @@ class Half:
     image: np.ndarray
     dx: np.ndarray  # image at the right neighbour less image here; the last column is 0
     dy: np.ndarray  # image in the row below less image here; the last row is 0
-    features: np.ndarray  # each channel in [0, 1]: normal, albedo, d/(d + median) of the depth d, x, y, as REGULARIZED has them
+    features: (
+        np.ndarray
+    )  # each channel in [0, 1]: normal, albedo, d/(d + median) of the depth d, x, y, as REGULARIZED has them
 
 
 Frame = tuple[Half, Half]
@@ -40,7 +45,9 @@ def frame_of(planes: dict[str, np.ndarray]) -> Frame:
 
 
 def tidied(half: Half) -> Half:
-    """The same without what is no number, too large, or a pair without samples, for which the image's own difference stands."""
+    """The same without what is no number, too large, or a pair without samples, for which the image's own difference
+    stands.
+    """
     image = np.clip(np.nan_to_num(half.image, nan=0.0), -LARGEST, LARGEST)
     dx, dy = (
         np.clip(np.where(np.isnan(sampled), own, sampled), -2 * LARGEST, 2 * LARGEST)
@@ -71,7 +78,10 @@ def _half_of(planes: dict[str, np.ndarray], half: str, depth: np.ndarray) -> Hal
 
 
 def _mean_of_pairs(planes: dict[str, np.ndarray], half: str, offset: str) -> np.ndarray:
-    """Of the samples from this end of each pair (native/src/frame/read.cpp joins both ends); NaN where there are none."""
+    """Of the samples from this end of each pair (native/src/frame/read.cpp joins both ends).
+
+    NaN where there are none.
+    """
     pairs = planes[f"{half}.{offset}.pairs.V"][:, :, None]
     return _vector(planes, f"{half}.{offset}", "RGB") / np.where(pairs > 0.0, pairs, np.nan)
 
@@ -81,7 +91,9 @@ def _mean_of_samples(planes: dict[str, np.ndarray], half: str, name: str, channe
 
 
 def _surface(planes: dict[str, np.ndarray], half: str) -> np.ndarray:
-    normal, albedo = (_mean_of_samples(planes, half, f"{half}.Denoising_{name}", "XYZ") for name in ("Normal", "Albedo"))
+    normal, albedo = (
+        _mean_of_samples(planes, half, f"{half}.Denoising_{name}", "XYZ") for name in ("Normal", "Albedo")
+    )
     return np.concatenate([0.5 + 0.5 * normal, albedo], axis=2)
 
 

@@ -1,4 +1,5 @@
-"""Nonlinearly weighted first-order regression (Bitterli et al. 2016): half-buffers crossed, so that no half weighs its own noise.
+"""Nonlinearly weighted first-order regression (Bitterli et al. 2016): half-buffers crossed, so that no half weighs its
+own noise.
 
 Numbers are those of the authors' code (Tungsten, src/denoiser).
 """
@@ -17,7 +18,9 @@ ROWS = 6  # of the image at once: bounds memory
 
 
 def reconstruct(frame: Frame, more_features: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
-    """more_features: further channels, of each half, that guide the *other* half, such as what gradients alone reconstruct."""
+    """more_features: further channels, of each half, that guide the *other* half, such as what gradients alone
+    reconstruct.
+    """
     colours = [half.image for half in frame]
     variance = nlm.variance_of_mean(*colours)
     own = filtered([half.features for half in frame])
@@ -37,7 +40,9 @@ def scaled(image: np.ndarray) -> np.ndarray:
     return image / max(float(np.abs(image).mean()), np.finfo(float).tiny)
 
 
-def regressed_halves(colours: list[np.ndarray], variance: np.ndarray, features: np.ndarray, k: float) -> list[np.ndarray]:
+def regressed_halves(
+    colours: list[np.ndarray], variance: np.ndarray, features: np.ndarray, k: float
+) -> list[np.ndarray]:
     """Each half with weights from the other, features[half] guiding it."""
     a, b = colours
     return [
@@ -59,7 +64,10 @@ def pair_weights(guide: np.ndarray, variance: np.ndarray, k: float) -> np.ndarra
 
 
 def regressed(image: np.ndarray, features: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Fits colours around every pixel by 1 and the features' differences from it; each speaks for all pixels of its window, by weight."""
+    """Fits colours around every pixel by 1 and the features' differences from it.
+
+    Each speaks for all pixels of its window, by weight.
+    """
     height, width, channels = image.shape
     total = np.zeros((height + 2 * RADIUS, width + 2 * RADIUS, channels + 1))
     pixels, guides = (np.pad(plane, ((RADIUS, RADIUS), (RADIUS, RADIUS), (0, 0))) for plane in (image, features))

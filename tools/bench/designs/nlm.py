@@ -1,4 +1,7 @@
-"""Non-local means with half-buffers (Rousselle, Knaus, Zwicker 2012; Rousselle, Manzi, Zwicker 2013), as chapter 8 and NFOR use it."""
+"""Non-local means with half-buffers, as chapter 8 and NFOR use it.
+
+Sources: Rousselle, Knaus, Zwicker 2012; Rousselle, Manzi, Zwicker 2013.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, uniform_filter
 
 EPSILON = 1e-10
-WeightAt = Callable[[tuple[int, int]], np.ndarray]  # weights at an offset: (height, width, 1 or as many channels as the image)
+WeightAt = Callable[
+    [tuple[int, int]], np.ndarray
+]  # weights at an offset: (height, width, 1 or as many channels as the image)
 
 
 def window(radius: int) -> Iterator[tuple[int, int]]:
@@ -40,15 +45,23 @@ def box(image: np.ndarray, radius: int) -> np.ndarray:
 
 
 def variance_of_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """From two halves: the larger of raw and blurred, so that it is neither noisy nor too small at outliers (thesis 8.4)."""
+    """From two halves: the larger of raw and blurred, so that it is neither noisy nor too small at outliers (thesis
+    8.4).
+    """
     raw = 0.25 * (a - b) ** 2
     return np.maximum(raw, gaussian_filter(raw, sigma=(2.0, 2.0, 0.0), mode="nearest"))
 
 
 def distance(
-    guide: np.ndarray, variance: np.ndarray, offset: tuple[int, int], k: float, radius: int, tolerance: np.ndarray | None = None
+    guide: np.ndarray,
+    variance: np.ndarray,
+    offset: tuple[int, int],
+    k: float,
+    radius: int,
+    tolerance: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Squared difference of p and p + offset beyond their noise and over it, mean over small squares around both; per channel.
+    """Squared difference of p and p + offset beyond their noise and over it, mean over small squares around both; per
+    channel.
 
     `tolerance` stands for the variance in the denominator.
     """

@@ -31,7 +31,9 @@ class Patches:
         """P_p I, (height · width, 25, channels)."""
         return self._d[:, :, None] * (self._residual_of @ gathered(image))
 
-    def add_products(self, squared_weights: np.ndarray, add: Callable[[tuple[int, int], slice, slice, np.ndarray], None]) -> None:
+    def add_products(
+        self, squared_weights: np.ndarray, add: Callable[[tuple[int, int], slice, slice, np.ndarray], None]
+    ) -> None:
         """Adds P_pᵀ W² P_p of all patches to a matrix between pixels: add(offset, rows, columns, values)."""
         height, width = self._shape
         scaled = self._residual_of * (self._d**2 * squared_weights)[:, None, :]
@@ -40,12 +42,19 @@ class Patches:
             rows, columns = _within(ay, height), _within(ax, width)
             for j, (by, bx) in enumerate(OFFSETS):
                 offset = by - ay, bx - ax
-                if (offset[1], offset[0]) >= (0, 0) and rows[0].stop > rows[0].start and columns[0].stop > columns[0].start:
+                if (
+                    (offset[1], offset[0]) >= (0, 0)
+                    and rows[0].stop > rows[0].start
+                    and columns[0].stop > columns[0].start
+                ):
                     add(offset, rows[1], columns[1], products[i, j, rows[0], columns[0]])
 
 
 def bases(features: np.ndarray, deviation: np.ndarray) -> np.ndarray:
-    """B of each patch: left singular vectors above τ = c ‖E‖, E the features' deviations, by the Frobenius norm; others are 0."""
+    """B of each patch: left singular vectors above τ = c ‖E‖, E the features' deviations, by the Frobenius norm.
+
+    Others are 0.
+    """
     vectors, values, _ = np.linalg.svd(features, full_matrices=False)
     threshold = np.maximum(TRUNCATION * np.linalg.norm(deviation, axis=(1, 2)), RANK * values[:, 0])
     return vectors * (values > threshold[:, None])[:, None, :]

@@ -1,8 +1,10 @@
-"""Screened Poisson reconstruction with further rows on patches, by iteratively reweighted least squares around a banded Cholesky factor.
+"""Screened Poisson reconstruction with further rows on patches, by iteratively reweighted least squares around a banded
+Cholesky factor.
 
-Rows of the system (thesis 8, equation 14): α I = α I^g; H I = (I^dx, I^dy); β P_p I = 0 for every patch p. What the thesis leaves to
-500 steps of conjugate gradients is solved exactly here, so that no preconditioner is judged with the method: unknowns that patches of 5×5
-couple are at most four columns apart, and one factor of 4·height + 5 bands serves both halves and all channels.
+Rows of the system (thesis 8, equation 14): α I = α I^g; H I = (I^dx, I^dy); β P_p I = 0 for every patch p. What the
+thesis leaves to 500 steps of conjugate gradients is solved exactly here, so that no preconditioner is judged with the
+method: unknowns that patches of 5×5 couple are at most four columns apart, and one factor of 4·height + 5 bands serves
+both halves and all channels.
 """
 
 from __future__ import annotations
@@ -39,7 +41,9 @@ class Weights:
 
 
 class Stencil:
-    """A symmetric matrix between pixels: for every offset (dy, dx) to the right, or straight down, an image of coefficients."""
+    """A symmetric matrix between pixels: for every offset (dy, dx) to the right, or straight down, an image of
+    coefficients.
+    """
 
     def __init__(self, height: int, width: int) -> None:
         self._shape = height, width
@@ -88,10 +92,14 @@ def right_side(half: Half, weights: Weights, alpha: float) -> np.ndarray:
     return side
 
 
-def solve(halves: tuple[Half, ...], weights: Weights, alpha: float, beta: float = 0.0, patches: Patches | None = None) -> list[np.ndarray]:
+def solve(
+    halves: tuple[Half, ...], weights: Weights, alpha: float, beta: float = 0.0, patches: Patches | None = None
+) -> list[np.ndarray]:
     """Least squares with these weights: the same linear operator for all halves."""
     height, width, channels = halves[0].image.shape
-    factor = cholesky_banded(normal_matrix(weights, alpha, beta, patches).band(), lower=True, overwrite_ab=True, check_finite=False)
+    factor = cholesky_banded(
+        normal_matrix(weights, alpha, beta, patches).band(), lower=True, overwrite_ab=True, check_finite=False
+    )
     sides = np.concatenate([right_side(half, weights, alpha) for half in halves], axis=2)
     unknowns = cho_solve_banded((factor, True), sides.transpose(1, 0, 2).reshape(height * width, -1))
     images = unknowns.reshape(width, height, -1).transpose(1, 0, 2)
@@ -105,12 +113,19 @@ def equal_weights(half: Half, patches: Patches | None) -> Weights:
 
 
 def reweighted(
-    half: Half, image: np.ndarray, step: int, alpha: float, beta: float, patches: Patches | None, reweighting: Reweighting
+    half: Half,
+    image: np.ndarray,
+    step: int,
+    alpha: float,
+    beta: float,
+    patches: Patches | None,
+    reweighting: Reweighting,
 ) -> Weights:
     """Lines 11 to 16 of figure 4: 1/(‖e‖ + 0.05 · 0.5^(k−1)), ‖e‖ over the channels.
 
-    Rows of pixels are reweighted without patches only. With patches they stay 1 where the others have a mean of 1: set to 1 before W is
-    scaled to a mean of 1, as lines 15 and 16 have it, the scale would not matter, and α would depend on the unit of light.
+    Rows of pixels are reweighted without patches only. With patches they stay 1 where the others have a mean of 1: set
+    to 1 before W is scaled to a mean of 1, as lines 15 and 16 have it, the scale would not matter, and α would depend
+    on the unit of light.
     """
 
     power = reweighting.value
@@ -135,7 +150,9 @@ def l1(half: Half, alpha: float, reweighting: Reweighting) -> np.ndarray:
     return image
 
 
-def regularized(frame: Frame, alpha: float, beta: float, patches: Patches, reweighting: Reweighting) -> list[np.ndarray]:
+def regularized(
+    frame: Frame, alpha: float, beta: float, patches: Patches, reweighting: Reweighting
+) -> list[np.ndarray]:
     """POISSONREGULARIZED (figure 4): both halves by the weights of their mean."""
     weights = equal_weights(frame[0], patches)
     mean = mean_of(frame)

@@ -1,7 +1,8 @@
-"""A Blender scene as plain arrays, for renderers that read no .blend: meshes, materials, camera, world.
+"""Writes the open Blender scene as plain arrays for mitsuba_worker.py: meshes, materials, camera and world.
 
-Only what means the same everywhere is written: Diffuse, Glass and Glossy BSDFs without roughness, Emission, a world of one colour. Whatever
-else a scene has is named in a ValueError, so that no picture of something else is ever compared.
+Only what both renderers define alike is written: Diffuse, Glass and Glossy BSDFs without roughness, Emission and a
+world of one color. Anything else raises a ValueError that names it, so that pictures of different scenes are never
+compared.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from typing import Any
 import bpy
 import numpy as np
 
-GAP = 1e-4  # metres between the two sides of an emitter, which shines both ways here and one way elsewhere
+GAP = (
+    1e-4  # meters between the two sides of an emitter, which emits on both sides in Blender and on one side in Mitsuba
+)
 
 
 def write(path: Path) -> None:
@@ -24,15 +27,25 @@ def write(path: Path) -> None:
     for instance in depsgraph.object_instances:
         thing = instance.object
         if thing.type == "LIGHT":
-            raise ValueError(f"lamp {thing.name}")
+            raise ValueError(f"light {thing.name}")
         if thing.type == "MESH":
             vertices, triangles = _triangles(thing, np.array(instance.matrix_world))
             material = _material(thing)
-            for side, indices in enumerate([triangles, triangles[:, ::-1]] if material["kind"] == "emission" else [triangles]):
+            for side, indices in enumerate(
+                [triangles, triangles[:, ::-1]] if material["kind"] == "emission" else [triangles]
+            ):
                 moved = vertices + GAP * _normal(vertices, indices) if side else vertices
-                arrays |= {f"vertices{len(meshes)}": moved.astype(np.float32), f"triangles{len(meshes)}": indices.astype(np.uint32)}
+                arrays |= {
+                    f"vertices{len(meshes)}": moved.astype(np.float32),
+                    f"triangles{len(meshes)}": indices.astype(np.uint32),
+                }
                 meshes.append(material)
-    facts = {"meshes": meshes, "camera": _camera(scene), "world": _world(scene), "max_bounces": scene.cycles.max_bounces}
+    facts = {
+        "meshes": meshes,
+        "camera": _camera(scene),
+        "world": _world(scene),
+        "max_bounces": scene.cycles.max_bounces,
+    }
     np.savez(path, facts=np.array(json.dumps(facts)), **arrays)
 
 
@@ -48,7 +61,7 @@ def _triangles(thing: bpy.types.Object, matrix: np.ndarray) -> tuple[np.ndarray,
 
 
 def _normal(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Unit normal of the first triangle: emitters are flat."""
+    """Returns the unit normal of the first triangle; emitters are assumed to be flat."""
     a, b, c = vertices[triangles[0]]
     normal = np.cross(b - a, c - a)
     return normal / np.linalg.norm(normal)
@@ -66,16 +79,22 @@ def _material(thing: bpy.types.Object) -> dict[str, Any]:
     color = list(node.inputs["Color"].default_value)[:3]
     if node.bl_idname == "ShaderNodeEmission":
         color = [c * node.inputs["Strength"].default_value for c in color]
-    return {"kind": kinds[node.bl_idname], "color": color, "ior": node.inputs["IOR"].default_value if "IOR" in node.inputs else 1.0}
+    ior = node.inputs["IOR"].default_value if "IOR" in node.inputs else 1.0
+    return {"kind": kinds[node.bl_idname], "color": color, "ior": ior}
 
 
 def _camera(scene: bpy.types.Scene) -> dict[str, Any]:
     camera = scene.camera
     data = camera.data
     if data.type != "PERSP" or data.sensor_fit == "VERTICAL" or data.shift_x or data.shift_y or data.dof.use_dof:
-        raise ValueError("camera: neither plain nor horizontal")
+        raise ValueError("camera with depth of field, shift, vertical sensor fit or another projection")
     matrix = np.array(camera.matrix_world)
-    return {"matrix": matrix.tolist(), "angle_x": data.angle_x, "clip_start": data.clip_start, "clip_end": data.clip_end}
+    return {
+        "matrix": matrix.tolist(),
+        "angle_x": data.angle_x,
+        "clip_start": data.clip_start,
+        "clip_end": data.clip_end,
+    }
 
 
 def _world(scene: bpy.types.Scene) -> list[float]:

@@ -1,7 +1,9 @@
-"""Makes a room in which reflections and refractions go other ways than the surfaces that show them. usage: parting_ways.py FILE
+"""Makes a room in which reflections and refractions move otherwise than the surfaces that show them.
 
-What moves goes by the name of the file: gliding-camera (nothing but the camera, past a mirror and a pane that rest), moving-box (a box
-behind the pane and before the mirror, all else rests) or turning-mirror (the mirror alone).
+    make_specular_motion.py FILE
+
+The name of the file says what moves: gliding-camera (the camera alone, past a mirror and a pane of glass), moving-box
+(a box behind the pane and in front of the mirror) or turning-mirror (the mirror alone).
 """
 
 from __future__ import annotations
@@ -16,18 +18,18 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "sample_blends"))
 from builders import boxes, common  # noqa: E402
 
 FRAMES = 24
-SPAN = 0.5  # metres that the camera goes, and the box
-FACING, TURN = -50.0, 10.0  # degrees, of the mirror
+SPAN = 0.5  # meters by which the camera or the box moves
+FACING, TURN = -50.0, 10.0  # degrees: direction of the mirror at first, and by how much it turns
 
 
 def stripes(u: float, v: float) -> common.Color:
-    """Soft waves in three directions: what moves over them is seen to move, and no edge is sharper than a pixel."""
+    """Returns soft waves in three directions, whose motion is visible and which have no edge sharper than a pixel."""
     waves = [0.5 + 0.5 * math.sin(2.0 * math.pi * (a * u + b * v)) for a, b in ((5, 0), (0, 4), (3, 3))]
     return 0.35 + 0.5 * waves[0], 0.35 + 0.5 * waves[1], 0.3 + 0.5 * waves[2]
 
 
 def mirror() -> bpy.types.Object:
-    """A flat one on the right that looks to the left and to the camera."""
+    """Adds a flat mirror on the right that faces the left and the camera."""
     silver = common.principled("Mirror", (0.95, 0.95, 0.95), 0.0, 1.0)
     quad = common.quad("Mirror", [(-0.6, 0.0, -0.55), (0.6, 0.0, -0.55), (0.6, 0.0, 0.55), (-0.6, 0.0, 0.55)], silver)
     quad.location = (0.85, 0.45, 0.75)
@@ -37,7 +39,7 @@ def mirror() -> bpy.types.Object:
 
 def textured_box(name: str, place: common.Vector, material: bpy.types.Material) -> bpy.types.Object:
     box = common.box(name, place, (0.35, 0.35, 0.6), material, turn=20.0)
-    box.data.uv_layers.new(name="UVMap")  # each face has the whole of the texture, as Blender makes it
+    box.data.uv_layers.new(name="UVMap")  # by default every face has the whole texture
     return box
 
 
@@ -51,7 +53,7 @@ def move(what: str) -> None:
         turned = objects["Mirror"].rotation_euler
         target, path, start, by = objects["Mirror"], "rotation_euler", tuple(turned), (0.0, 0.0, math.radians(TURN))
     else:
-        raise SystemExit(f"parting_ways.py: nothing moves in {what}")
+        raise SystemExit(f"make_specular_motion.py: unknown scene {what}")
     common.key(target, path, [(1, start), (FRAMES, tuple(a + b for a, b in zip(start, by, strict=True)))])
 
 
@@ -64,7 +66,7 @@ def main() -> None:
     pattern = common.textured("Pattern", common.image("Pattern", 256, 256, stripes), roughness=1.0)
     gray = common.diffuse("Gray", (0.6,) * 3)
     boxes.room(3.6, 3.0, 2.2, {"floor": pattern, "ceiling": gray, "back": pattern, "left": pattern, "right": gray})
-    common.area_lamp("Lamp", (0.0, -0.6, 2.15), (0.0, 0.0, 0.0), (1.2, 1.2), 90.0)
+    common.area_lamp("Light", (0.0, -0.6, 2.15), (0.0, 0.0, 0.0), (1.2, 1.2), 90.0)
     mirror()
     common.box("Pane", (-0.7, -0.4, 0.7), (1.0, 0.06, 1.2), common.glass("Pane"), turn=10.0)
     textured_box("Box", (-0.5, 0.3, 0.3), pattern)
