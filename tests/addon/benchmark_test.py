@@ -182,11 +182,11 @@ def test_a_slider_offers_all_pictures_and_crops() -> None:
 def test_both_forms_of_the_report_say_the_same() -> None:
     blocks = [
         document.Text("# Title\n\n- one **bold**\n- two `a<b`"),
-        document.Table(["x", "y"], [["1", "[there](host.md)"]]),
+        document.Table(["x", "y"], [["1", "[there](other.html)"]]),
     ]
-    assert "| 1 | [there](host.md) |" in document.to_markdown(blocks)
+    assert "| 1 | [there](other.html) |" in document.to_markdown(blocks)
     page = document.to_html("Title", blocks, "", "")
-    assert '<td>1</td><td><a href="host.md">there</a></td>' in page
+    assert '<td>1</td><td><a href="other.html">there</a></td>' in page
     assert "<li>one <b>bold</b></li><li>two <code>a&lt;b</code></li>" in page
 
 

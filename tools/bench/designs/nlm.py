@@ -17,26 +17,26 @@ WeightAt = Callable[
 
 
 def window(radius: int) -> Iterator[tuple[int, int]]:
-    """Offsets (dy, dx) of a square, row by row."""
+    """Yields the offsets (dy, dx) of a square, row by row."""
     reach = range(-radius, radius + 1)
     return ((dy, dx) for dy in reach for dx in reach)
 
 
 def shifted(image: np.ndarray, dy: int, dx: int) -> np.ndarray:
-    """The image at p + (dy, dx), the border's pixel where that is outside."""
+    """Returns the image at p + (dy, dx); pixels outside the image are those of the border."""
     height, width = image.shape[:2]
     return image.take(np.arange(height) + dy, axis=0, mode="clip").take(np.arange(width) + dx, axis=1, mode="clip")
 
 
 def inside(shape: tuple[int, ...], dy: int, dx: int) -> np.ndarray:
-    """1 where p + (dy, dx) is in the image, else 0, shape (height, width, 1)."""
+    """Returns 1 where p + (dy, dx) is in the image, else 0 (height, width, 1)."""
     height, width = shape[:2]
     rows, columns = np.arange(height) + dy, np.arange(width) + dx
     return (((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width)))[:, :, None].astype(float)
 
 
 def reached(shape: tuple[int, ...], dy: int, dx: int) -> bool:
-    """Whether p + (dy, dx) is in the image for any p."""
+    """Says whether p + (dy, dx) is in the image for any p."""
     return abs(dy) < shape[0] and abs(dx) < shape[1]
 
 
@@ -45,8 +45,9 @@ def box(image: np.ndarray, radius: int) -> np.ndarray:
 
 
 def variance_of_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """From two halves: the larger of raw and blurred, so that it is neither noisy nor too small at outliers (thesis
-    8.4).
+    """Returns the variance of the mean of two halves: the larger of the raw and the blurred estimate (thesis 8.4).
+
+    It is then neither noisy nor too small at outliers.
     """
     raw = 0.25 * (a - b) ** 2
     return np.maximum(raw, gaussian_filter(raw, sigma=(2.0, 2.0, 0.0), mode="nearest"))
@@ -60,10 +61,9 @@ def distance(
     radius: int,
     tolerance: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Squared difference of p and p + offset beyond their noise and over it, mean over small squares around both; per
-    channel.
+    """Returns the squared difference of p and p + offset beyond their noise, relative to their noise, for each channel.
 
-    `tolerance` stands for the variance in the denominator.
+    It is the mean over small squares around both. `tolerance` replaces the variance in the denominator.
     """
     tolerance = variance if tolerance is None else tolerance
     squared = (guide - shifted(guide, *offset)) ** 2 - (variance + shifted(variance, *offset))
@@ -75,7 +75,7 @@ def weight(distances: np.ndarray) -> np.ndarray:
 
 
 def average(image: np.ndarray, radius: int, weight_at: WeightAt) -> np.ndarray:
-    """Weighted mean over a window."""
+    """Returns the weighted mean over a window."""
     total, weights = np.zeros_like(image), 0.0
     for offset in window(radius):
         if not reached(image.shape, *offset):
