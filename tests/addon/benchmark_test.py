@@ -150,6 +150,16 @@ def test_a_setting_that_does_not_exist_refuses_the_mode(scene: bpy.types.Scene) 
         modes.apply(scene, mode, 4, 0)
 
 
+@pytest.mark.module
+def test_settings_of_cycles_do_not_stay_for_the_next_mode(scene: bpy.types.Scene) -> None:
+    found = {}
+    for name in ("cycles-denoised", "cycles", "cycles-shipped"):
+        modes.apply(scene, modes.MODES[name], 4, 0)
+        found[name] = (scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling)
+    shipped = tuple(scene.cycles.bl_rna.properties[name].default for name in ("use_denoising", "use_adaptive_sampling"))
+    assert found == {"cycles-denoised": (True, False), "cycles": (False, False), "cycles-shipped": shipped}
+
+
 def test_every_mode_has_a_reference() -> None:
     for mode in modes.MODES.values():
         assert modes.REFERENCES[mode.engine] in modes.MODES

@@ -82,7 +82,7 @@ def apply(scene: Any, mode: Mode, samples: int, seed: int) -> None:
     if mode.engine == GRADUS:
         target.noise_threshold = 0.0
     else:
-        for name in _CYCLES_SETTINGS & target.bl_rna.properties.keys():
+        for name in _CYCLES_SETTINGS.intersection(target.bl_rna.properties.keys()):
             target.property_unset(name)
     for name, value in mode.settings.items():
         # Blender accepts any attribute: assigned all the same, an unknown one would have no effect.

@@ -18,7 +18,6 @@ import modes
 import room
 import worker
 from answers import Answers
-from gradus import store
 from rooms import ROOMS
 
 
@@ -30,7 +29,7 @@ def render(job: dict[str, Any], bounces: int) -> dict[str, Any]:
         setattr(scene.gradus if is_gradus else scene.cycles, name, bounces)
     answer = worker.timed(bpy.ops.render.render)
     if is_gradus:
-        stats = store.summaries[(scene.name, scene.view_layers[0].name)]
+        stats = worker.store.summaries[(scene.name, scene.view_layers[0].name)]
         answer |= {"stages": stats["cpu_seconds"], "rays": stats["rays"]}
     return answer
 

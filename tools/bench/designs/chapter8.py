@@ -73,7 +73,7 @@ def with_features(frame: Frame, features: list[np.ndarray]) -> Frame:
 
 
 def filtered_features(frame: Frame) -> list[np.ndarray]:
-    """Returns the features of both halves, filtered as in line 2: each channel by its own distances, k_f = 1, t_f = 3."""
+    """Returns the features of both halves, filtered channel by channel (line 2; k_f = 1, t_f = 3)."""
     guide = Guide.of_halves(frame[0].features, frame[1].features)
     return [
         nlm.average(half.features, FILTER_RADIUS, lambda offset: nlm.weight(feature_distance(guide, offset, 3)))

@@ -1,6 +1,6 @@
 """Screened Poisson reconstruction with further rows for patches, by iteratively reweighted least squares.
 
-Rows of the system (thesis 8, equation 14): α I = α I^g; H I = (I^dx, I^dy); β P_p I = 0 for every patch p. The system is
+Rows (thesis 8, equation 14): α I = α I^g; H I = (I^dx, I^dy); β P_p I = 0 for every patch p. The system is
 solved exactly by a banded Cholesky factor, where the thesis uses 500 steps of conjugate gradients, so that the result
 does not depend on a preconditioner. Patches of 5×5 couple pixels that are at most four columns apart, so that one
 factor of 4·height + 5 bands serves both halves and all channels.
@@ -120,7 +120,7 @@ def reweighted(
     patches: Patches | None,
     reweighting: Reweighting,
 ) -> Weights:
-    """Returns the next weights, 1/(‖e‖ + 0.05 · 0.5^(k−1)) with the norm over the channels (lines 11 to 16 of figure 4).
+    """Returns the next weights: 1/(‖e‖ + 0.05 · 0.5^(k−1)), norms over channels (figure 4, lines 11 to 16).
 
     Rows of pixels are reweighted only without patches. With patches their weight is 1, and the other rows are scaled to
     a mean of 1. Lines 15 and 16 scale all rows together, which would make α depend on the unit of light.
