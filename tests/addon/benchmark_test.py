@@ -210,7 +210,7 @@ def test_sentences_in_a_table_wrap() -> None:
 
 @pytest.fixture
 def stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A file of results of its own."""
+    """Redirects the results of stills to a temporary file and returns it."""
     file = tmp_path / "results" / "stills.jsonl"
     for module in (results, stills_module()):
         monkeypatch.setattr(module, "STILLS", file)
@@ -239,7 +239,7 @@ def test_everything_is_written_to_folders_outside_git() -> None:
 
 
 def test_only_runs_of_one_commit_and_blender_are_compared(stored: Path) -> None:
-    """Peers of another Blender are other peers."""
+    """Runs in another Blender have other peers."""
     newest = {"version": "b", "blender": "5.2", "width": 160}
     older = [newest | {"version": "a"}, newest | {"blender": "4.5"}, newest | {"width": 320}]
     for conditions in (*older, newest):
@@ -281,11 +281,11 @@ def test_peers_are_those_of_the_newest_blender_if_it_is_there(
         )
     finally:
         hosts.peer.cache_clear()
-    assert ("peers are those of 4.5" in capsys.readouterr().err) == (not newest), "it is said once"
+    assert ("peers are those of 4.5" in capsys.readouterr().err) == (not newest)
 
 
 def test_costs_are_ratios_within_a_repeat() -> None:
-    """Export and build are in both counts, so the slope does not have them."""
+    """Export and build take the same time for both sample counts, so the slope is free of them."""
 
     def row(mode: str, samples: int, repeat: int, cpu: float) -> dict:
         size = {"room": "room-1k", "width": 10, "height": 10, "version": "a", "blender": "5.2"}

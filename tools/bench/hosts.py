@@ -16,7 +16,6 @@ from paths import ROOT
 
 NEWEST, FALLBACK = "5.2", "4.5"
 MODULES = {"4.5": "bpy45", "5.0": "bpy50", "5.2": "bpy52"}  # Blender -> environment with its Python module
-APPLICATION = "3.4"  # Debian's Blender
 
 
 def is_installed(blender: str) -> bool:
