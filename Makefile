@@ -8,7 +8,8 @@ BLENDER ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-addon stress faults compilers package schema format lint clean
-.PHONY: bench bench-errors bench-compare bench-agreement bench-animation bench-motion bench-quick bench-speed bench-designs bench-suite bench-pictures bench-host bench-report picture picture-components
+BENCH := $(addprefix bench-,errors quick agreement pictures speed reconstruct animation motion host designs compare report)
+.PHONY: bench $(BENCH) picture picture-components
 
 help:           ## this list
 	@sed -n 's/^\([a-z-]*:\)  *## /  make \1 /p' Makefile
@@ -45,48 +46,24 @@ faults:         ## faults put into a copy of the sources, one at a time: do the 
 compilers:      ## statistics of a build without optimisation, and of one by clang; half an hour
 	@tools/compilers.sh
 
-bench:          ## everything below, all scenes; interrupted runs go on: SCENES=a,b MODES=path,auto WIDTH=160 REFERENCE=1024 MINUTES=60
-	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
-	 tools/bench.sh
+# Results, pictures and the report go to out/bench. Variables limit a part: the head of tools/bench.sh lists them.
+bench:          ## all parts but quick, designs and compare, each for MINUTES=60 at most; a further call goes on
+	@tools/bench.sh all
 
-bench-errors:   ## error against CPU time alone; limited by the same variables
-	@SCENES='$(SCENES)' MODES='$(MODES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
-	 tools/bench.sh --errors
-
-bench-agreement: ## converged images against those of Cycles and Mitsuba; limited by the same variables
-	@SCENES='$(SCENES)' WIDTH='$(WIDTH)' REFERENCE='$(REFERENCE)' tools/bench.sh --agreement
-
-bench-animation: ## flicker of animations against CPU time; limited by the same variables, varied by SIZE=320x180 FRAMES=24 BLUR=1
-	@SCENES='$(SCENES)' MODES='$(MODES)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
-	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' tools/bench.sh --animation
-
-bench-motion:   ## motion of reflections and refractions, and what it is worth; as bench-animation, PARTS=truth,prediction,flicker,cost REPEATS=3 LOADED=1
-	@SCENES='$(SCENES)' MODES='$(MODES)' REFERENCE='$(REFERENCE)' SEEDS='$(SEEDS)' SAMPLES='$(SAMPLES)' MINUTES='$(MINUTES)' \
-	 SIZE='$(SIZE)' FRAMES='$(FRAMES)' BLUR='$(BLUR)' PARTS='$(PARTS)' REPEATS='$(REPEATS)' LOADED='$(LOADED)' tools/bench.sh --motion
-
-bench-quick:    ## errors of two scenes, in under five minutes
-	@tools/bench.sh --quick
-
-bench-compare:  ## two versions among the stored results, error and rays of L2 and WEIGHTED: OLD=772811d NEW=414ff4f WIDTH=160
-	@OLD='$(OLD)' NEW='$(NEW)' WIDTH='$(WIDTH)' tools/bench.sh --compare
-
-bench-speed:    ## CPU time of a sample in a room of 1 k to 2 M triangles, against Cycles: ROOMS=room-1k SPEED_WIDTH=640 REPEATS=3
-	@ROOMS='$(ROOMS)' SPEED_WIDTH='$(SPEED_WIDTH)' REPEATS='$(REPEATS)' tools/bench.sh --speed
-
-bench-designs:  ## the product's reconstructions against published ones: SCENES=hero,kitchen REFERENCE=1024
-	@SCENES='$(SCENES)' REFERENCE='$(REFERENCE)' tools/bench.sh --designs
-
-bench-suite:    ## time of the statistical tests, and of the reconstructions at 1920x1080
-	@tools/bench.sh --suite
-
-bench-pictures: ## pictures of the project's own scenes by all modes: SCENES=hero
-	@SCENES='$(SCENES)' tools/bench.sh --pictures
-
+bench-errors:   ## stills: error against CPU time next to Cycles and Mitsuba: SCENES=a,b MODES=path,auto WIDTH=160
+bench-quick:    ## the same for two scenes, in under five minutes
+bench-agreement: ## stills: converged images against those of Cycles and Mitsuba: SCENES=a,b WIDTH=160 REFERENCE=1024
+bench-pictures: ## stills: pictures and error maps of the project's own scenes: SCENES=hero
+bench-speed:    ## CPU time of a sample in rooms of 1 k to 2 M triangles next to Cycles: ROOMS=room-1k REPEATS=3
+bench-reconstruct: ## CPU time of the reconstructions at 1920x1080: REPEATS=3
+bench-animation: ## animations: flicker against CPU time: SCENES=a,b SIZE=320x180 FRAMES=24 BLUR=1
+bench-motion:   ## motion of components: MEASURES=truth,prediction,flicker,cost SCENES=a,b BLUR=1 LOADED=1
 bench-host:     ## export and upload in each Blender, half a minute
-	@tools/bench.sh --host
-
-bench-report:   ## docs/benchmark/report.html and README.md from the stored results alone
-	@tools/bench.sh --report
+bench-designs:  ## the reconstructions next to published ones: SCENES=hero,kitchen WIDTH=160 REFERENCE=1024
+bench-compare:  ## two commits whose stills were measured: OLD=772811d NEW=414ff4f WIDTH=160
+bench-report:   ## out/bench/report.html and report.md from the results in out/bench
+$(BENCH): bench-%:
+	@tools/bench.sh $*
 
 picture:        ## docs/images/hero.png, the picture of the README
 	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 64' BLENDER='$(BLENDER)' tools/render.sh

@@ -1,24 +1,27 @@
-"""The measures of the benchmark, against images and curves whose error is known."""
+"""Tests of the benchmark's measures on images and curves whose error is known, and of its report."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
 import pytest
-from gradus import settings
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
 import behind  # noqa: E402
 import crops  # noqa: E402
 import document  # noqa: E402
+import hosts  # noqa: E402
 import metrics  # noqa: E402
 import modes  # noqa: E402
+import records  # noqa: E402
 import results  # noqa: E402
+import scenes  # noqa: E402
 import seeds  # noqa: E402
-import suite  # noqa: E402
+import speed  # noqa: E402
 
 RANDOM = np.random.default_rng(1)
 REFERENCE = 0.2 + RANDOM.random((24, 32, 3))
@@ -36,7 +39,9 @@ def test_relative_error_of_a_constant_offset() -> None:
 def test_the_variance_of_a_reference_is_subtracted() -> None:
     """A perfect image against a noisy reference has no error, on average."""
     deviation = 0.05
-    errors = [metrics.rel_mse(REFERENCE, noisy(deviation, seed), np.full_like(REFERENCE, deviation**2)) for seed in range(64)]
+    errors = [
+        metrics.rel_mse(REFERENCE, noisy(deviation, seed), np.full_like(REFERENCE, deviation**2)) for seed in range(64)
+    ]
     raw = metrics.rel_mse(REFERENCE, noisy(deviation, 0))
     assert abs(np.mean(errors)) < 0.1 * raw
 
@@ -91,8 +96,11 @@ def test_crops_are_where_the_modes_differ() -> None:
     assert crops.choose_crops(errors) == [(0, 0), (160, 90)]
 
 
-def rows_of(mode: str, errors: list[float], samples: int = 16, **more: float) -> list[dict]:
-    return [{"scene": "hero", "mode": mode, "samples": samples, "seed": i, "relmse": error} | more for i, error in enumerate(errors)]
+def rows_of(mode: str, errors: list[float], samples: int = 16, **more: Any) -> list[dict]:
+    return [
+        {"scene": "hero", "mode": mode, "samples": samples, "seed": i, "relmse": error} | more
+        for i, error in enumerate(errors)
+    ]
 
 
 def test_modes_are_compared_at_the_same_samples_and_seed() -> None:
@@ -123,7 +131,9 @@ def test_one_count_of_samples_tells_nothing_of_equal_time() -> None:
     assert metrics.equal_time_ratio([(1.2, 0.5)], [(1.0, 1.0)]) is None
     theirs = [(t, 1.0 / t) for t in (1.0, 4.0)]
     for time in (0.9, 1.2, 4.5):
-        assert metrics.equal_time_ratio([(time, 0.5 / time)], theirs) == pytest.approx(0.5), "the curve goes on to the time of the point"
+        assert metrics.equal_time_ratio([(time, 0.5 / time)], theirs) == pytest.approx(0.5), (
+            "the curve goes on to the time of the point"
+        )
         assert metrics.equal_time_ratio(theirs, [(time, 0.5 / time)]) == pytest.approx(2.0)
 
 
@@ -140,14 +150,27 @@ def test_a_setting_that_does_not_exist_refuses_the_mode(scene: bpy.types.Scene) 
         modes.apply(scene, mode, 4, 0)
 
 
+@pytest.mark.module
+def test_settings_of_cycles_do_not_stay_for_the_next_mode(scene: bpy.types.Scene) -> None:
+    found = {}
+    for name in ("cycles-denoised", "cycles", "cycles-shipped"):
+        modes.apply(scene, modes.MODES[name], 4, 0)
+        found[name] = (scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling)
+    shipped = tuple(scene.cycles.bl_rna.properties[name].default for name in ("use_denoising", "use_adaptive_sampling"))
+    assert found == {"cycles-denoised": (True, False), "cycles": (False, False), "cycles-shipped": shipped}
+
+
 def test_every_mode_has_a_reference() -> None:
     for mode in modes.MODES.values():
         assert modes.REFERENCES[mode.engine] in modes.MODES
 
 
 def test_the_denoiser_is_measured_on_every_reconstruction() -> None:
-    denoised = {mode.settings["reconstruction"] for mode in modes.MODES.values() if mode.settings.get("denoiser") == "OIDN"}
-    assert denoised == {name for name, *_ in settings.BY_NAME["reconstruction"].choices} - {"AUTO"}
+    def reconstructions(denoiser: str) -> set[str]:
+        settings = [mode.settings for mode in modes.MODES.values() if mode.engine == modes.GRADUS]
+        return {found["reconstruction"] for found in settings if found["denoiser"] == denoiser}
+
+    assert reconstructions("OIDN") == reconstructions("NONE") - {"AUTO"}
 
 
 def test_a_slider_offers_all_pictures_and_crops() -> None:
@@ -167,10 +190,13 @@ def test_a_slider_offers_all_pictures_and_crops() -> None:
 
 
 def test_both_forms_of_the_report_say_the_same() -> None:
-    blocks = [document.Text("# Title\n\n- one **bold**\n- two `a<b`"), document.Table(["x", "y"], [["1", "[there](host.md)"]])]
-    assert "| 1 | [there](host.md) |" in document.to_markdown(blocks)
+    blocks = [
+        document.Text("# Title\n\n- one **bold**\n- two `a<b`"),
+        document.Table(["x", "y"], [["1", "[there](other.html)"]]),
+    ]
+    assert "| 1 | [there](other.html) |" in document.to_markdown(blocks)
     page = document.to_html("Title", blocks, "", "")
-    assert '<td>1</td><td><a href="host.md">there</a></td>' in page
+    assert '<td>1</td><td><a href="other.html">there</a></td>' in page
     assert "<li>one <b>bold</b></li><li>two <code>a&lt;b</code></li>" in page
 
 
@@ -182,14 +208,94 @@ def test_sentences_in_a_table_wrap() -> None:
     assert "<td>0.98 (0.97–1.01)</td>" in page
 
 
-@pytest.mark.parametrize(
-    ("code", "output", "found"),
-    [
-        (0, "[  PASSED  ] 3 tests.", (3, 0)),
-        (1, "[  PASSED  ] 2 tests.\n[  FAILED  ] 1 test, listed below:", (2, 1)),
-        (-11, "[ RUN      ] A3.Crashes", (0, 1)),
-        (0, "[  PASSED  ] 0 tests.", (0, 1)),
-    ],
-)
-def test_a_suite_that_crashed_or_is_empty_is_not_green(code: int, output: str, found: tuple[int, int]) -> None:
-    assert suite.outcome(code, output) == found
+@pytest.fixture
+def stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Redirects the results of stills to a temporary file and returns it."""
+    file = tmp_path / "results" / "stills.jsonl"
+    for module in (results, stills_module()):
+        monkeypatch.setattr(module, "STILLS", file)
+    return file
+
+
+def stills_module() -> Any:
+    pytest.importorskip("PIL")
+    import stills
+
+    return stills
+
+
+def test_results_are_appended_with_six_digits(tmp_path: Path) -> None:
+    file = tmp_path / "results" / "part.jsonl"
+    assert records.read(file) == []
+    records.append({"relmse": 0.123456789, "range": (1.23456789, 2)}, file)
+    records.append({"relmse": 2.0}, file)
+    assert records.read(file) == [{"relmse": 0.123457, "range": [1.23457, 2]}, {"relmse": 2.0}]
+
+
+def test_everything_is_written_to_folders_outside_git() -> None:
+    ignored = (hosts.ROOT / ".gitignore").read_text().splitlines()
+    assert "/out/" in ignored
+    assert records.RESULTS.relative_to(hosts.ROOT).parts[:2] == ("out", "bench")
+
+
+def test_only_runs_of_one_commit_and_blender_are_compared(stored: Path) -> None:
+    """Runs in another Blender have other peers."""
+    newest = {"version": "b", "blender": "5.2", "width": 160}
+    older = [newest | {"version": "a"}, newest | {"blender": "4.5"}, newest | {"width": 320}]
+    for conditions in (*older, newest):
+        for mode in ("path", "cycles"):
+            for row in rows_of(mode, [1.0], **conditions):
+                records.append(row, stored)
+    (scene,) = results.load()
+    assert [(row["mode"], row["version"], row["blender"], row["width"]) for row in scene.rows] == [
+        ("path", "b", "5.2", 160),
+        ("cycles", "b", "5.2", 160),
+    ]
+
+
+def test_runs_that_are_stored_are_not_repeated(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stills = stills_module()
+    (hero,) = (scene for scene in scenes.SCENES if scene.name == "hero")
+    for row in rows_of("path", [1.0, 2.0], version="a", blender="5.2", width=160):
+        records.append(row, stored)
+    found = {}
+    for blender in ("5.2", "4.5"):
+        monkeypatch.setattr(hosts, "peer", lambda blender=blender: blender)
+        found[blender] = stills.done_jobs(hero, 160, "a")
+    assert found == {"5.2": {stills.Job(0, 16, "path"), stills.Job(1, 16, "path")}, "4.5": set()}
+
+
+@pytest.mark.parametrize("newest", [True, False])
+def test_peers_are_those_of_the_newest_blender_if_it_is_there(
+    newest: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(hosts, "ROOT", tmp_path)
+    if newest:
+        (tmp_path / ".venv" / "bpy52").mkdir(parents=True)
+        (tmp_path / ".venv" / "bpy52" / ".stamp").touch()
+    hosts.peer.cache_clear()
+    try:
+        assert hosts.peer() == ("5.2" if newest else "4.5")
+        assert hosts.module_command(Path("worker.py"))[0].endswith(
+            "bpy52/bin/python3" if newest else "bpy45/bin/python3"
+        )
+    finally:
+        hosts.peer.cache_clear()
+    assert ("peers are those of 4.5" in capsys.readouterr().err) == (not newest)
+
+
+def test_costs_are_ratios_within_a_repeat() -> None:
+    """Export and build take the same time for both sample counts, so the slope is free of them."""
+
+    def row(mode: str, samples: int, repeat: int, cpu: float) -> dict:
+        size = {"room": "room-1k", "width": 10, "height": 10, "version": "a", "blender": "5.2"}
+        return size | {"mode": mode, "samples": samples, "repeat": repeat, "cpu": cpu, "peak_memory_bytes": 1}
+
+    rows = []
+    for repeat, slow in enumerate((1.0, 2.0)):
+        for mode, cost in (("path", 1.0), ("cycles", 4.0)):
+            rows += [row(mode, samples, repeat, 5.0 + slow * cost * samples) for samples in speed.SAMPLES]
+    found = speed.costs(rows)["room-1k"]
+    assert found["path"].per_sample == pytest.approx({0: 1e4, 1: 2e4})
+    assert found["cycles"].over(found["path"]) == pytest.approx((4.0, 4.0, 4.0))
+    assert found["cycles"].total_over(found["path"])[0] < 4.0

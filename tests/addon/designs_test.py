@@ -74,7 +74,9 @@ def test_nfor_has_less_error_than_the_noisy_image() -> None:
 
 
 @pytest.mark.parametrize(("reweighting", "power"), [(Reweighting.L1, 1), (Reweighting.PRINTED, 0)])
-def test_weighted_squares_of_residuals_are_the_norm_or_as_printed_a_constant(reweighting: Reweighting, power: int) -> None:
+def test_weighted_squares_of_residuals_are_the_norm_or_as_printed_a_constant(
+    reweighting: Reweighting, power: int
+) -> None:
     late = 40  # what is added to the residuals is next to nothing
     weights = poisson.reweighted(FRAME[0], TRUTH, late, 0.2, 0.0, None, reweighting)
     residual = np.linalg.norm(0.2 * (TRUTH - FRAME[0].image), axis=2)
@@ -95,7 +97,9 @@ def test_linear_functions_of_features_satisfy_the_patches() -> None:
     patches = patches_of(FEATURES)
     assert patches.residuals(image) == pytest.approx(0.0, abs=1e-9)
     random = np.random.default_rng(4).random
-    weights = poisson.Weights(*(0.1 + random((HEIGHT, WIDTH)) for _ in range(3)), 0.1 + random((HEIGHT * WIDTH, len(OFFSETS))))
+    weights = poisson.Weights(
+        *(0.1 + random((HEIGHT, WIDTH)) for _ in range(3)), 0.1 + random((HEIGHT * WIDTH, len(OFFSETS)))
+    )
     (solved,) = poisson.solve((half_of(image),), weights, 0.1, 20.0, patches)
     assert solved == pytest.approx(image, abs=1e-8)
 
@@ -119,14 +123,25 @@ def test_the_normal_matrix_is_that_of_the_rows() -> None:
     features = FEATURES[:height, :width]
     patches = patches_of(features)
     random = np.random.default_rng(6).random
-    weights = poisson.Weights(*(0.1 + random((height, width)) for _ in range(3)), 0.1 + random((height * width, len(OFFSETS))))
+    weights = poisson.Weights(
+        *(0.1 + random((height, width)) for _ in range(3)), 0.1 + random((height * width, len(OFFSETS)))
+    )
     rows = []
     for unit in np.eye(height * width):
         image = unit.reshape(width, height).T[:, :, None]
         dx, dy = frames.differences(image)
-        parts = [alpha * image[:, :, 0] * np.sqrt(weights.pixel), dx[:, :, 0] * np.sqrt(weights.dx), dy[:, :, 0] * np.sqrt(weights.dy)]
+        parts = [
+            alpha * image[:, :, 0] * np.sqrt(weights.pixel),
+            dx[:, :, 0] * np.sqrt(weights.dx),
+            dy[:, :, 0] * np.sqrt(weights.dy),
+        ]
         rows.append(
-            np.concatenate([*(p.ravel() for p in parts), (beta * patches.residuals(image)[:, :, 0] * np.sqrt(weights.patch)).ravel()])
+            np.concatenate(
+                [
+                    *(p.ravel() for p in parts),
+                    (beta * patches.residuals(image)[:, :, 0] * np.sqrt(weights.patch)).ravel(),
+                ]
+            )
         )
     expected = np.array(rows) @ np.array(rows).T
     band = poisson.normal_matrix(weights, alpha, beta, patches).band()
@@ -208,5 +223,7 @@ def test_the_table_has_the_newest_results_of_scenes_that_have_l1() -> None:
     ]
     rows.insert(-1, rows[-1] | {"relmse": 7.0, "samples": 4})
     rows.insert(-1, {"scene": "b", "design": "l1", "relmse": 5.0, "cpu": None, **settings})
-    assert {scene: designs["nfor-l1"]["relmse"] for scene, designs in compare_designs.newest(rows).items()} == {"a": 2.0}
+    assert {scene: designs["nfor-l1"]["relmse"] for scene, designs in compare_designs.newest(rows).items()} == {
+        "a": 2.0
+    }
     assert "| NFOR | 1.00 | 1.00 | 2.0000 | 2.0000 | 100 |" in compare_designs.table(rows)

@@ -1,4 +1,4 @@
-"""The benchmark of components' motion: its measures against motion that is known, its modes, its report, and a tiny run."""
+"""Tests of the motion benchmark: its measures on known motion, its modes, its report, and a tiny run."""
 
 from __future__ import annotations
 
@@ -39,7 +39,10 @@ def forward(right: float, up: float) -> np.ndarray:
 
 
 def motion_of(own: np.ndarray, frames: int = 2) -> metrics.Passes:
-    """A reflection that goes its own way while surfaces rest, and light on what it shows that rests with them; of all frames the same."""
+    """A reflection that goes its own way while surfaces rest, and light on what it shows that rests with them.
+
+    Of all frames the same.
+    """
     motion = np.broadcast_to(np.concatenate([own, own], axis=-1), (frames, HEIGHT, WIDTH, 4)).copy()
     passes = {"Vector": np.zeros_like(motion), "Path Reflection Motion": motion}
     passes["Path Reflection Irradiance Motion"] = np.zeros_like(motion)
@@ -48,7 +51,9 @@ def motion_of(own: np.ndarray, frames: int = 2) -> metrics.Passes:
     return passes
 
 
-def parts_of(now: np.ndarray, following: np.ndarray, deviation: float = 0.0, count: int = 4) -> list[metrics.Passes]:
+def renderings_of(
+    now: np.ndarray, following: np.ndarray, deviation: float = 0.0, count: int = 4
+) -> list[metrics.Passes]:
     """Renderings of two frames of a reflection."""
     random = np.random.default_rng(1)
     both = np.stack([now, following])[..., None] * np.ones(3)
@@ -59,14 +64,16 @@ def parts_of(now: np.ndarray, following: np.ndarray, deviation: float = 0.0, cou
 
 def predicted(own: np.ndarray, following: np.ndarray, deviation: float = 0.0, kind: str = "") -> dict[str, Any]:
     motion = metrics.of_frame(motion_of(own), 0)
-    return metrics.predict(motion, parts_of(waves(), following, deviation), "Reflection")[kind].row()
+    return metrics.predict(motion, renderings_of(waves(), following, deviation), "Reflection")[kind].row()
 
 
 def test_the_right_vectors_predict_the_next_frame_and_the_surface_does_not() -> None:
     found = predicted(forward(*SHIFT), waves(*SHIFT))
     assert found["all"]["own"] > 0.99
     assert found["all"]["surface"] < 0.2
-    assert found["moving"]["pixels"] == found["all"]["pixels"] > 0.8 * HEIGHT * WIDTH, "what leaves the picture does not count"
+    assert found["moving"]["pixels"] == found["all"]["pixels"] > 0.8 * HEIGHT * WIDTH, (
+        "what leaves the picture does not count"
+    )
     assert found["lit"] == HEIGHT * WIDTH
 
 
@@ -74,13 +81,13 @@ def test_vectors_of_the_wrong_sign_predict_nothing() -> None:
     assert predicted(-forward(*SHIFT), waves(*SHIFT))["all"]["own"] < 0.2
 
 
-def test_noise_of_independent_parts_is_no_error_of_prediction() -> None:
+def test_noise_of_independent_renderings_is_no_error_of_prediction() -> None:
     """Each part is off by 4 %, their mean by 2 %."""
     found = predicted(forward(*SHIFT), waves(*SHIFT), deviation=0.04)
     assert found["all"]["own"] > 0.9
     assert found["all"]["noise"] > 0.9
     loud = predicted(forward(*SHIFT), waves(*SHIFT), deviation=0.4)
-    assert loud["all"]["noise"] < 0.8, "too much noise must be seen in what is told of it"
+    assert loud["all"]["noise"] < 0.8, "too much noise must be visible in the limit"
 
 
 def test_light_that_changes_is_an_error_of_prediction() -> None:
@@ -89,22 +96,22 @@ def test_light_that_changes_is_an_error_of_prediction() -> None:
 
 def test_light_that_changes_is_none_of_what_is_shown() -> None:
     """Reflectance goes along while the light changes."""
-    parts = parts_of(waves(), waves(*SHIFT))
-    for part in parts:
-        part["Path Reflection"] = part["Path Reflection"] * np.array((1.0, 1.2))[:, None, None, None]
-    found = metrics.predict(metrics.of_frame(motion_of(forward(*SHIFT)), 0), parts, "Reflection")
+    renderings = renderings_of(waves(), waves(*SHIFT))
+    for rendering in renderings:
+        rendering["Path Reflection"] = rendering["Path Reflection"] * np.array((1.0, 1.2))[:, None, None, None]
+    found = metrics.predict(metrics.of_frame(motion_of(forward(*SHIFT)), 0), renderings, "Reflection")
     assert found[""].row()["all"]["own"] < 0.1
     assert found["reflectance"].row()["all"]["own"] > 0.99
 
 
 def test_irradiance_is_predicted_by_its_own_motion_beside_that_of_what_it_falls_on() -> None:
     """A shadow goes to the left over what is seen to go to the right."""
-    parts, passes = parts_of(waves(), waves(*SHIFT)), motion_of(forward(*SHIFT))
-    for part in parts:
-        part["Path Reflection Irradiance"] = np.stack([waves(), waves(-4.0, 2.0)])[..., None] * np.ones(3)
+    renderings, passes = renderings_of(waves(), waves(*SHIFT)), motion_of(forward(*SHIFT))
+    for rendering in renderings:
+        rendering["Path Reflection Irradiance"] = np.stack([waves(), waves(-4.0, 2.0)])[..., None] * np.ones(3)
     passes["Path Reflection Irradiance Motion"][..., 2:] = forward(-4.0, 2.0)
     passes["Path Reflection Irradiance Tracked"][:, :10] = -9.0
-    found = metrics.predict(metrics.of_frame(passes, 0), parts, "Reflection")["irradiance"]
+    found = metrics.predict(metrics.of_frame(passes, 0), renderings, "Reflection")["irradiance"]
     shares = found.row()
     assert shares["all"]["own"] > 0.99
     assert shares["all"]["surface"] < 0.2
@@ -115,15 +122,15 @@ def test_irradiance_is_predicted_by_its_own_motion_beside_that_of_what_it_falls_
 def test_pixels_without_a_track_do_not_count() -> None:
     passes = motion_of(forward(*SHIFT))
     passes["Path Reflection Tracked"][0, :, : WIDTH // 2] = -4.0
-    found = metrics.predict(metrics.of_frame(passes, 0), parts_of(waves(), waves(*SHIFT)), "Reflection")
+    found = metrics.predict(metrics.of_frame(passes, 0), renderings_of(waves(), waves(*SHIFT)), "Reflection")
     assert found[""].counts[:, : WIDTH // 2].sum() == 0
 
 
-def test_pixels_count_where_both_ways_lead_into_the_picture() -> None:
+def test_pixels_count_where_both_motions_lead_into_the_picture() -> None:
     """What the surface's vector had lead out of it was an error of 100 %, and spread about."""
     passes = motion_of(forward(0.0, 0.0))
     passes["Vector"][0, :, WIDTH // 2 :, 2] = -WIDTH
-    found = metrics.predict(metrics.of_frame(passes, 0), parts_of(waves(), waves()), "Reflection")[""]
+    found = metrics.predict(metrics.of_frame(passes, 0), renderings_of(waves(), waves()), "Reflection")[""]
     assert not found.counts[:, WIDTH // 2 :].any()
     assert found.row()["all"]["surface"] == 1.0
     assert found.row()["all"]["pixels"] == HEIGHT * WIDTH // 2
@@ -134,12 +141,12 @@ def test_components_are_those_that_tell_whether_they_are_tracked() -> None:
     assert metrics.components(motion_of(forward(0.0, 0.0))) == ["Reflection"]
 
 
-def test_own_ways_are_those_of_what_a_pixel_mostly_shows() -> None:
-    passes = motion_of(forward(*SHIFT)) | parts_of(waves(), waves())[0]
+def test_component_vectors_are_those_of_what_a_pixel_mostly_shows() -> None:
+    passes = motion_of(forward(*SHIFT)) | renderings_of(waves(), waves())[0]
     passes["Combined"] = passes["Path Reflection"] * np.where(np.arange(WIDTH) < 20, 4.0, 1.0)[:, None]
-    ways = metrics.own_ways(passes)
-    assert (ways[:, :, :20] == metrics.NOWHERE).all()
-    np.testing.assert_array_equal(ways[:, :, 20:], passes["Path Reflection Motion"][:, :, 20:])
+    vectors = metrics.component_vectors(passes)
+    assert (vectors[:, :, :20] == metrics.UNTRACKED).all()
+    np.testing.assert_array_equal(vectors[:, :, 20:], passes["Path Reflection Motion"][:, :, 20:])
 
 
 def test_an_error_that_goes_along_does_not_flicker() -> None:
@@ -148,7 +155,10 @@ def test_an_error_that_goes_along_does_not_flicker() -> None:
     reference = np.ones((3, HEIGHT, WIDTH, 3))
     images = reference + 0.1 * (np.stack(frames)[..., None] - 1.0)
     own = np.broadcast_to(np.array((-2.0, 0.0, -2.0, 0.0)), (3, HEIGHT, WIDTH, 4))
-    still = [metrics.flicker_measures(images, reference, np.zeros_like(images), ways)["flicker_own"] for ways in (own, 0.0 * own)]
+    still = [
+        metrics.flicker_measures(images, reference, np.zeros_like(images), vectors)["flicker_component"]
+        for vectors in (own, 0.0 * own)
+    ]
     assert still[0] < 1e-9
     assert still[1] > 1e-5
 
@@ -170,8 +180,12 @@ def test_flicker_of_a_picture_that_is_not_finite_is_refused(monkeypatch: pytest.
     images = np.ones((2, HEIGHT, WIDTH, 3))
     converged = SimpleNamespace(mean=images, variance=0.0 * images, samples=8)
     monkeypatch.setattr(motion, "reference", lambda *_: converged)
-    bench = SimpleNamespace(animation=SimpleNamespace(name="box"), samples=8, _own_ways=lambda: np.zeros((2, HEIGHT, WIDTH, 4)))
-    bench.renderer = SimpleNamespace(render=lambda *_: (images * np.where(np.arange(WIDTH) == 0, np.nan, 1.0)[:, None], {}))
+    bench = SimpleNamespace(
+        animation=SimpleNamespace(name="box"), samples=8, _component_vectors=lambda: np.zeros((2, HEIGHT, WIDTH, 4))
+    )
+    bench.renderer = SimpleNamespace(
+        render=lambda *_: (images * np.where(np.arange(WIDTH) == 0, np.nan, 1.0)[:, None], {})
+    )
     with pytest.raises(RuntimeError, match=f"windows-l2 in box, 4 samples, seed 1: {2 * HEIGHT} of"):
         next(motion.MotionBench._flicker(bench, motion.Job("flicker", "windows-l2", 4, 1)))
 
@@ -180,18 +194,35 @@ def test_flicker_of_a_picture_that_is_not_finite_is_refused(monkeypatch: pytest.
 def test_every_mode_is_compared_with_windows_along_surfaces(mode: str) -> None:
     """Without components, and of components."""
     settings = motion_modes.MODES[mode].settings
-    whole, parts = (motion_modes.MODES[of(mode)].settings for of in (motion_modes.compared_with, motion_modes.along_surfaces))
-    assert (whole["use_temporal"], whole["use_decomposition"]) == (True, False)
-    assert (parts["use_temporal"], parts["use_decomposition"], parts["component_replays"]) == (True, True, False)
-    assert {other["reconstruction"] for other in (whole, parts)} == {settings["reconstruction"]}
-    assert {other["integrator"] for other in (whole, parts)} == {settings["integrator"]}
+    combined, components = (
+        motion_modes.MODES[of(mode)].settings for of in (motion_modes.compared_with, motion_modes.along_surfaces)
+    )
+    assert (combined["use_temporal"], combined["use_decomposition"]) == (True, False)
+    assert (components["use_temporal"], components["use_decomposition"], components["component_replays"]) == (
+        True,
+        True,
+        False,
+    )
+    assert {other["reconstruction"] for other in (combined, components)} == {settings["reconstruction"]}
+    assert {other["integrator"] for other in (combined, components)} == {settings["integrator"]}
     assert "use_temporal" in settings and "use_decomposition" in settings, "modes follow one another in one scene"  # noqa: PT018
 
 
 def flicker_row(mode: str, flicker: float, seed: int = 0, **more: Any) -> dict:
-    row = {"part": "flicker", "scene": "mirror_and_glass", "frames": [10, 15], "width": 320, "height": 180, "shutter": 0.0}
-    row |= {"mode": mode, "samples": 16, "seed": seed, "version": "new", "cpu": 6.0}
-    return row | {name: flicker for name in ("flicker_own", "flicker_own_moving", "relmse_smooth", "relmse")} | more
+    row = {
+        "measure": "flicker",
+        "scene": "mirror_and_glass",
+        "frames": [10, 15],
+        "width": 320,
+        "height": 180,
+        "shutter": 0.0,
+    }
+    row |= {"mode": mode, "samples": 16, "seed": seed, "version": "new", "blender": "5.2", "cpu": 6.0}
+    return (
+        row
+        | {name: flicker for name in ("flicker_component", "flicker_component_moving", "relmse_specular", "relmse")}
+        | more
+    )
 
 
 def tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *rows: dict) -> list[document.Table]:
@@ -215,35 +246,45 @@ def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
     assert set(motion_modes.USUAL) < set(motion_modes.FLICKER)
 
 
-def test_flicker_is_told_over_that_of_windows_of_the_same_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [flicker_row("windows-l2", 1.0), flicker_row("windows-l2", 4.0, 1), flicker_row("windows-parts-l2", 0.5)]
-    table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-parts-surfaces-l2", 0.8))[-1]
-    assert column(table, "F / windows")[LABELS["windows-parts-l2"]] == "0.500"
-    assert column(table, "F / components along surfaces")[LABELS["windows-parts-l2"]] == "0.625"
+def test_flicker_is_relative_to_windows_of_the_same_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [
+        flicker_row("windows-l2", 1.0),
+        flicker_row("windows-l2", 4.0, 1),
+        flicker_row("windows-components-l2", 0.5),
+    ]
+    table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-components-surfaces-l2", 0.8))[-1]
+    assert column(table, "F / windows")[LABELS["windows-components-l2"]] == "0.500"
+    assert column(table, "F / components along surfaces")[LABELS["windows-components-l2"]] == "0.625"
 
 
-def test_times_of_a_loaded_machine_are_not_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = {"windows-l2": 1.0, "windows-parts-surfaces-l2": 1.0, "windows-parts-l2": 0.5}
+def test_times_of_a_loaded_machine_are_not_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = {"windows-l2": 1.0, "windows-components-surfaces-l2": 1.0, "windows-components-l2": 0.5}
     for more, told in (({}, True), ({"loaded": True}, False)):
-        runs = [flicker_row(mode, flicker / n, samples=n, cpu=0.5 * n, **more) for mode, flicker in rows.items() for n in (4, 16)]
+        runs = [
+            flicker_row(mode, flicker / n, samples=n, cpu=0.5 * n, **more)
+            for mode, flicker in rows.items()
+            for n in (4, 16)
+        ]
         table = tables(tmp_path, monkeypatch, *runs)[-1]
         assert all((cell != "–") == told for name in TIMES for cell in column(table, name).values())
-    assert column(table, "F / windows")[LABELS["windows-parts-l2"]] == "0.500", "samples are the same on any machine"
+    assert column(table, "F / windows")[LABELS["windows-components-l2"]] == "0.500", (
+        "samples are the same on any machine"
+    )
 
 
-def test_flicker_at_equal_time_charges_what_own_ways_take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_flicker_at_equal_time_includes_the_time_of_components(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Half the flicker at the same samples, for a fifth more time. One count of samples cannot tell."""
     name = "F at equal time / windows"
     for counts, told in (((16,), "–"), ((4, 16), "0.600")):
         rows = [flicker_row("windows-l2", 1.0 / n, samples=n, cpu=float(n)) for n in counts]
-        rows += [flicker_row("windows-parts-l2", 0.5 / n, samples=n, cpu=1.2 * n) for n in counts]
-        assert column(tables(tmp_path, monkeypatch, *rows)[-1], name)[LABELS["windows-parts-l2"]] == told
+        rows += [flicker_row("windows-components-l2", 0.5 / n, samples=n, cpu=1.2 * n) for n in counts]
+        assert column(tables(tmp_path, monkeypatch, *rows)[-1], name)[LABELS["windows-components-l2"]] == told
 
 
 def test_bars_of_flicker_name_scenes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     flickers = {"mirror_and_glass": 0.5, "moving-box": 1.021, "animated": 0.9}
-    rows = [flicker_row("windows-parts-surfaces-auto", 1.0, scene=scene) for scene in flickers]
-    rows += [flicker_row("windows-parts-auto", flicker, scene=scene) for scene, flicker in flickers.items()]
+    rows = [flicker_row("windows-components-surfaces-auto", 1.0, scene=scene) for scene in flickers]
+    rows += [flicker_row("windows-components-auto", flicker, scene=scene) for scene, flicker in flickers.items()]
     table = tables(tmp_path, monkeypatch, *rows)[-2]
     (flicker, _) = table.rows
     assert flicker[1:5] == ["components along surfaces", "F at equal samples", "3", "0.900"]
@@ -251,25 +292,30 @@ def test_bars_of_flicker_name_scenes(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_the_newest_version_of_a_part_replaces_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [flicker_row("windows-l2", 1.0, version="old"), flicker_row("windows-parts-l2", 1.0, version="old")]
+    rows = [flicker_row("windows-l2", 1.0, version="old"), flicker_row("windows-components-l2", 1.0, version="old")]
     table = tables(tmp_path, monkeypatch, *rows, flicker_row("windows-l2", 2.0))[-1]
     assert list(column(table, "F along").values()) == ["2.0000", "1.0000"]
 
 
 def test_versions_are_not_compared_with_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Their pixels are others: each has its own ways."""
-    modes = ("windows-l2", "windows-parts-l2")
+    """Other commits may measure other pixels."""
+    modes = ("windows-l2", "windows-components-l2")
     rows = [flicker_row(mode, 1.0 / n, version="old", samples=n, cpu=float(n)) for mode in modes for n in (4, 16)]
     newer = [flicker_row("windows-l2", 2.0 / n, samples=n, cpu=float(n)) for n in (4, 16)]
     for more, told in (([], "1.000"), (newer, "–")):
         made = tables(tmp_path, monkeypatch, *rows, *more)[-1]
         for name in ("F / windows", "relMSE / windows", "F at equal time / windows"):
-            assert column(made, name)[LABELS["windows-parts-l2"]] == told
+            assert column(made, name)[LABELS["windows-components-l2"]] == told
 
 
-def test_another_size_of_truth_replaces_that_of_the_version_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_size_of_truth_replaces_that_of_the_version_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = tmp_path / "motion.jsonl"
-    rows = [flicker_row("", 0.0, version=version, width=width) | {"part": "truth"} for version, width in (("old", 160), ("new", 320))]
+    rows = [
+        flicker_row("", 0.0, version=version, width=width) | {"measure": "truth"}
+        for version, width in (("old", 160), ("new", 320))
+    ]
     file.write_text("".join(json.dumps(row) + "\n" for row in rows))
     monkeypatch.setattr(report, "RESULTS", file)
     assert [row["width"] for row in report.load()["truth"]] == [320]
@@ -282,6 +328,7 @@ def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.M
     loaded, quiet = flicker_row("windows-l2", 1.0, loaded=True, frame=0), flicker_row("windows-l2", 2.0, frame=0)
     assert list(column(tables(tmp_path, monkeypatch, loaded, quiet)[-1], "F along").values()) == ["2.0000"]
     monkeypatch.setattr(motion, "RESULTS", tmp_path / "motion.jsonl")
+    monkeypatch.setattr(motion.hosts, "peer", lambda: "5.2")
     (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 6)
     for row, done in ((loaded, 0), (quiet, 1)):
         motion.RESULTS.write_text(json.dumps(row) + "\n")
@@ -290,44 +337,66 @@ def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.M
 
 def cost_row(mode: str, **seconds: float) -> dict:
     times = {"sample": 1.0, "reconstruct": 0.5, "links": 0.0} | seconds
-    return flicker_row(mode, 0.0) | {"part": "cost", "seconds": times, "frame": 12}
+    return flicker_row(mode, 0.0) | {"measure": "cost", "seconds": times, "frame": 12}
 
 
 def test_costs_are_ratios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [cost_row("whole"), cost_row("parts", sample=1.04, reconstruct=0.7), cost_row("parts-surfaces", sample=1.1)]
-    rows += [cost_row("parts-motion", sample=2.0, links=0.062)]
+    rows = [
+        cost_row("combined"),
+        cost_row("components", sample=1.04, reconstruct=0.7),
+        cost_row("components-surfaces", sample=1.1),
+    ]
+    rows += [cost_row("components-motion", sample=2.0, links=0.062)]
     table = tables(tmp_path, monkeypatch, *rows)[-1]
     assert table.rows == [["mirror_and_glass", "1.040", "1.100", "1.400", "0.031", "1"]]
     text = next(block.markdown for block in report.blocks() if "### Cost" in block.as_markdown())
     assert "Missed: motion / sampling in mirror_and_glass (0.031)." in text
-    assert len(tables(tmp_path, monkeypatch, *(row | {"loaded": True} for row in rows))) == 1, "no ratio of a loaded machine"
+    assert len(tables(tmp_path, monkeypatch, *(row | {"loaded": True} for row in rows))) == 1, (
+        "no ratio of a loaded machine"
+    )
 
 
 def truth_row(component: str, tracked: int) -> dict:
     check = {"searched": 10, "exist": 10, "tracked": 10, "error": {"median": 0.01, "quantile_95": 0.02}}
-    return flicker_row("", 0.0) | {"part": "truth", "component": component, "chains": 10000, "pixels": {"tracked": tracked}, "check": check}
+    return flicker_row("", 0.0) | {
+        "measure": "truth",
+        "component": component,
+        "chains": 10000,
+        "pixels": {"tracked": tracked},
+        "check": check,
+    }
 
 
 def test_components_of_which_too_little_is_tracked_are_named() -> None:
     text = report.about_truth([truth_row("Reflection", 9499), truth_row("Transmission", 9500)]).markdown
-    assert "tracked in 1, of what can be followed in 2. Less of all pixels: mirror_and_glass, Reflection (94.99 %)." in text
+    assert (
+        "tracked in 1, and 95 % of those that can be followed in 2. "
+        "Fewer of all pixels: mirror_and_glass, Reflection (94.99 %)."
+        in text
+    )
 
 
 def prediction_row(component: str, own: float, surface: float, pixels: int = 1000) -> dict:
     shares = {"pixels": pixels, "own": own, "surface": surface, "noise": 1.0, "median": 0.01}
     kinds = {f"{kind}{key}": shares for kind in ("", "reflectance_", "irradiance_") for key in ("all", "moving")}
-    return flicker_row("parts", 0.0) | {"part": "prediction", "component": component} | kinds | {"lit": 2000}
+    return flicker_row("components", 0.0) | {"measure": "prediction", "component": component} | kinds | {"lit": 2000}
 
 
 def test_predictions_are_summed_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [prediction_row("Reflection", 0.96, 0.48), prediction_row("Transmission", 0.3, 0.4), prediction_row("Residual", 0.5, 0.25, 10)]
+    rows = [
+        prediction_row("Reflection", 0.96, 0.48),
+        prediction_row("Transmission", 0.3, 0.4),
+        prediction_row("Residual", 0.5, 0.25, 10),
+    ]
     texts = [text.markdown for text in report.about_prediction(rows)]
-    assert "of light in 1 of 3 (1 where noise is the reason for less), of reflectance in 1 of 3" in texts[0]
+    assert "of light in 1 of 3 (1 up to the limit of noise), of reflectance in 1 of 3" in texts[0]
     assert "of irradiance in 1 of 3" in texts[0]
-    extremes = "least 0.75 (mirror_and_glass, Transmission), most 2.00 (mirror_and_glass, Reflection); fewer in 1 of 2; "
+    extremes = (
+        "lowest 0.75 (mirror_and_glass, Transmission), highest 2.00 (mirror_and_glass, Reflection); fewer in 1 of 2; "
+    )
     assert [extremes in text for text in texts] == [False, True, True], "ten pixels of Residual tell nothing"
     more = report.about_prediction([*rows, prediction_row("Transmission", 0.1, 0.0) | {"scene": "moving-box"}])
-    assert "fewer in 1 of 3; in 1 the surface's predicts none" in more[1].markdown
+    assert "fewer in 1 of 3; no ratio in 1, where" in more[1].markdown
     made = tables(tmp_path, monkeypatch, *rows)[-3:]
     assert [table.rows[0][4:7] for table in made] == [["50.0 %", "96.0 %", "48.0 %"], *[["–", "96.0 %", "48.0 %"]] * 2]
 
@@ -343,10 +412,15 @@ def test_the_wheel_has_the_colours_of_the_maps() -> None:
 
 
 def strip_of(frames: int) -> metrics.Passes:
-    """A reflection that goes to the right by two pixels a frame, on a surface at rest, in the left half of a picture."""
+    """A reflection that goes to the right by two pixels a frame, on a surface at rest, in the left half of a picture.
+    """
     light = np.stack([waves(2.0 * k) for k in range(frames)])[..., None] * np.ones(3)
     light[:, :, WIDTH // 2 :] = 0.0
-    return motion_of(forward(2.0, 0.0), frames) | {"Path Reflection": light, "Path Transmission": 0.5 * light, "Combined": light + 0.1}
+    return motion_of(forward(2.0, 0.0), frames) | {
+        "Path Reflection": light,
+        "Path Transmission": 0.5 * light,
+        "Combined": light + 0.1,
+    }
 
 
 def test_strips_show_what_the_next_frame_differs_by_either_motion() -> None:
@@ -360,7 +434,9 @@ def test_strips_show_what_the_next_frame_differs_by_either_motion() -> None:
     rows = [pictures.HEADER - pictures.GAP + row * (HEIGHT + pictures.HEADER) for row in range(3)]
     beneath = [shown[top : top + HEIGHT, : WIDTH // 2 - 8].mean() for top in rows[1:]]
     assert beneath[0] < 0.5 * beneath[1], "errors are bright"
-    assert (shown[rows[1] : rows[1] + HEIGHT, 2 * (WIDTH + pictures.GAP) :] == 255).all(), "nothing follows the last frame"
+    assert (shown[rows[1] : rows[1] + HEIGHT, 2 * (WIDTH + pictures.GAP) :] == 255).all(), (
+        "nothing follows the last frame"
+    )
 
 
 def test_strips_are_of_the_brightest_of_what_mirrors_and_glass_show() -> None:
@@ -374,7 +450,8 @@ def arguments_of(**more: Any) -> SimpleNamespace:
     import motion
 
     usual = {
-        "parts": list(motion.PARTS), "size": None, "frames": 6, "blur": False, "seeds": 1, "repeats": 3, "samples": [4, 16],
+        "measures": list(motion.MEASURES), "size": None, "frames": 6, "blur": False, "seeds": 1, "repeats": 3,
+        "samples": [4, 16],
         "modes": list(motion_modes.USUAL), "light": 256, "loaded": False, "reference": 512,
     }  # fmt: skip
     return SimpleNamespace(**usual | more)
@@ -383,9 +460,9 @@ def arguments_of(**more: Any) -> SimpleNamespace:
 def test_flicker_is_of_small_pictures_and_the_others_of_large_ones(capsys: pytest.CaptureFixture[str]) -> None:
     import motion
 
-    sizes = {variant.size: parts for variant, parts in motion.parts_of(arguments_of()).items()}
+    sizes = {variant.size: measures for variant, measures in motion.measures_by_variant(arguments_of()).items()}
     assert sizes == {(160, 90): ["flicker"], (320, 180): ["truth", "prediction", "cost"]}
-    assert list(motion.parts_of(arguments_of(size=(64, 36))).values()) == [list(motion.PARTS)]
+    assert list(motion.measures_by_variant(arguments_of(size=(64, 36))).values()) == [list(motion.MEASURES)]
     assert not capsys.readouterr().out
 
 
@@ -393,9 +470,9 @@ def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[s
     """A pixel has more than one vector then."""
     import motion
 
-    ((variant, parts),) = motion.parts_of(arguments_of(blur=True)).items()
+    ((variant, measures),) = motion.measures_by_variant(arguments_of(blur=True)).items()
     assert variant.shutter == 0.5
-    assert parts == ["truth", "cost"]
+    assert measures == ["truth", "cost"]
     assert [line.split(":")[0] for line in capsys.readouterr().out.splitlines()] == ["SKIP prediction", "SKIP flicker"]
 
 
@@ -404,10 +481,10 @@ def test_what_is_measured_of_cost_is_asked_for() -> None:
     import motion
 
     asked = {mode: set(passes) for mode, (_, passes) in motion.COST_MODES.items()}
-    assert not asked["whole"]
-    assert all("components" in passes for mode, passes in asked.items() if mode != "whole")
-    assert asked["parts-motion"] - asked["parts"] == {"component_motion"}
-    assert asked["parts-surfaces"] - asked["parts"] == {"component_reflectance", "component_normal"}
+    assert not asked["combined"]
+    assert all("components" in passes for mode, passes in asked.items() if mode != "combined")
+    assert asked["components-motion"] - asked["components"] == {"component_motion"}
+    assert asked["components-surfaces"] - asked["components"] == {"component_reflectance", "component_normal"}
     (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 6)
     jobs = motion.jobs_of(animation, arguments_of(repeats=2), ["cost"])
     assert [(job.mode, job.seed) for job in jobs] == [(mode, seed) for seed in range(2) for mode in asked]
@@ -418,7 +495,11 @@ def test_passes_that_are_not_wanted_are_off(scene: bpy.types.Scene) -> None:
     import motion_worker
 
     layer = scene.view_layers[0]
-    known = {switch.identifier for switch in layer.gradus.bl_rna.properties if switch.identifier.startswith("use_pass_component")}
+    known = {
+        switch.identifier
+        for switch in layer.gradus.bl_rna.properties
+        if switch.identifier.startswith("use_pass_component")
+    }
     assert {f"use_pass_{name}" for name in motion_worker.OF_COMPONENTS} == known
     motion_worker.set_passes(layer, motion_worker.SWITCHES)
     assert layer.use_pass_vector
@@ -445,22 +526,22 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(animation_references, "CACHE", tmp_path)
     monkeypatch.setattr(animation_references, "PART", 2)
     for module in (pictures, report):
-        monkeypatch.setattr(module, "FOLDER", tmp_path)
+        monkeypatch.setattr(module, "OUT", tmp_path)
     monkeypatch.setattr(motion, "CHECKED", 8)
     (animation,) = motion.select(motion.ANIMATIONS, "mirror_and_glass", 2)
-    modes = ["frames-l2", "windows-l2", "windows-parts-auto"]
+    modes = ["frames-l2", "windows-l2", "windows-components-auto"]
     arguments = arguments_of(size=(64, 36), frames=2, repeats=1, reference=8, light=8, samples=[2], modes=modes)
     for _ in range(2):
         motion.bench_motion(animation, arguments, "version", float("inf"))
     rows = [json.loads(line) for line in results.read_text().splitlines()]
-    counts = {part: sum(row["part"] == part for row in rows) for part in motion.PARTS}
+    counts = {part: sum(row["measure"] == part for row in rows) for part in motion.MEASURES}
     assert (counts["flicker"], counts["cost"]) == (3, 4)
-    seconds = {row["mode"]: row["seconds"] for row in rows if row["part"] == "cost"}
-    assert [mode for mode, found in seconds.items() if found["links"] > 0.0] == ["parts-motion"]
+    seconds = {row["mode"]: row["seconds"] for row in rows if row["measure"] == "cost"}
+    assert [mode for mode, found in seconds.items() if found["links"] > 0.0] == ["components-motion"]
     assert counts["truth"] >= 3 and counts["prediction"] >= 3  # noqa: PT018
-    reflected = next(row for row in rows if (row["part"], row["component"]) == ("truth", "Reflection"))
+    reflected = next(row for row in rows if (row["measure"], row["component"]) == ("truth", "Reflection"))
     assert reflected["check"]["error"]["quantile_95"] < 0.5
-    predictions = {row["component"]: row for row in rows if row["part"] == "prediction"}
+    predictions = {row["component"]: row for row in rows if row["measure"] == "prediction"}
     assert predictions["Residual"]["all"]["pixels"] > 0, "its motion is by flow, which needs the frames beside"
     assert predictions["Diffuse"]["irradiance_all"]["pixels"] > 0
     assert all((tmp_path / of(animation.name)).exists() for of in (pictures.file_name, pictures.strip_name))

@@ -32,12 +32,16 @@ def noise(seed: int, *shape: int) -> np.ndarray:
 
 
 def steadiness(images: np.ndarray, reference: np.ndarray) -> float:
-    return measures.flicker_map(images, reference, NONE).mean() / measures.independent_map(images, reference, NONE).mean()
+    return (
+        measures.flicker_map(images, reference, NONE).mean() / measures.independent_map(images, reference, NONE).mean()
+    )
 
 
 def flicker_ratio(images: np.ndarray, reference: np.ndarray = REFERENCE) -> float:
     """F / (2 relMSE)."""
-    return measures.flicker_map(images, reference, NONE).mean() / (2.0 * measures.error_map(images, reference, NONE).mean())
+    return measures.flicker_map(images, reference, NONE).mean() / (
+        2.0 * measures.error_map(images, reference, NONE).mean()
+    )
 
 
 def test_errors_of_frames_that_are_independent_flicker_by_twice_their_energy() -> None:
@@ -58,7 +62,9 @@ def test_noise_that_stays_does_not_flicker() -> None:
 
 def test_what_moves_in_the_reference_is_no_flicker() -> None:
     assert measures.flicker_map(REFERENCE, REFERENCE, NONE).max() == 0.0
-    assert measures.flicker_map(np.broadcast_to(REFERENCE[0], SHAPE), REFERENCE, NONE).mean() > 0.05, "a picture that stays does flicker"
+    assert measures.flicker_map(np.broadcast_to(REFERENCE[0], SHAPE), REFERENCE, NONE).mean() > 0.05, (
+        "a picture that stays does flicker"
+    )
 
 
 def test_an_error_that_turns_its_sign_each_frame_is_all_above_a_quarter_of_the_frame_rate() -> None:
@@ -68,7 +74,8 @@ def test_an_error_that_turns_its_sign_each_frame_is_all_above_a_quarter_of_the_f
 
 
 def test_noise_of_the_reference_is_subtracted() -> None:
-    """Converged frames against noisy references have neither error nor flicker, on average, along motion and at rest."""
+    """Converged frames against noisy references have neither error nor flicker, on average, along motion and at rest.
+    """
     variance = np.full(SHAPE, DEVIATION**2)
     vectors = vectors_of_motion()
     found = {name: [] for name in ("error", "flicker", "warped")}
@@ -178,6 +185,8 @@ def test_all_measures_have_names() -> None:
 def test_along_motion_nothing_is_measured_without_vectors() -> None:
     """With motion blur a pixel shows points of different motion."""
     images = REFERENCE + noise(5, *SHAPE)
-    every, blurred = (measures.all_measures(images, REFERENCE, NONE, vectors) for vectors in (vectors_of_motion(), None))
+    every, blurred = (
+        measures.all_measures(images, REFERENCE, NONE, vectors) for vectors in (vectors_of_motion(), None)
+    )
     assert blurred == {name: value for name, value in every.items() if "warped" not in name}
     assert {"flicker_warped", "flicker_warped_trimmed", "flicker_warped_moving"} == every.keys() - blurred.keys()

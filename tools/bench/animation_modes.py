@@ -1,4 +1,4 @@
-"""What is compared in animations: per-frame modes of the still benchmark, the temporal ones beside them, and peers."""
+"""Modes of the animation benchmark: modes of stills frame by frame, the same over windows of frames, and peers."""
 
 from __future__ import annotations
 
@@ -8,19 +8,18 @@ import modes
 from modes import CYCLES, GRADUS, Mode
 
 TEMPORAL = {"use_temporal": True}
-PER_FRAME = ("path", "path-regularized", "gradient-l2", "gradient-weighted", "gradient-l1", "gradient-regularized", "auto-denoised")
+PER_FRAME = ("path", "path-regularized", "gradient-l2", "gradient-l1", "gradient-regularized", "auto-denoised")
 PEERS = ("cycles", "cycles-denoised")
 
 
 def _temporal(label: str, name: str) -> Mode:
-    """A mode of stills, over windows of frames."""
+    """Returns a mode of stills over windows of frames."""
     return replace(modes.MODES[name], label=label, settings=modes.MODES[name].settings | TEMPORAL)
 
 
 MODES = {
     **{name: modes.MODES[name] for name in PER_FRAME},
     "temporal-l2": _temporal("Gradus T-GPT + L2", "gradient-l2"),
-    "temporal-weighted": _temporal("Gradus T-GPT + WEIGHTED", "gradient-weighted"),
     "temporal-l1": _temporal("Gradus T-GPT + L1", "gradient-l1"),
     "temporal-regularized": _temporal("Gradus T-GPT + REGULARIZED", "gradient-regularized"),
     "temporal-auto": _temporal("Gradus AUTO over windows", "auto"),
@@ -33,7 +32,9 @@ MODES = {
         settings=modes.MODES["cycles-denoised"].settings | {"use_animated_seed": False},
     ),
 }
-REFERENCES = {GRADUS: "path", CYCLES: "cycles"}  # each engine against its own converged frames
+
+# Each engine is compared with its own converged frames by this mode.
+REFERENCES = {GRADUS: "path", CYCLES: "cycles"}
 
 
 def is_temporal(name: str) -> bool:
@@ -41,6 +42,9 @@ def is_temporal(name: str) -> bool:
 
 
 def per_frame(name: str) -> str:
-    """A temporal mode frame by frame. AUTO takes plain paths and REGULARIZED for stills."""
+    """Returns the mode that renders what a temporal mode renders, frame by frame.
+
+    For stills, AUTO chooses path-regularized.
+    """
     stills = {"temporal-auto": "path-regularized", "temporal-auto-denoised": "auto-denoised"}
     return stills.get(name) or name.replace("temporal", "gradient")

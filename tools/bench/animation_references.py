@@ -1,8 +1,10 @@
-"""Converged frames: each engine's own by plain path tracing, with the variance of their mean, cached in the user's cache folder.
+"""Converged frames: each engine's own by plain path tracing, with the variance of their mean, cached in the user's
+cache folder.
 
-Every part is a rendering of the whole range with a seed of its own; the sums are stored after each, so that an interrupted reference goes
-on, and one of more samples takes over what is there. Seeds 1000 and up are never used by the runs. The cache outlives versions: what path
-tracing converges to is held by tests; remove the files where it was changed on purpose.
+Each part renders the whole range of frames with another seed. Sums are stored after each part, so that an interrupted
+reference goes on, and one of more samples reuses what is there. The runs of the benchmark never use seeds from 1000 on.
+The cache does not depend on the commit, because tests check what path tracing converges to; after a change that is
+meant to change pictures, remove its files.
 """
 
 from __future__ import annotations
@@ -13,17 +15,16 @@ from pathlib import Path
 
 import numpy as np
 from animation_renderer import AnimationRenderer
-from references import CACHE
+from references import CACHE, engine_key
 
 PART = 64  # samples per pixel
-LEAST_PARTS = 4  # for a variance
+MINIMUM_PARTS = 4  # from which a variance is estimated
 VECTOR_SAMPLES = 16
-STORED_AS = {"path": "path-limits-of-file"}  # what is stored as "path" has the bounce limits of Gradus, not those of the file
 
 
 @dataclass
 class Reference:
-    """Mean and variance of the mean (frames, height, width, 3)."""
+    """Converged frames and the variance of their mean (frames, height, width, 3)."""
 
     mean: np.ndarray
     variance: np.ndarray
@@ -32,6 +33,8 @@ class Reference:
 
 @dataclass
 class _Sums:
+    """Sums of the parts that were rendered so far, and the file that stores them."""
+
     file: Path
     parts: int = 0
     sum: np.ndarray | float = 0.0
@@ -53,17 +56,19 @@ class _Sums:
 
 
 def reference(renderer: AnimationRenderer, engine: str, samples: int) -> Reference:
-    """`engine` is a mode of plain path tracing."""
-    sums = _Sums(file_of(renderer, engine))
+    """Returns converged frames of at least so many samples; `engine` is a mode of plain path tracing."""
+    sums = _Sums(file_of(renderer, engine_key(engine)))
     sums.load()
-    while sums.parts < max(samples // PART, LEAST_PARTS):
+    while sums.parts < max(samples // PART, MINIMUM_PARTS):
         sums.add(renderer.render(engine, PART, 1000 + sums.parts)[0])
         print(f"{renderer.animation.name:18} reference {engine}: {sums.parts * PART} spp", flush=True)
     return sums.reference()
 
 
 def vectors(renderer: AnimationRenderer) -> np.ndarray | None:
-    """Pass Vector of Gradus (frames, height, width, 4). None with motion blur, where a pixel shows points of different motion."""
+    """Returns the pass Vector (frames, height, width, 4), or None with motion blur, where a pixel shows points of
+    different motion.
+    """
     if renderer.variant.shutter > 0.0:
         return None
     file = file_of(renderer, "vectors")
@@ -73,19 +78,17 @@ def vectors(renderer: AnimationRenderer) -> np.ndarray | None:
 
 
 def file_of(renderer: AnimationRenderer, what: str) -> Path:
-    """Where it is cached, by all that it depends on but the version."""
+    """Returns the file that caches something, named by all that it depends on except the commit."""
     animation, variant = renderer.animation, renderer.variant
     content = hashlib.sha256(animation.scene.path.read_bytes()).hexdigest()[:12]
     first, last = animation.frames
     blur = f"-shutter-{variant.shutter:g}" if variant.shutter > 0.0 else ""
-    return (
-        CACHE
-        / f"animation-{animation.name}-{content}-{first}-{last}-{STORED_AS.get(what, what)}-{variant.size[0]}x{variant.size[1]}{blur}.npz"
-    )
+    width, height = variant.size
+    return CACHE / f"animation-{animation.name}-{content}-{first}-{last}-{width}x{height}{blur}-{what}.npz"
 
 
 def _store(file: Path, **arrays: np.ndarray | float | int) -> None:
-    """Under its name only when it is complete."""
+    """Writes a file that gets its name only when it is complete."""
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_suffix(".unfinished.npz")
     np.savez(unfinished, **arrays)

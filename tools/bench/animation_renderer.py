@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -11,38 +10,43 @@ import numpy as np
 from animation_modes import is_temporal, per_frame
 from animation_scenes import Animation
 from animation_variants import Variant
-from renderers import RefusedError, Worker
+from renderers import RefusedError, blender_worker
 
 
 class AnimationRenderer:
+    """Renders one animation in one variant."""
+
     script = "animation_worker.py"
 
     def __init__(self, animation: Animation, variant: Variant) -> None:
         self.animation, self.variant = animation, variant
         self._folder = tempfile.TemporaryDirectory()
         self.folder = Path(self._folder.name)
-        script = Path(__file__).with_name(self.script)
-        self._worker = Worker([sys.executable, str(script), str(animation.scene.path), *(str(s) for s in variant.size)])
+        self._worker = blender_worker(self.script, animation.scene.path, *variant.size)
 
-    def render(self, mode: str, samples: int, seed: int, **more: Any) -> tuple[np.ndarray, dict]:
-        """Pictures (frames, height, width, 3) and what they took."""
+    def render(self, mode: str, samples: int, seed: int, **more: Any) -> tuple[np.ndarray, dict[str, Any]]:
+        """Returns the pictures (frames, height, width, 3) and the worker's answer."""
         out = self.folder / "frames.npy"
         answer = self.render_to(out, mode, samples, seed, **more)
         return np.load(out).astype(np.float64), answer
 
-    def render_to(self, out: Path, mode: str, samples: int, seed: int, **more: Any) -> dict:
+    def render_to(self, out: Path, mode: str, samples: int, seed: int, **more: Any) -> dict[str, Any]:
+        """Renders into a file and returns the worker's answer. `more` are further entries of the job."""
         job = {"mode": mode, "samples": samples, "seed": seed, "frames": self.animation.frames, "out": str(out)}
         return self.ask(job | {"shutter": self.variant.shutter} | more)
 
-    def ask(self, job: dict) -> dict:
+    def ask(self, job: dict[str, Any]) -> dict[str, Any]:
         return self._worker.ask(job)
 
     def vectors(self, samples: int) -> np.ndarray:
-        """Pass Vector (frames, height, width, 4)."""
+        """Returns the pass Vector (frames, height, width, 4)."""
         return self.render("path", samples, 1000, vectors=True)[0]
 
     def refusal(self, mode: str) -> str:
-        """Why a mode does not work here, or nothing. Two frames of two samples, which also loads libraries, and is not counted."""
+        """Returns why a mode does not work here, or "".
+
+        Renders two frames, which also loads libraries and is not counted.
+        """
         try:
             tried = self._try(mode)
             if is_temporal(mode) and np.array_equal(tried, self._try(per_frame(mode))):

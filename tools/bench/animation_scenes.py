@@ -1,5 +1,7 @@
-"""The animations of the benchmark: ten frames of each, chosen by looking at all of them, where most moves. Other numbers of frames are
-taken around these."""
+"""The animations of the benchmark: the ten frames of each in which most moves.
+
+Other numbers of frames are taken around these.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ class Animation:
     scene: Scene
     frames: tuple[int, int]
     moves: str
-    goes_off: int | None = None  # first frame without a light that shone before
+    goes_off: int | None = None  # first frame without a light that was on before
     until: int = 24  # last frame of the motion
 
     @property
@@ -25,39 +27,43 @@ class Animation:
         return self.frames[1] - self.frames[0] + 1
 
     def lasting(self, length: int) -> Animation:
-        """From the same frame on, or from one before it where the motion would end too early."""
+        """Returns so many frames, from the same first frame on or from an earlier one if the motion would end too
+        early.
+        """
         first = min(self.frames[0], self.until - length + 1)
         last = first + length - 1
-        return replace(self, frames=(first, last), goes_off=self.goes_off if self.goes_off and self.goes_off <= last else None)
+        return replace(
+            self, frames=(first, last), goes_off=self.goes_off if self.goes_off and self.goes_off <= last else None
+        )
 
 
 ANIMATIONS = [
     Animation(
         Scene("animated", SAMPLES / "animated.blend", own=True),
         (10, 19),
-        "the camera sideways, so nearly every pixel; a rolling ball that comes into sight in a turning mirror, and a flag that waves",
+        "the camera sideways; a rolling ball that comes into sight in a turning mirror, and a flag that waves",
     ),
     Animation(
-        Scene("lamp-off", MADE / "lamp-off.blend", own=True, maker="lamp_off.py"),
+        Scene("light-off", MADE / "light-off.blend", own=True, maker="make_light_off.py"),
         (1, 10),
-        "nothing; one of two lamps goes off at frame 6",
+        "nothing; one of two lights goes off at frame 6",
         goes_off=6,
-        until=100,  # all rests
+        until=100,
     ),
     Animation(
         Scene("moving-light", REAL / "moving-light.blend"),
         (5, 14),
-        "a panel of light, fast at first, which turns back at frame 13; the blocks and the camera rest",
+        "a panel of light, fast at first, which turns back at frame 13; blocks and camera are static",
     ),
     Animation(
         Scene("specular-motion", REAL / "specular-motion.blend"),
         (8, 17),
-        "a teapot of chrome and a ball of copper turn, a ball of glass rolls, a mirror swings; the camera rests",
+        "a teapot of chrome and a ball of copper turn, a ball of glass rolls, a mirror swings; the camera is static",
     ),
     Animation(
         Scene("robot-room", REAL / "robot-room.blend"),
         (5, 14),
-        "a dancing robot, whose arm swings up and down by up to 31 pixels a frame, and its reflections in mirror and floor",
+        "a dancing robot, whose arm swings by up to 31 pixels a frame, and its reflections in mirror and floor",
     ),
     Animation(
         Scene("instances", REAL / "instances.blend"),
@@ -68,7 +74,10 @@ ANIMATIONS = [
 
 
 def select(animations: list[Animation], names: str, length: int) -> list[Animation]:
-    """Those by name ('a,b'), all for '', of so many frames. Missing files, and those too short, are named on standard output."""
+    """Returns the animations that are named ('a,b'), or all for '', of so many frames.
+
+    Missing or short ones are skipped with a message.
+    """
     scenes = chosen([animation.scene for animation in animations], names)
     found = [animation for animation in animations if animation.scene in scenes]
     for animation in found:

@@ -1,34 +1,35 @@
-"""Two versions side by side: error of a mode over that of path tracing at equal samples, and rays of a sample, from the stored results.
+"""Compares two commits whose stills were measured: error of a mode over that of path tracing at equal samples, and rays
+of a sample.
 
-    compare.py OLD NEW [--modes gradient-l2,gradient-weighted] [--width 160]
+    compare.py OLD NEW [--modes gradient-l2,gradient-regularized] [--width 160]
 
-So a rule is judged that has no switch: commit it, `make bench-errors`, compare. In brackets without the worst 0.1 % of the pixels.
+This judges a change that has no switch: commit it, run `make bench-errors`, compare. Figures in brackets leave out the
+worst 0.1 % of the pixels.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 from collections import defaultdict
 
 import numpy as np
-from results import FOLDER
+import records
+from results import STILLS
 
 MEASURES = ("relmse", "relmse_trimmed")
-Rows = dict[tuple[str, str, int], list[dict]]  # by scene, mode and samples
+Rows = dict[tuple[str, str, int], list[records.Row]]  # by scene, mode and samples
 
 
 def rows_of(version: str, width: int) -> Rows:
     found: Rows = defaultdict(list)
-    for line in (FOLDER / "results.jsonl").read_text().splitlines():
-        row = json.loads(line)
+    for row in records.read(STILLS):
         if (row["version"], row["width"]) == (version, width) and "bounces" not in row:
             found[row["scene"], row["mode"], row["samples"]].append(row)
     return found
 
 
 def errors(rows: Rows, scene: str, mode: str, samples: int) -> np.ndarray:
-    """Of the mode over that of path tracing, by all seeds that both have, for each measure."""
+    """Returns, for each measure, the mean error of a mode over that of path tracing, over the seeds that both have."""
     both = [{row["seed"]: row for row in rows[scene, name, samples]} for name in (mode, "path")]
     seeds = both[0].keys() & both[1].keys()
     means = [[np.mean([found[seed][measure] for seed in seeds]) for measure in MEASURES] for found in both]
@@ -36,6 +37,7 @@ def errors(rows: Rows, scene: str, mode: str, samples: int) -> np.ndarray:
 
 
 def rays(rows: Rows, scene: str, mode: str, samples: int) -> float:
+    """Returns the rays of a sample."""
     counts = next((row["rays"] for row in rows[scene, mode, samples] if "rays" in row), None)
     return sum(counts.values()) / counts["primary"] if counts else np.nan
 
@@ -59,7 +61,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old")
     parser.add_argument("new")
-    parser.add_argument("--modes", default="gradient-l2,gradient-weighted")
+    parser.add_argument("--modes", default="gradient-l2,gradient-regularized")
     parser.add_argument("--width", type=int, default=160)
     arguments = parser.parse_args()
     old, new = (rows_of(version, arguments.width) for version in (arguments.old, arguments.new))

@@ -1,15 +1,14 @@
-"""Reconstructions of the same stored frames: the product's, and published ones written anew (designs/).
+"""Compares Gradus' reconstructions with published ones, reimplemented in designs/, on the same stored frames.
 
     compare_designs.py [--scenes a,b] [--width 160] [--samples 16] [--reference 1024]
 
-Every result is appended to docs/benchmark/designs.jsonl; the last one of each scene and design counts, of those with the last one's
-settings. The table is what follows the heading "Measured" of docs/benchmark/designs.md. References: references.py.
+Every result is appended to out/bench/results/designs.jsonl. The table in out/bench/designs.md has the last result of
+each scene and design with the settings of the very last one. References are those of the stills (references.py).
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import statistics
 import subprocess
 import tempfile
@@ -18,24 +17,25 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
-import solve
+import reconstruction_time
+import records
 from designs import chapter8, nfor, poisson
 from designs.frames import Frame, frame_of, mean_of, planes_of
 from designs.poisson import Reweighting
 from metrics import rel_mse
+from paths import OUT, TOOL
+from records import Row
 from references import reference
 from renderers import RefusedError, Renderers
-from scenes import ROOT, Scene, select
-from version import version_of_build
+from scenes import Scene, select
+from version import conditions, version_of_build
 
-RESULTS = ROOT / "docs" / "benchmark" / "designs.jsonl"
-DOCUMENT = ROOT / "docs" / "benchmark" / "designs.md"
-HEADING = "## Measured\n"
-TOOL = ROOT / "build" / "native" / "gradus"
+RESULTS = records.file_of("designs")
+DOCUMENT = OUT / "designs.md"
 SEED = 1
 
 Reconstruct = Callable[[Frame], np.ndarray]
-PRODUCT = {"none": "noisy image", "l1": "Gradus L1", "weighted": "Gradus WEIGHTED", "regularized": "**Gradus REGULARIZED**"}
+PRODUCT = {"none": "noisy image", "l1": "Gradus L1", "regularized": "**Gradus REGULARIZED**"}
 
 
 def _l1(reweighting: Reweighting) -> Reconstruct:
@@ -65,14 +65,17 @@ LABELS = PRODUCT | {name: label for name, (label, _) in PUBLISHED.items()}
 
 
 def by_product(path: Path, mode: str) -> np.ndarray:
+    """Returns the reconstruction of a stored frame by the tool."""
     target = path.with_name(f"{mode}.exr")
-    subprocess.run([TOOL, "reconstruct", path, "-o", target, "--reconstruction", mode], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [TOOL, "reconstruct", path, "-o", target, "--reconstruction", mode], check=True, stdout=subprocess.DEVNULL
+    )
     planes = planes_of(target)
     return np.stack([planes[channel] for channel in "RGB"], axis=2)
 
 
 def images_of(path: Path) -> Iterator[tuple[str, np.ndarray, float | None]]:
-    """Design, image and CPU seconds; those of the product are measured elsewhere (solve.py), at a size that they are made for."""
+    """Yields design, image and CPU seconds. The product's seconds come from reconstruction_time.py, at full-HD size."""
     for mode in PRODUCT:
         yield mode, by_product(path, mode), None
     frame = frame_of(planes_of(path))
@@ -89,20 +92,24 @@ def compare(scene: Scene, arguments: argparse.Namespace) -> None:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "frame.exr"
             renderers.store_frame("gradient-regularized", arguments.samples, SEED, path)
-            mean, variance = reference(renderers, scene, "path", size, arguments.reference, arguments.reference_version)
+            mean, variance = reference(renderers, scene, "path", size, arguments.reference, version_of_build())
             for design, image, seconds in images_of(path):
-                row = {"scene": scene.name, "design": design, "relmse": rel_mse(image, mean, variance), "width": size[0], "height": size[1]}
-                row |= {"samples": arguments.samples, "reference": arguments.reference, "cpu": seconds, "version": version_of_build()}
-                with RESULTS.open("a") as file:
-                    file.write(json.dumps(row) + "\n")
+                row = {"scene": scene.name, "design": design, "relmse": rel_mse(image, mean, variance), "cpu": seconds}
+                row |= {
+                    "width": size[0],
+                    "height": size[1],
+                    "samples": arguments.samples,
+                    "reference": arguments.reference,
+                }
+                records.append(row | conditions(version_of_build()), RESULTS)
                 print(f"{scene.name:18} {design:15} relMSE {row['relmse']:.5f}", flush=True)
     finally:
         renderers.close()
 
 
-def newest(rows: list[dict]) -> dict[str, dict[str, dict]]:
-    """Per scene and design the last row with the settings of the very last; scenes that have both L1s, which others are divided by."""
-    found: dict[str, dict[str, dict]] = {}
+def newest(rows: list[Row]) -> dict[str, dict[str, Row]]:
+    """Returns the last row of each scene and design with the settings of the very last one, of scenes with both L1s."""
+    found: dict[str, dict[str, Row]] = {}
     for row in rows:
         if any(row[name] != rows[-1][name] for name in ("width", "height", "samples", "reference")):
             continue
@@ -110,14 +117,16 @@ def newest(rows: list[dict]) -> dict[str, dict[str, dict]]:
     return {scene: designs for scene, designs in found.items() if {"l1", "l1-thesis"} <= designs.keys()}
 
 
-def seconds_per_megapixel(design: str, rows: list[dict]) -> float | None:
+def seconds_per_megapixel(design: str, rows: list[Row]) -> float | None:
+    """Returns the median CPU seconds of a design."""
     if design in PUBLISHED:
         return statistics.median(row["cpu"] / (row["width"] * row["height"]) * 1e6 for row in rows)
-    times = [row["reconstruct"] for row in solve.newest() if row["mode"] == f"gradient-{design}"]
-    return statistics.median(times) / (solve.SIZE[0] * solve.SIZE[1]) * 1e6 if times else None
+    times = [row["reconstruct"] for row in reconstruction_time.newest() if row["mode"] == f"gradient-{design}"]
+    width, height = reconstruction_time.SIZE
+    return statistics.median(times) / (width * height) * 1e6 if times else None
 
 
-def table(rows: list[dict]) -> str:
+def table(rows: list[Row]) -> str:
     by_scene = newest(rows)
     heads = ["design", "over L1", "over the thesis' L1", "geometric mean", *by_scene, "CPU-s per megapixel"]
     lines = [_line(heads), _line(["---", *["---:"] * (len(heads) - 1)])]
@@ -133,7 +142,7 @@ def table(rows: list[dict]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _mean_ratio(by_scene: dict[str, dict[str, dict]], design: str, base: str) -> float:
+def _mean_ratio(by_scene: dict[str, dict[str, Row]], design: str, base: str) -> float:
     return statistics.geometric_mean(
         designs[design]["relmse"] / designs[base]["relmse"] for designs in by_scene.values() if design in designs
     )
@@ -143,17 +152,14 @@ def _line(cells: list[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def _stored() -> list[dict]:
-    return [json.loads(line) for line in RESULTS.read_text().splitlines()]
-
-
 def write_document() -> None:
-    rows = _stored()
-    text, found, _ = DOCUMENT.read_text().partition(HEADING)
+    rows = records.read(RESULTS)
     row = rows[-1]
     size = f"{row['width']}×{row['height']}"
-    frames = f"relMSE, {size}, {row['samples']} samples of paths with four offsets, one seed; references of {row['reference']} samples."
-    DOCUMENT.write_text(f"{text}{found}\n{frames}\n\n{table(rows)}")
+    samples = f"{row['samples']} samples with four offset paths, one seed; references of {row['reference']} samples"
+    about = f"relMSE, {size}, {samples}."
+    DOCUMENT.write_text(f"# REGULARIZED against published reconstructions\n\n{about}\n\n{table(rows)}")
+    print(DOCUMENT)
 
 
 def main() -> None:
@@ -162,14 +168,13 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=160)
     parser.add_argument("--samples", type=int, default=16)
     parser.add_argument("--reference", type=int, default=1024)
-    parser.add_argument("--reference-version", default=version_of_build(), help="of the build whose references are taken; this one's")
     arguments = parser.parse_args()
     for scene in select(arguments.scenes):
         try:
             compare(scene, arguments)
         except (RuntimeError, RefusedError, subprocess.CalledProcessError) as error:
             print(f"FAILED {scene.name}: {error}", flush=True)
-    if RESULTS.exists() and newest(_stored()):
+    if newest(records.read(RESULTS)):
         write_document()
 
 

@@ -1,4 +1,4 @@
-"""A report as a list of blocks, written as Markdown and as one HTML page."""
+"""A report as a list of blocks that can be written as Markdown and as one HTML page."""
 
 from __future__ import annotations
 
@@ -6,15 +6,16 @@ import html
 import re
 from dataclasses import dataclass, field
 
-LONG = 32  # characters of a cell that is text
+LONG = 32  # characters from which a cell is text that may wrap
 
 
 def number(value: float | None, form: str = ".2f") -> str:
+    """Formats a number; a missing one is a dash."""
     return "–" if value is None else format(value, form)
 
 
 def spread(values: tuple[float, float, float] | None, form: str = ".2f") -> str:
-    """A median with its range."""
+    """Formats a median with its range."""
     return "–" if values is None else f"{values[0]:{form}} ({values[1]:{form}}–{values[2]:{form}})"
 
 
@@ -55,12 +56,13 @@ class Figure:
         return f"![{self.caption}]({self.file})"
 
     def as_html(self) -> str:
-        return f'<figure><img src="{self.file}" alt="{html.escape(self.caption)}"><figcaption>{inline(self.caption)}</figcaption></figure>'
+        caption = f"<figcaption>{inline(self.caption)}</figcaption>"
+        return f'<figure><img src="{self.file}" alt="{html.escape(self.caption)}">{caption}</figure>'
 
 
 @dataclass
 class Crop:
-    """Its upper left corner as shares of the picture's width and height, and how much it is magnified."""
+    """A crop: its upper left corner in shares of the picture's width and height, and its magnification."""
 
     x: float
     y: float
@@ -69,25 +71,33 @@ class Crop:
 
 @dataclass
 class Slider:
-    """Two of several pictures, one over the other, with a border that can be moved, whole or a crop. In Markdown: all of them in rows."""
+    """Compares two of several pictures, whole or cropped, by a border that can be moved.
+
+    Markdown shows all pictures in rows.
+    """
 
     groups: dict[str, dict[str, str]]  # heading -> label -> file
     caption: str
     shown: tuple[str, str]
     crops: list[Crop] = field(default_factory=list)
-    legend: str = ""  # file, of colours
+    legend: str = ""  # file of the color scale
 
     def as_markdown(self) -> str:
-        rows = [Table(list(files), [[f"![{label}]({file})" for label, file in files.items()]]) for files in self.groups.values()]
-        legend = [f"![colours]({self.legend})"] if self.legend else []
+        rows = [
+            Table(list(files), [[f"![{label}]({file})" for label, file in files.items()]])
+            for files in self.groups.values()
+        ]
+        legend = [f"![color scale]({self.legend})"] if self.legend else []
         return "\n\n".join([self.caption, *(row.as_markdown() for row in rows), *legend])
 
     def as_html(self) -> str:
         left, right = (next(files[label] for files in self.groups.values() if label in files) for label in self.shown)
-        legend = f'<img class="legend" src="{self.legend}" alt="colours">' if self.legend else ""
+        legend = f'<img class="legend" src="{self.legend}" alt="color scale">' if self.legend else ""
         return (
-            f'<figure class="slider"><div class="choices">{self._choice(self.shown[0])}{self._crops()}{self._choice(self.shown[1])}</div>'
-            f'<div class="pair"><span><img src="{right}" alt="right"></span><span class="over"><img src="{left}" alt="left"></span>'
+            f'<figure class="slider"><div class="choices">'
+            f"{self._choice(self.shown[0])}{self._crops()}{self._choice(self.shown[1])}</div>"
+            f'<div class="pair"><span><img src="{right}" alt="right"></span>'
+            f'<span class="over"><img src="{left}" alt="left"></span>'
             f'<span class="border"></span>'
             f'<input type="range" min="0" max="1000" value="500" aria-label="border between the pictures"></div>'
             f"{legend}<figcaption>{inline(self.caption)}</figcaption></figure>"
@@ -114,7 +124,7 @@ class Slider:
 
 @dataclass
 class HtmlOnly:
-    """What is too long for the text form."""
+    """A block that is left out of the Markdown form because it is long."""
 
     block: Text | Table | Figure | Slider
 
@@ -135,13 +145,14 @@ def to_markdown(blocks: list[Block]) -> str:
 def to_html(title: str, blocks: list[Block], style: str, script: str) -> str:
     body = "\n".join(block.as_html() for block in blocks)
     return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<meta name="viewport" content="width=device-width">'
         f"<title>{html.escape(title)}</title>\n<style>\n{style}</style></head>\n<body>\n{body}\n<script>\n{script}</script>\n</body></html>\n"
     )
 
 
 def inline(text: str) -> str:
-    """Bold, code, pictures, links and emphasis of Markdown."""
+    """Converts code, bold and italic text, pictures and links from Markdown to HTML."""
     text = html.escape(text, quote=False)
     text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
     text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
@@ -151,7 +162,7 @@ def inline(text: str) -> str:
 
 
 def _cell(text: str) -> str:
-    """Numbers stay on one line, sentences do not."""
+    """Returns a table cell. Numbers stay on one line, sentences wrap."""
     opening = '<td class="long">' if len(text) > LONG else "<td>"
     return f"{opening}{inline(text)}</td>"
 

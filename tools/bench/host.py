@@ -1,54 +1,52 @@
-"""What Blender's side costs in each Blender: export and upload. Runs host_worker.py in each and writes docs/benchmark/host.md."""
+"""Measures in each installed Blender what only Blender's side costs: export and upload. Runs host_worker.py in each."""
 
 from __future__ import annotations
 
 import json
-import os
 import statistics
 import subprocess
-import sys
-from pathlib import Path
+from collections.abc import Iterator
+from typing import Any
 
-from scenes import ROOT
-from version import cpu_name
+import hosts
+import records
+from paths import HERE
+from version import conditions, version_of_build
 
-WORKER = str(Path(__file__).with_name("host_worker.py"))
-HOSTS = (
-    [os.environ.get("BLENDER") or "blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "3", "--python", WORKER],
-    [str(ROOT / ".venv/bpy45/bin/python3"), WORKER],
-    [str(ROOT / ".venv/bpy50/bin/python3"), WORKER],
-)
-PREFACE = """# Export and upload
-
-Made by `make bench-host` ({cpu}). Wall time, median of {count} (lowest–highest). Export: a mesh of a million triangles into a new
-native scene; the aim is 1 s. Upload: one RGBA pass of 1920×1080 into a new render result, whose memory Blender touches for the first time
-then, and once more into the same, as when the picture grows; the aim is 20 ms.
-
-| Blender | export, s | upload, ms | again, ms |
-|---|---|---|---|
-"""
+RESULTS = records.file_of("host")
+WORKER = HERE / "host_worker.py"
 
 
-def measure(command: list[str]) -> dict:
+def commands() -> Iterator[list[str]]:
+    """Yields the commands that run the worker in the Blender application and in all installed modules."""
+    yield hosts.application_command(WORKER)
+    for blender in hosts.MODULES:
+        if hosts.is_installed(blender):
+            yield hosts.module_command(WORKER, blender)
+
+
+def measure(command: list[str]) -> dict[str, Any]:
     process = subprocess.run(command, capture_output=True, text=True, timeout=300)
     for line in process.stdout.splitlines():
         if line.startswith("RESULT "):
-            return json.loads(line[7:])
+            return json.loads(line.removeprefix("RESULT "))
     raise RuntimeError(f"{command[0]} ended with code {process.returncode}:\n{process.stderr[-2000:]}")
 
 
-def spread(seconds: list[float], unit: float) -> str:
-    middle, low, high = (value / unit for value in (statistics.median(seconds), min(seconds), max(seconds)))
-    return f"{middle:.3g} ({low:.3g}–{high:.3g})"
+def newest() -> list[records.Row]:
+    """Returns the last run of each Blender."""
+    return list({row["host"]: row for row in records.read(RESULTS)}.values())
 
 
 def main() -> None:
-    results = [measure(command) for command in HOSTS]
-    text = PREFACE.format(cpu=cpu_name(), count=len(results[0]["export"]))
-    for r in results:
-        text += f"| {r['blender']} | {spread(r['export'], 1.0)} | {spread(r['upload'], 1e-3)} | {spread(r['refresh'], 1e-3)} |\n"
-    (ROOT / "docs" / "benchmark" / "host.md").write_text(text)
-    sys.stdout.write(text)
+    for command in commands():
+        row = measure(command)
+        records.append(conditions(version_of_build()) | row, RESULTS)
+        medians = {name: statistics.median(row[name]) for name in ("export", "upload", "refresh")}
+        print(
+            f"Blender {row['host']}: " + ", ".join(f"{name} {value:.4f} s" for name, value in medians.items()),
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

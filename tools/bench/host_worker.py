@@ -1,7 +1,8 @@
-"""Times in one host what only the host's side does: `blender -b --python host_worker.py`, or the Python of an environment that has bpy.
+"""Times export and upload in one Blender: `blender -b --python host_worker.py`, or a Python that has bpy.
 
-Prints "RESULT " and a JSON object: seconds of each repetition of the export of a million triangles into a new native scene, and of the
-upload of one 1920×1080 RGBA pass into a new render result ("upload") and into the same again ("refresh").
+Prints "RESULT " and a JSON object with the seconds of each repetition: "export" of a million triangles into a new
+native scene, "upload" of one 1920×1080 RGBA pass into a new render result, and "refresh", a second upload into the same
+result.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from gradus import store  # noqa: E402
 from gradus.pixels import PassBuffer  # noqa: E402
 
 REPETITIONS = 9
-CELLS = 707  # a grid of 2 · 707² triangles
+CELLS = 707  # of a grid, which has 2 · 707² triangles
 WIDTH, HEIGHT = 1920, 1080
 
 
 def export_seconds() -> float:
-    """The first export of the scene: nothing is known, all is read and copied."""
+    """Times the export of a scene that was never exported before, so that everything is read and copied."""
     key = store.Key(store.FINAL, "bench", "bench", 0)
     session = store.acquire(key)
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -37,7 +38,10 @@ def export_seconds() -> float:
 
 
 class UploadEngine(bpy.types.RenderEngine):
-    """Uploads one picture `times` and notes how long the last time took. The first one touches memory that Blender has not used yet."""
+    """Uploads one picture several times and times the last upload.
+
+    The first one touches memory that Blender has not used yet.
+    """
 
     bl_idname = "GRADUS_BENCH_UPLOAD"
     bl_label = "Upload"
@@ -76,11 +80,11 @@ def prepare() -> None:
 def main() -> None:
     prepare()
     measures = {"export": export_seconds, "upload": lambda: upload_seconds(1), "refresh": lambda: upload_seconds(2)}
-    for measure in measures.values():  # not counted: first use loads libraries
+    for measure in measures.values():  # the first call loads libraries and is not counted
         measure()
     seconds = {name: [measure() for _ in range(REPETITIONS)] for name, measure in measures.items()}
-    print("RESULT " + json.dumps({"blender": bpy.app.version_string, **seconds}), flush=True)
-    os._exit(0)  # the 4.5 module can hang at exit
+    print("RESULT " + json.dumps({"host": bpy.app.version_string, **seconds}), flush=True)
+    os._exit(0)  # the module can hang at exit
 
 
 main()

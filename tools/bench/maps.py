@@ -1,4 +1,4 @@
-"""Errors as colours, on one scale for all maps, and its legend."""
+"""Errors as colors on one scale for all maps, and the legend of that scale."""
 
 from __future__ import annotations
 
@@ -11,21 +11,24 @@ from matplotlib.colors import LogNorm
 from metrics import blurred
 
 COLORS, SCALE = matplotlib.colormaps["magma"], LogNorm(0.01, 1.0, clip=True)
-REACH = 10  # pixels of the blur
+REACH = 10  # pixels by which the two blurs shrink a picture
 
 
 def colored(relative_square: np.ndarray) -> np.ndarray:
-    """Root of relative squared errors (height, width), as RGB bytes. Blurred by 2 pixels: a reference's variance can be taken away from
-    means alone."""
+    """Returns the square root of relative squared errors (height, width) as RGB bytes.
+
+    Errors are blurred by 2 pixels first, because the variance of a reference can be subtracted from means only.
+    """
     around = blurred(blurred(np.pad(relative_square, REACH, mode="reflect")))
     return COLORS(SCALE(np.sqrt(np.maximum(around, 0.0))), bytes=True)[:, :, :3]
 
 
 def legend() -> str:
+    """Writes the color scale and returns the name of its file."""
     figure, axes = plt.subplots(figsize=(3.6, 0.55), layout="constrained")
-    bar = figure.colorbar(
-        ScalarMappable(SCALE, COLORS), cax=axes, orientation="horizontal", ticks=[0.01, 0.03, 0.1, 0.3, 1.0], format="{x:g}"
-    )
+    ticks = [0.01, 0.03, 0.1, 0.3, 1.0]
+    colors = ScalarMappable(SCALE, COLORS)
+    bar = figure.colorbar(colors, cax=axes, orientation="horizontal", ticks=ticks, format="{x:g}")
     bar.minorticks_off()
     axes.set_title("error relative to the light", fontsize=8)
     return figures.save(figure, "error-scale.svg")

@@ -1,12 +1,10 @@
-"""Error measures of the benchmark: definitions of docs/benchmark/README.md, in scene-linear RGB.
+"""Error measures of stills, in scene-linear RGB; docs/benchmark/README.md defines them.
 
-All images are float arrays (height, width, 3). `reference_variance` is the variance of the reference's own mean, per pixel and channel;
-it is subtracted, so that an unconverged reference does not set a floor.
+All images are float arrays (height, width, 3). `reference_variance` is the variance of the reference's own mean, per
+pixel and channel; it is subtracted, so that the noise of the reference does not count as error.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 
@@ -14,8 +12,10 @@ EPSILON = 1e-3
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 
 
-def relative_squared_error(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None) -> np.ndarray:
-    """Per-pixel mean over channels of ((x - r)^2 - var r) / (eps + gray(r)^2), shape (height, width)."""
+def relative_squared_error(
+    image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None
+) -> np.ndarray:
+    """Returns the mean over channels of ((x - r)^2 - var r) / (eps + gray(r)^2) for each pixel (height, width)."""
     squared = (image - reference) ** 2
     if reference_variance is not None:
         squared = squared - reference_variance
@@ -23,7 +23,7 @@ def relative_squared_error(image: np.ndarray, reference: np.ndarray, reference_v
 
 
 def relative_to(reference: np.ndarray) -> np.ndarray:
-    """What squared errors are divided by, shape (height, width)."""
+    """Returns what squared errors are divided by (height, width)."""
     return EPSILON + reference.mean(axis=2) ** 2
 
 
@@ -31,7 +31,9 @@ def rel_mse(image: np.ndarray, reference: np.ndarray, reference_variance: np.nda
     return float(relative_squared_error(image, reference, reference_variance).mean())
 
 
-def rel_mse_trimmed(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None, share: float = 1e-3) -> float:
+def rel_mse_trimmed(
+    image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None, share: float = 1e-3
+) -> float:
     """relMSE without the worst 0.1 % of the pixels: the gap to relMSE measures fireflies."""
     error = np.sort(relative_squared_error(image, reference, reference_variance), axis=None)
     keep = error.size - int(np.ceil(error.size * share))
@@ -43,12 +45,18 @@ def smape(image: np.ndarray, reference: np.ndarray) -> float:
 
 
 def log_mse(image: np.ndarray, reference: np.ndarray) -> float:
-    """Of log(1 + x); what lies below 0, as unbiased reconstructions may, counts as 0."""
+    """Returns the mean squared error of log(1 + x).
+
+    Negative values, which unbiased reconstructions have, count as 0.
+    """
     return float(((np.log1p(np.maximum(image, 0.0)) - np.log1p(np.maximum(reference, 0.0))) ** 2).mean())
 
 
 def ssim(image: np.ndarray, reference: np.ndarray) -> float:
-    """Wang et al. 2004: Gaussian window of 11 pixels, sigma 1.5; luminance as shown, white at the reference's 98th percentile."""
+    """Returns the structural similarity (Wang et al. 2004) of displayed luminance.
+
+    The reference's 98th percentile is white.
+    """
     white = white_of(reference)
     a, b = (displayed(x, white) @ LUMINANCE for x in (image, reference))
     mean_a, mean_b = blurred(a), blurred(b)
@@ -60,7 +68,9 @@ def ssim(image: np.ndarray, reference: np.ndarray) -> float:
 
 
 def flip(image: np.ndarray, reference: np.ndarray) -> float:
-    """HDR-FLIP (Andersson et al. 2021), mean, automatic range of exposures, by NVIDIA's implementation."""
+    """Returns the mean HDR-FLIP (Andersson et al. 2021) over its automatic range of exposures, by NVIDIA's
+    implementation.
+    """
     import flip_evaluator
 
     pair = (np.maximum(x, 0.0).astype(np.float32) for x in (reference, image))
@@ -68,7 +78,7 @@ def flip(image: np.ndarray, reference: np.ndarray) -> float:
 
 
 def all_errors(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray) -> dict[str, float]:
-    """All measures of a still by their names in results.jsonl."""
+    """Returns all measures of a still by their names in stored rows."""
     return {
         "relmse": rel_mse(image, reference, reference_variance),
         "relmse_trimmed": rel_mse_trimmed(image, reference, reference_variance),
@@ -79,17 +89,8 @@ def all_errors(image: np.ndarray, reference: np.ndarray, reference_variance: np.
     }
 
 
-def shortened(value: Any) -> Any:
-    """Six significant digits are more than any run repeats."""
-    if isinstance(value, dict):
-        return {key: shortened(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [shortened(item) for item in value]
-    return float(f"{value:.6g}") if isinstance(value, float) else value
-
-
 def white_of(reference: np.ndarray) -> float:
-    """Radiance that is shown as white."""
+    """Returns the radiance that is displayed as white."""
     return max(float(np.percentile(reference, 98.0)), 1e-6)
 
 
@@ -98,7 +99,9 @@ def displayed(image: np.ndarray, white: float) -> np.ndarray:
 
 
 def blurred(plane: np.ndarray) -> np.ndarray:
-    """SSIM's window, inside the picture only."""
+    """Returns a plane blurred by SSIM's window (11 pixels, sigma 1.5), without the border that the window does not fit
+    in.
+    """
     weights = np.exp(-(np.arange(-5, 6) ** 2) / (2 * 1.5**2))
     weights /= weights.sum()
     rows = np.lib.stride_tricks.sliding_window_view(plane, 11, axis=0) @ weights
@@ -106,11 +109,12 @@ def blurred(plane: np.ndarray) -> np.ndarray:
 
 
 def equal_time_ratio(ours: list[tuple[float, float]], theirs: list[tuple[float, float]]) -> float | None:
-    """R: geometric mean of error(ours)/error(theirs) at equal CPU time.
+    """Returns the geometric mean of error(ours)/error(theirs) at equal CPU time, or None if the curves share no range
+    of time.
 
-    Curves are lists of (CPU seconds, error); both are interpolated log-log over the range of time that they share, with no extrapolation
-    beyond a factor of 1.25. None where they share none, and of two single points, whose times differ by what cannot be told; where one of
-    them is single, it is taken at its time.
+    Curves are lists of (CPU seconds, error). Both are interpolated log-log over the range of time that they share, and
+    extrapolated by a factor of at most 1.25. A curve of a single point is compared at its time. Two single points
+    cannot be compared.
     """
     if len(ours) < 2 and len(theirs) < 2:
         return None
@@ -127,19 +131,22 @@ def equal_time_ratio(ours: list[tuple[float, float]], theirs: list[tuple[float, 
 
 
 def speed_up(ours: list[tuple[float, float]], theirs: list[tuple[float, float]]) -> float | None:
-    """Time(theirs)/time(ours) at equal error, geometric mean over the errors that both reach: the horizontal distance of the curves."""
+    """Returns the geometric mean of time(theirs)/time(ours) at equal error, over the errors that both reach."""
     return equal_time_ratio([(error, time) for time, error in theirs], [(error, time) for time, error in ours])
 
 
 def slope(curve: list[tuple[float, float]]) -> float | None:
-    """Exponent of error against CPU time over the last decade of time, least squares in log-log; -1 for an unbiased estimator."""
+    """Returns the exponent of error against CPU time over the last decade of time.
+
+    It is -1 for an unbiased estimator.
+    """
     points = np.log(np.array(sorted(curve)))
     points = points[points[:, 0] >= points[-1, 0] - np.log(10.0) - 1e-9]
     return float(np.polyfit(points[:, 0], points[:, 1], 1)[0]) if len(points) > 1 else None
 
 
 def _interpolate(times: np.ndarray, curve: np.ndarray) -> np.ndarray:
-    """Piecewise linear, with the end segments continued."""
+    """Interpolates linearly and continues the end segments."""
     values = np.interp(times, curve[:, 0], curve[:, 1])
     if len(curve) < 2:
         return values

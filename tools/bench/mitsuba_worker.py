@@ -1,7 +1,8 @@
-"""Renders jobs of the benchmark with Mitsuba 3: a scene of twin.py, the same jobs and answers as worker.py. Runs in .venv/bench.
+"""Renders jobs of worker.py with Mitsuba 3, from a scene of mitsuba_scene.py. Runs in .venv/bench.
 
-The path tracer runs vectorised where its compiler is there (LLVM of tools/setup/debian-bench.txt), about three times as fast as its scalar
-variant. Loading the scene counts, as export and build do elsewhere. Pixels are filtered by a box: there is no Blackman-Harris here.
+The path tracer is vectorized if LLVM is installed (tools/setup/debian-bench.txt), which is about three times as fast as
+its scalar variant. Loading the scene counts, as export and build do in Blender. The pixel filter is a box, because
+Mitsuba has no Blackman-Harris filter.
 """
 
 from __future__ import annotations
@@ -13,12 +14,13 @@ import os
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import memory
 import numpy as np
 from answers import Answers
 
-PASS_SAMPLES = 64  # at most at once: all paths of a pass are in memory together
+PASS_SAMPLES = 64  # maximum of one pass, whose paths are all in memory at the same time
 
 for library in sorted(glob.glob("/usr/lib/*/libLLVM.so.19.1")):
     os.environ.setdefault("DRJIT_LIBLLVM_PATH", library)
@@ -26,7 +28,7 @@ import mitsuba as mi  # noqa: E402
 
 
 def set_variant() -> str:
-    """The vectorised variant, tried out; else the scalar one."""
+    """Selects the vectorized variant, or the scalar one if that does not load."""
     for variant in ("llvm_ad_rgb", "scalar_rgb"):
         try:
             mi.set_variant(variant)
@@ -41,8 +43,11 @@ def load(path: str, width: int, height: int) -> mi.Scene:
     facts = json.loads(str(stored["facts"]))
     scene = {
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": facts["max_bounces"] + 2},
-    }  # it counts the camera's and the lamp's segment
+        "integrator": {
+            "type": "path",
+            "max_depth": facts["max_bounces"] + 2,
+        },  # counts the segments to camera and light
+    }
     scene["sensor"] = sensor(facts["camera"], width, height)
     if max(facts["world"]) > 0.0:
         scene["world"] = {"type": "constant", "radiance": {"type": "rgb", "value": facts["world"]}}
@@ -51,19 +56,22 @@ def load(path: str, width: int, height: int) -> mi.Scene:
     return mi.load_dict(scene)
 
 
-def sensor(camera: dict, width: int, height: int) -> dict:
+def sensor(camera: dict[str, Any], width: int, height: int) -> dict[str, Any]:
     matrix = np.array(camera["matrix"])
     origin = matrix[:3, 3]
-    to_world = mi.ScalarTransform4f().look_at(origin.tolist(), (origin - matrix[:3, 2]).tolist(), matrix[:3, 1].tolist())
+    to_world = mi.ScalarTransform4f().look_at(
+        origin.tolist(), (origin - matrix[:3, 2]).tolist(), matrix[:3, 1].tolist()
+    )
     film = {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb", "component_format": "float32"}
     film["rfilter"] = {"type": "box"}
     return {
         "type": "perspective", "to_world": to_world, "fov": float(np.degrees(camera["angle_x"])), "fov_axis": "x",
-        "near_clip": camera["clip_start"], "far_clip": camera["clip_end"], "film": film, "sampler": {"type": "multijitter"},
+        "near_clip": camera["clip_start"], "far_clip": camera["clip_end"],
+        "film": film, "sampler": {"type": "multijitter"},
     }  # fmt: skip
 
 
-def mesh(name: str, vertices: np.ndarray, triangles: np.ndarray, material: dict) -> mi.Mesh:
+def mesh(name: str, vertices: np.ndarray, triangles: np.ndarray, material: dict[str, Any]) -> mi.Mesh:
     properties = mi.Properties()
     properties["bsdf"] = mi.load_dict(bsdf(material))
     if material["kind"] == "emission":
@@ -76,7 +84,7 @@ def mesh(name: str, vertices: np.ndarray, triangles: np.ndarray, material: dict)
     return made
 
 
-def bsdf(material: dict) -> dict:
+def bsdf(material: dict[str, Any]) -> dict[str, Any]:
     color = {"type": "rgb", "value": material["color"]}
     if material["kind"] == "glass":
         return {
@@ -93,7 +101,7 @@ def bsdf(material: dict) -> dict:
     return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
 
 
-def render(job: dict, path: str, width: int, height: int) -> dict:
+def render(job: dict[str, Any], path: str, width: int, height: int) -> dict[str, Any]:
     memory.reset_peak()
     wall, cpu = time.perf_counter(), time.process_time()
     scene = load(path, width, height)
@@ -101,7 +109,11 @@ def render(job: dict, path: str, width: int, height: int) -> dict:
     for start in range(0, job["samples"], PASS_SAMPLES):
         count = min(PASS_SAMPLES, job["samples"] - start)
         image += np.array(mi.render(scene, spp=count, seed=(job["seed"] << 16) + start)) * (count / job["samples"])
-    answer = {"cpu": time.process_time() - cpu, "wall": time.perf_counter() - wall, "peak_memory_bytes": memory.peak_bytes()}
+    answer = {
+        "cpu": time.process_time() - cpu,
+        "wall": time.perf_counter() - wall,
+        "peak_memory_bytes": memory.peak_bytes(),
+    }
     np.save(job["out"], image.astype(np.float32))
     return answer
 

@@ -1,5 +1,7 @@
-"""The part of the report about flicker along the components' own ways: ratios of runs of one version alone, since the pixels that count
-may be others in another one."""
+"""The part of the report about flicker along the motion of components.
+
+Only runs of the same commit are compared, because another commit may measure other pixels.
+"""
 
 from __future__ import annotations
 
@@ -12,21 +14,24 @@ import numpy as np
 from animation_variants import Variant, of_row
 from document import Block, Table, Text, number
 from motion_modes import FLICKER, MODES, SOLVERS
+from records import Row
 from results import Point, SceneResults
 
-HALF, WORSE = 0.5, 1.02  # F over that along surfaces alone: aim, and what no scene may exceed
-F, RELMSE = "flicker_own", "relmse"
+TARGET, MAXIMUM = 0.5, 1.02  # ratios of F: the target, and what no scene may exceed
+F, RELMSE = "flicker_component", "relmse"
 LOADED = "loaded"
+# Modes that a mode is compared with.
 OTHERS: dict[str, Callable[[str], str]] = {
     "windows": motion_modes.compared_with,
     "components along surfaces": motion_modes.along_surfaces,
 }
-MEASURES = {F: "F", RELMSE: "relMSE"}
+LABELS = {F: "F", RELMSE: "relMSE"}
 
-Rows = list[dict]
+Rows = list[Row]
 
 
 def is_timed(rows: Rows) -> bool:
+    """Says whether all runs were made on an idle machine."""
     return not any(row.get(LOADED, False) for row in rows)
 
 
@@ -42,11 +47,12 @@ class Flicker(SceneResults):
         return f"{self.variant.size[0]}×{self.variant.size[1]}"
 
     def comparable(self, mode: str, other: str) -> bool:
-        versions = [{row["version"] for point in self.points.get(name, []) for row in point.rows} for name in (mode, other)]
-        return len(versions[0] | versions[1]) == 1 and all(versions)
+        """Says whether both modes were run, and with the same commit."""
+        rows = [[row for point in self.points.get(name, []) for row in point.rows] for name in (mode, other)]
+        return all(rows) and len({row["version"] for found in rows for row in found}) == 1
 
     def at_equal_samples(self, mode: str, other: str, measure: str, samples: int) -> float | None:
-        """Median over the seeds that both have."""
+        """Returns the median of the ratios over the seeds that both modes have."""
         if not self.comparable(mode, other):
             return None
         ours, theirs = (
@@ -57,13 +63,16 @@ class Flicker(SceneResults):
         return float(np.median(ratios)) if ratios else None
 
     def at_equal_time(self, mode: str, other: str, measure: str) -> float | None:
-        """Of curves of two counts or more; where times say nothing, of none."""
-        if not self.comparable(mode, other) or not all(is_timed(point.rows) for name in (mode, other) for point in self.points[name]):
+        """Returns the ratio at equal CPU time, if both were run on an idle machine."""
+        if not self.comparable(mode, other):
+            return None
+        if not all(is_timed(point.rows) for name in (mode, other) for point in self.points[name]):
             return None
         return self.ratio(mode, other, measure)
 
 
 def by_scene(rows: Rows) -> list[Flicker]:
+    """Returns the runs of each scene and variant."""
     found: dict[tuple[str, Variant], Rows] = defaultdict(list)
     for row in rows:
         if row["mode"] in FLICKER:
@@ -73,28 +82,23 @@ def by_scene(rows: Rows) -> list[Flicker]:
 
 def blocks(rows: Rows) -> list[Block]:
     scenes = by_scene(rows)
-    made: list[Block] = [Text("### Flicker along the components' own ways")]
-    if (met := bars(scenes)).rows:
-        made += [
-            Text(f"Windows of components along their own ways, over what is told, in all scenes; aims ≤ {HALF:g} and ≤ {WORSE:g}:"),
-            met,
-        ]
+    made: list[Block] = [Text("### Flicker along the motion of components")]
+    if (summaries := summary_table(scenes)).rows:
+        about = "Windows of components along their own motion, over another mode, in all scenes"
+        made += [Text(f"{about}; the target is ≤ {TARGET:g}, and no scene may exceed {MAXIMUM:g}:"), summaries]
     return [*made, Text("All runs:"), runs(scenes)]
-
-
-# ------------------------------------------------------------------------------------------------ aims
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """How a mode is compared with another one: at equal time, or at equal samples, those of the most."""
+    """A way to compare two modes: a measure, at equal CPU time or at the highest common sample count."""
 
     measure: str
     at_equal_time: bool
 
     @property
     def label(self) -> str:
-        return f"{MEASURES[self.measure]} at equal {'time' if self.at_equal_time else 'samples'}"
+        return f"{LABELS[self.measure]} at equal {'time' if self.at_equal_time else 'samples'}"
 
     def of(self, scene: Flicker, mode: str, other: str) -> float | None:
         if self.at_equal_time:
@@ -103,13 +107,25 @@ class Ratio:
         return scene.at_equal_samples(mode, other, self.measure, counts[-1]) if counts else None
 
 
-RATIOS = tuple(Ratio(measure, at_equal_time) for measure in MEASURES for at_equal_time in (True, False))
+RATIOS = tuple(Ratio(measure, at_equal_time) for measure in LABELS for at_equal_time in (True, False))
 
 
-def bars(scenes: list[Flicker]) -> Table:
-    made = Table(["solver", "over", "measure", "scenes", "median", "least", "most", f"≤ {HALF:g}", f"above {WORSE:g}"])
+def summary_table(scenes: list[Flicker]) -> Table:
+    """Table of all ratios over all scenes."""
+    columns = [
+        "solver",
+        "over",
+        "measure",
+        "scenes",
+        "median",
+        "lowest",
+        "highest",
+        f"≤ {TARGET:g}",
+        f"above {MAXIMUM:g}",
+    ]
+    made = Table(columns)
     for solver in SOLVERS:
-        mode = f"windows-parts-{solver}"
+        mode = f"windows-components-{solver}"
         for label, other in OTHERS.items():
             for ratio in RATIOS:
                 found = {name_of(scene, scenes): ratio.of(scene, mode, other(mode)) for scene in scenes}
@@ -120,39 +136,41 @@ def bars(scenes: list[Flicker]) -> Table:
 
 
 def name_of(scene: Flicker, scenes: list[Flicker]) -> str:
-    """With its size where there are several."""
+    """Names a scene, with its size if there are several sizes of it."""
     return f"{scene.name} {scene.size}" if sum(scene.name == other.name for other in scenes) > 1 else scene.name
 
 
 def summary(ratios: dict[str, float]) -> list[str]:
-    """Number of scenes, median, extremes with their scenes, and which are within the first bar and beyond the second."""
-    least, most = (choose(ratios, key=ratios.__getitem__) for choose in (min, max))
+    """Returns the cells of a row: number of scenes, median, extremes, and scenes that meet the target or exceed the
+    maximum.
+    """
+    lowest, highest = (choose(ratios, key=ratios.__getitem__) for choose in (min, max))
     cells = [str(len(ratios)), number(float(np.median(list(ratios.values()))), ".3f")]
-    cells += [f"{ratios[name]:.3f} ({name})" for name in (least, most)]
-    near = [name for name, value in ratios.items() if value <= HALF]
-    worse = [name for name, value in ratios.items() if value > WORSE]
-    return [*cells, *(", ".join(names) or "none" for names in (near, worse))]
-
-
-# ------------------------------------------------------------------------------------------------ all runs
+    cells += [f"{ratios[name]:.3f} ({name})" for name in (lowest, highest)]
+    met = [name for name, value in ratios.items() if value <= TARGET]
+    exceeding = [name for name, value in ratios.items() if value > MAXIMUM]
+    return [*cells, *(", ".join(names) or "none" for names in (met, exceeding))]
 
 
 def runs(scenes: list[Flicker]) -> Table:
-    made = Table(
-        ["scene", "pixels", "mode", "spp", "seeds", "CPU-s a frame", "F along", "where it moves", "relMSE there", "relMSE of all",
-         "F / windows", "relMSE / windows", "F / components along surfaces", "F at equal time / windows",
-         "F at equal time / components along surfaces"]
-    )  # fmt: skip
+    """Table of all runs."""
+    measures = ["CPU-s a frame", "F along", "where it moves", "relMSE there", "relMSE of all"]
+    at_samples = ["F / windows", "relMSE / windows", "F / components along surfaces"]
+    at_time = ["F at equal time / windows", "F at equal time / components along surfaces"]
+    made = Table(["scene", "pixels", "mode", "spp", "seeds", *measures, *at_samples, *at_time])
     for scene in scenes:
         for mode in (mode for mode in FLICKER if mode in scene.points):
-            made.rows += [[scene.name, scene.size, MODES[mode].label, *cells_of(scene, mode, point)] for point in scene.points[mode]]
+            made.rows += [
+                [scene.name, scene.size, MODES[mode].label, *cells_of(scene, mode, point)]
+                for point in scene.points[mode]
+            ]
     return made
 
 
 def cells_of(scene: Flicker, mode: str, point: Point) -> list[str]:
     windows, surfaces = (other(mode) for other in OTHERS.values())
     pairs = (windows, F), (windows, RELMSE), (surfaces, F)
-    names = (F, "flicker_own_moving", "relmse_smooth", RELMSE)
+    names = (F, "flicker_component_moving", "relmse_specular", RELMSE)
     return [
         str(point.samples),
         str(len(point.rows)),

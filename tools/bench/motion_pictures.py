@@ -1,33 +1,34 @@
-"""Pictures of a frame's components, of the project's own scenes: light, motion by a wheel of colours, and how much the next frame
-differs from what it predicts, a column for each component; and one component over all frames."""
+"""Pictures of components of the project's own scenes.
+
+A sheet shows each component of a frame in a column: its light, its motion by a color wheel, and the errors of the
+prediction of the next frame. A strip shows one component over all frames.
+"""
 
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 import maps
 import motion_metrics
 import numpy as np
-from motion_metrics import SMOOTH, Passes, Prediction
+from motion_metrics import SPECULAR, Passes, Prediction
+from paths import HERE, OUT, PICTURES
 from PIL import Image, ImageDraw
-from results import FOLDER
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(HERE.parent))
 import component_sheet  # noqa: E402
 
-FOLDER_NAME = "pictures"
 GAP, HEADER, WHEEL = 2, 14, 81  # pixels
-NOT_COUNTED = 64  # grey
+NOT_COUNTED = 64  # gray level of pixels that are not measured
 QUALITY = 88
 
 
 def file_name(scene: str) -> str:
-    return f"{FOLDER_NAME}/motion-{scene}.webp"
+    return f"{PICTURES}/motion-{scene}.webp"
 
 
 def strip_name(scene: str) -> str:
-    return f"{FOLDER_NAME}/motion-strip-{scene}.webp"
+    return f"{PICTURES}/motion-strip-{scene}.webp"
 
 
 def store(scene: str, passes: Passes, found: dict[str, Prediction]) -> None:
@@ -35,25 +36,30 @@ def store(scene: str, passes: Passes, found: dict[str, Prediction]) -> None:
 
 
 def store_strip(scene: str, passes: Passes) -> None:
-    """Of what most of the light that is not seen directly comes by; none where all is."""
+    """Stores the strip of the brightest reflection or refraction, if there is one."""
     if name := brightest(passes):
         _save(strip(passes, name), strip_name(scene))
 
 
 def _save(picture: Image.Image, file: str) -> None:
-    (FOLDER / FOLDER_NAME).mkdir(parents=True, exist_ok=True)
-    picture.save(FOLDER / file, quality=QUALITY, method=6)
+    (OUT / file).parent.mkdir(parents=True, exist_ok=True)
+    picture.save(OUT / file, quality=QUALITY, method=6)
 
 
 def brightest(passes: Passes) -> str:
-    light = {name: float(passes[f"Path {name}"].sum()) for name in SMOOTH if f"Path {name}" in passes}
+    """Returns the reflection or refraction with most light, or "" if there is none."""
+    light = {name: float(passes[f"Path {name}"].sum()) for name in SPECULAR if f"Path {name}" in passes}
     name = max(light, key=lambda name: light[name], default="")
     return name if light.get(name, 0.0) > 0.0 else ""
 
 
 def strip(passes: Passes, name: str) -> Image.Image:
-    """One component over all frames, and below each frame how much the next one differs from it where it is led to: by the component's
-    own motion, and by that of the surface; grey where not both lead into the picture. passes: (frames, height, width, channels)."""
+    """Draws one component over all frames, and below each frame the relative difference from the next one along the
+    motion.
+
+    The second row follows the component's own motion and the third row that of the surface; pixels are gray where
+    either leaves the picture. Passes are (frames, height, width, channels).
+    """
     white = max(float(np.percentile(passes["Combined"][..., :3], component_sheet.BRIGHTEST)), 1e-6)
     count = len(passes["Combined"])
     steps = [differences(passes, name, frame) for frame in range(count - 1)]
@@ -73,17 +79,21 @@ def strip(passes: Passes, name: str) -> Image.Image:
 
 
 def differences(passes: Passes, name: str, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Relative squared differences of the next frame by a component's own ways and by those of surfaces, and where they count."""
+    """Returns the relative squared differences from the next frame by own motion and by the surface's, and the pixels
+    that count.
+    """
     now, following = (motion_metrics.gray(passes[f"Path {name}"][at]) for at in (frame, frame + 1))
-    ways = motion_metrics.ways_of_shown(motion_metrics.of_frame(passes, frame), name)
-    own, surface = (motion_metrics.warped(following, steps) - now for steps in (ways.own, ways.surface))
+    vectors = motion_metrics.vectors_of_component(motion_metrics.of_frame(passes, frame), name)
+    own, surface = (motion_metrics.warped(following, steps) - now for steps in (vectors.own, vectors.surface))
     lit = now > motion_metrics.DARK * motion_metrics.gray(passes["Combined"][frame]).mean()
-    counts = ways.tracked & lit & np.isfinite(own) & np.isfinite(surface)
+    counts = vectors.tracked & lit & np.isfinite(own) & np.isfinite(surface)
     return *((np.where(counts, difference, 0.0) / np.maximum(now, 1e-9)) ** 2 for difference in (own, surface)), counts
 
 
 def sheet(passes: Passes, found: dict[str, Prediction]) -> Image.Image:
-    """Of the components that anything is told of, of one frame; the wheel of colours in a corner of the first one's motion."""
+    """Draws all components of a frame that have measured pixels, with the color wheel in a corner of the first one's
+    motion.
+    """
     names = [name for name, prediction in found.items() if prediction.counts.any()]
     longest = max(longest_motion(passes, name) for name in names)
     white = max(float(np.percentile(passes["Combined"][..., :3], component_sheet.BRIGHTEST)), 1e-6)
@@ -110,18 +120,18 @@ def _image(shown: np.ndarray) -> Image.Image:
 
 
 def longest_motion(passes: Passes, name: str) -> float:
-    """Of one component, from the frame before, in pixels."""
+    """Returns the longest motion of a component since the frame before, in pixels."""
     return float(np.abs(passes[f"Path {name}{motion_metrics.MOTION}"][..., :2]).max())
 
 
 def errors(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """On the scale of all error maps; what does not count is grey."""
+    """Returns errors on the scale of all error maps; pixels that do not count are gray."""
     colors = maps.COLORS(maps.SCALE(np.sqrt(np.where(counts, np.clip(squares, 0.0, 1.0), 0.0))))[..., :3]
     return np.where(counts[..., None], colors, NOT_COUNTED / 255.0)
 
 
 def wheel(longest: float) -> Image.Image:
-    """Motion to all sides, up to the longest."""
+    """Draws the color wheel of motion up to the longest one."""
     y, x = np.indices((WHEEL, WHEEL)) - WHEEL // 2
     radius = WHEEL // 2
     moved = np.stack([x, -y], axis=-1) * (longest / radius)

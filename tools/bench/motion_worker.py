@@ -1,18 +1,20 @@
-"""Renders ranges of frames with the passes of their components inside the Python module bpy: one process per scene, as animation_worker.py.
+"""Renders ranges of frames with passes of components inside the Python module bpy: one process for each scene.
 
-Reads one JSON job per line from standard input, answers with one JSON line prefixed by RESULT:
-  {"mode": "windows-parts-l2", "samples": 16, "seed": 3, "frames": [8, 13], "shutter": 0.0, "passes": [], "out": "x.npy"}
-  ->  {"cpu": 9.1, "wall": 4.7, "peak_memory_bytes": …, "seconds": [{"sample": 0.9, …}, …]}
-Stored is float32 (frames, height, width, 3), top row first; "seconds" are CPU seconds of each frame by phases. A job with "passes"
-(some of SWITCHES) stores in an .npz the picture and these by their names, of one to four channels; their time counts, too. A job with
-"scene" in place of "mode" saves the frame "frame" for the tool, with vectors. What cannot be done is {"error": "why"}.
+Reads one JSON job per line from standard input and answers each with one JSON line, prefixed by RESULT:
+  {"mode": "windows-components-l2", "samples": 16, "seed": 3, "frames": [8, 13], "shutter": 0.0, "passes": [],
+   "out": "x.npy"}
+    -> {"cpu": 9.1, "wall": 4.7, "peak_memory_bytes": ..., "seconds": [{"sample": 0.9, ...}, ...]}
+Frames are stored as float32 (frames, height, width, 3), top row first; "seconds" are CPU seconds of each frame by
+phases. A job with "passes" (some of SWITCHES) stores the picture and these passes by name in an .npz file, with one to
+four channels; their time counts, too. A job with "scene" instead of "mode" saves the frame "frame" for the tool. A job
+that cannot be done is answered by {"error": "why"}.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -22,24 +24,40 @@ import modes
 import motion_modes
 import numpy as np
 import worker
+from paths import HERE
+from worker import Answer, AnswerJob, Job
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(HERE.parent))
 import component_sheet  # noqa: E402
 
 VECTOR = "vector"
 OF_COMPONENTS = (
-    "components", "component_reflectance", "component_irradiance", "component_normal", "component_depth", "component_uv",
-    "component_index", "component_emit", "component_motion", "component_irradiance_motion",
-)  # fmt: skip
+    "components",
+    "component_reflectance",
+    "component_irradiance",
+    "component_normal",
+    "component_depth",
+    "component_uv",
+    "component_index",
+    "component_emit",
+    "component_motion",
+    "component_irradiance_motion",
+)
 SWITCHES = (VECTOR, *OF_COMPONENTS)
-FOLLOWED = ("vector", "components", "component_reflectance", "component_motion")  # what the tool's scenes are of
+FOLLOWED = (
+    "vector",
+    "components",
+    "component_reflectance",
+    "component_motion",
+)  # passes of a frame that is saved for the tool
 
 
 @contextmanager
 def options(**values: str) -> Iterator[None]:
-    """Options of the add-on, as after `--`."""
+    """Sets options of the add-on, as after `--` on the command line."""
     before = list(sys.argv)
-    sys.argv += ["--", *(text for name, value in values.items() for text in (f"--gradus-{name.replace('_', '-')}", value))]
+    pairs = ((f"--gradus-{name.replace('_', '-')}", value) for name, value in values.items())
+    sys.argv += ["--", *(text for pair in pairs for text in pair)]
     try:
         yield
     finally:
@@ -47,18 +65,18 @@ def options(**values: str) -> Iterator[None]:
 
 
 def set_passes(layer: bpy.types.ViewLayer, wanted: Collection[str]) -> None:
-    """These and no others."""
+    """Switches these passes on and all others off."""
     if unknown := set(wanted) - set(SWITCHES):
         raise ValueError(f"no passes: {', '.join(sorted(unknown))}")
     layer.use_pass_vector = VECTOR in wanted
     for name in OF_COMPONENTS:
         setattr(layer.gradus, f"use_pass_{name}", name in wanted)
-    worker.choose_file(layers=bool(wanted))
+    worker.choose_file(with_passes=bool(wanted))
 
 
-def set_up(job: dict) -> None:
+def set_up(job: Job) -> None:
     scene, layer = bpy.context.scene, bpy.context.view_layer
-    for name in motion_modes.ALONG_SURFACES.keys() & scene.gradus.bl_rna.properties.keys():
+    for name in motion_modes.ALONG_SURFACES:
         scene.gradus.property_unset(name)
     modes.apply(scene, motion_modes.MODES[job["mode"]], job["samples"], job["seed"])
     animation_worker.set_motion_blur(scene, layer, job["shutter"])
@@ -66,7 +84,7 @@ def set_up(job: dict) -> None:
     set_passes(layer, job.get("passes", ()))
 
 
-def render(job: dict, folder: Path) -> dict:
+def render(job: Job, folder: Path) -> Answer:
     set_up(job)
     stats = folder / "stats.jsonl"
     stats.unlink(missing_ok=True)
@@ -81,26 +99,27 @@ def render(job: dict, folder: Path) -> dict:
 
 
 def passes_of(files: list[Path]) -> dict[str, np.ndarray]:
-    """The picture, Vector, and all of components."""
+    """Returns the picture, Vector, and all passes of components."""
     frames = [component_sheet.read(file) for file in files]
     names = [name for name in frames[0] if name in ("Combined", "Vector") or name.startswith("Path ")]
-    return {name: np.stack([passes[name] for passes in frames])[..., : 4 if is_of_two_steps(name) else 3] for name in names}
+    stacked = {name: np.stack([passes[name] for passes in frames]) for name in names}
+    return {name: passes[..., : 4 if has_two_vectors(name) else 3] for name, passes in stacked.items()}
 
 
-def is_of_two_steps(name: str) -> bool:
+def has_two_vectors(name: str) -> bool:
     return name == "Vector" or name.endswith(" Motion")
 
 
-def save_scene(job: dict, folder: Path) -> dict:
-    """By a render of one sample: what is saved is what is rendered."""
-    set_up({"mode": "parts", "samples": 1, "seed": 0, "shutter": job["shutter"], "passes": FOLLOWED})
+def save_scene(job: Job, folder: Path) -> Answer:
+    """Renders one sample, which saves the scene for the tool on the way."""
+    set_up({"mode": "components", "samples": 1, "seed": 0, "shutter": job["shutter"], "passes": FOLLOWED})
     with options(save_scene=job["scene"]):
         answer, files = animation_worker.render_range((job["frame"], job["frame"]), folder)
     animation_worker.remove(files)
     return answer
 
 
-def open_scene(path: str, width: int, height: int) -> Callable[[dict, Path], dict]:
+def open_scene(path: str, width: int, height: int) -> AnswerJob:
     animation_worker.open_scene(path, width, height)
     bpy.context.scene.use_nodes = False
     return lambda job, folder: save_scene(job, folder) if "scene" in job else render(job, folder)

@@ -1,9 +1,11 @@
-"""Pictures of the project's own scenes for the sliders: modes at the same samples, their errors, and the converged image.
+"""Renders pictures of the project's own scenes for the report: modes at the same samples, their errors, and the
+converged image.
 
     pictures.py [--scenes a,b]
 
-Stored in docs/benchmark/pictures/ as they are displayed, one exposure per scene, with what is known of them in pictures.json. Where the
-results say that Cycles with its denoiser is ahead, bias and variance are told apart over some seeds. Nothing is timed here.
+Pictures are stored in out/bench/pictures/ as they are displayed, with one exposure per scene; pictures.json has their
+errors. Where the results say that Cycles with its denoiser has less error, maps of bias and variance over several seeds
+are added. Nothing is timed.
 """
 
 from __future__ import annotations
@@ -16,31 +18,32 @@ from typing import Any
 import behind
 import maps
 import numpy as np
+import paths
 import results
 from crops import CROP, choose_crops, window
 from document import Crop, Slider, Table, number
-from metrics import displayed, relative_squared_error, shortened, white_of
+from metrics import displayed, relative_squared_error, white_of
 from modes import MODES, REFERENCES
+from paths import OUT
 from PIL import Image
+from records import shortened
 from references import reference
 from renderers import Renderers
-from results import FOLDER
 from scenes import Scene, select
 from version import version_of_build
 
-FOLDER_NAME = "pictures"
-FACTS = FOLDER / FOLDER_NAME / "pictures.json"
+FACTS = OUT / paths.PICTURES / "pictures.json"
 SIZE, REFERENCE = (320, 180), 512  # samples of the converged image
 SAMPLES = 16
 NOISY = ("path", "cycles")
 RECONSTRUCTED = ("gradient-l2", "gradient-l1", "path-regularized", "auto", "auto-denoised", "cycles-denoised")
-LOSSLESS, NOISE, MAP = 100, 95, 80  # qualities: crops are magnified; noise hides some loss, and without any is most of the bytes
+LOSSLESS, NOISE, MAP = 100, 95, 80  # qualities of reconstructed pictures, noisy pictures and error maps
 ERROR, BIAS, DEVIATION = "-error", "-bias", "-deviation"
 
 
 @dataclass
 class Studio:
-    """One scene with its renderers."""
+    """Renders and stores the pictures of one scene."""
 
     scene: Scene
     renderers: Renderers
@@ -55,7 +58,7 @@ class Studio:
         return not why
 
     def take_pictures(self) -> dict[str, Any]:
-        """Pictures and error maps; crops and the errors in them."""
+        """Stores pictures and error maps; returns the chosen crops and the errors of whole pictures and crops."""
         white = white_of(self.reference("path")[0])
         store(displayed_bytes(self.reference("path")[0], white), self.scene, "reference")
         errors = {}
@@ -66,10 +69,13 @@ class Studio:
             store(maps.colored(errors[mode]), self.scene, mode + ERROR, MAP)
         crops = choose_crops([errors[mode] for mode in RECONSTRUCTED if mode in errors])
         parts = [(slice(None), slice(None)), *(window(*crop) for crop in crops)]
-        return {"crops": crops, "errors": {mode: [float(error[part].mean()) for part in parts] for mode, error in errors.items()}}
+        return {
+            "crops": crops,
+            "errors": {mode: [float(error[part].mean()) for part in parts] for mode, error in errors.items()},
+        }
 
-    def tell_apart(self, modes: list[str]) -> dict[str, tuple[float, float]]:
-        """Bias and variance by modes, with maps."""
+    def separate_bias(self, modes: list[str]) -> dict[str, tuple[float, float]]:
+        """Stores maps of bias and variance; returns the bias² and variance of each mode."""
         found = {}
         for mode in filter(self.works, modes):
             spread = behind.render_spread(self.renderers, mode, SAMPLES, self.reference(mode))
@@ -84,16 +90,20 @@ def displayed_bytes(image: np.ndarray, white: float) -> np.ndarray:
 
 
 def store(pixels: np.ndarray, scene: Scene, name: str, quality: int = LOSSLESS) -> None:
-    Image.fromarray(pixels).save(FOLDER / file_of(scene.name, name), lossless=quality == LOSSLESS, quality=quality, method=6)
+    Image.fromarray(pixels).save(
+        OUT / file_of(scene.name, name), lossless=quality == LOSSLESS, quality=quality, method=6
+    )
 
 
 def file_of(scene: str, name: str) -> str:
-    """Relative to the report."""
-    return f"{FOLDER_NAME}/{scene}-{name}.webp"
+    """Returns the path of a picture, relative to the report."""
+    return f"{paths.PICTURES}/{scene}-{name}.webp"
 
 
 def facts() -> dict[str, Any]:
-    """By scene: `crops`, `errors` of the whole picture and of the crops by mode, `parts` (bias² and variance) by mode."""
+    """Returns, for each scene, `crops`, `errors` of the whole picture and the crops, and `parts`, bias² and variance,
+    by mode.
+    """
     return json.loads(FACTS.read_text()) if FACTS.exists() else {}
 
 
@@ -103,13 +113,13 @@ def remember(scene: str, found: dict[str, Any]) -> None:
 
 
 def slider(scene: str) -> Slider | None:
-    """All stored pictures of a scene."""
+    """Returns a slider over all stored pictures of a scene, or None if there are none."""
     known = facts().get(scene, {})
     labels = {mode: MODES[mode].label for mode in (*NOISY, *RECONSTRUCTED)}
 
     def stored(prefix: str, suffix: str) -> dict[str, str]:
         files = {prefix + label: file_of(scene, mode + suffix) for mode, label in labels.items()}
-        return {label: file for label, file in files.items() if (FOLDER / file).exists()}
+        return {label: file for label, file in files.items() if (OUT / file).exists()}
 
     groups = {
         "pictures": {"Reference": file_of(scene, "reference")} | stored("", ""),
@@ -120,7 +130,9 @@ def slider(scene: str) -> Slider | None:
     if labels["path"] not in groups["pictures"]:
         return None
     crops = [Crop(x / SIZE[0], y / SIZE[1], SIZE[0] / CROP[0]) for x, y in known.get("crops", [])]
-    caption = f"{SAMPLES} samples per pixel, the reference {REFERENCE}. Crops are where errors of the reconstructions are furthest apart."
+    caption = (
+        f"{SAMPLES} samples per pixel; the reference has {REFERENCE}. In the crops the errors of the modes differ most."
+    )
     groups = {heading: files for heading, files in groups.items() if files}
     shown = labels["path-regularized"] if labels["path-regularized"] in groups["pictures"] else "Reference"
     return Slider(groups, caption, (labels["path"], shown), crops, "error-scale.svg" if "errors" in groups else "")
@@ -140,17 +152,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="")
     arguments = parser.parse_args()
-    (FOLDER / FOLDER_NAME).mkdir(exist_ok=True)
+    FACTS.parent.mkdir(parents=True, exist_ok=True)
     modes_behind = {scene.name: behind.modes_behind(scene) for scene in results.load()}
     for scene in (scene for scene in select(arguments.scenes) if scene.own):
-        for old in (FOLDER / FOLDER_NAME).glob(f"{scene.name}-*.webp"):
+        for old in FACTS.parent.glob(f"{scene.name}-*.webp"):
             old.unlink()
         renderers = Renderers(scene, SIZE)
         try:
             studio = Studio(scene, renderers)
             found = {"version": version_of_build()} | studio.take_pictures()
             if late := modes_behind.get(scene.name):
-                found["parts"] = studio.tell_apart([*late, behind.THEIRS])
+                found["parts"] = studio.separate_bias([*late, behind.THEIRS])
             remember(scene.name, found)
         finally:
             renderers.close()

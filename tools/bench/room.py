@@ -1,4 +1,4 @@
-"""Builds a room of rooms.py: a closed box with nine bumpy spheres under one area lamp, all of it diffuse."""
+"""Builds a room of rooms.py: a closed diffuse box with nine bumpy spheres under one area light."""
 
 from __future__ import annotations
 
@@ -6,13 +6,20 @@ import bpy
 import numpy as np
 from rooms import Room
 
-BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]  # normals outwards
+# Corners of the faces of a box, with normals outwards.
+BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 
 
 def bumpy_sphere(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles: rows of `cells` quads each, and fans at the poles, whose radius varies with the direction."""
-    polar, azimuth = np.meshgrid(np.linspace(0, np.pi, cells + 2)[1:-1], np.arange(cells) * (2 * np.pi / cells), indexing="ij")
-    direction = np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=-1).reshape(-1, 3)
+    """Returns vertices and triangles of a sphere whose radius varies with the direction: rows of `cells` quads and a
+    fan at each pole.
+    """
+    polar, azimuth = np.meshgrid(
+        np.linspace(0, np.pi, cells + 2)[1:-1], np.arange(cells) * (2 * np.pi / cells), indexing="ij"
+    )
+    direction = np.stack(
+        [np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=-1
+    ).reshape(-1, 3)
     direction = np.concatenate([direction, [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]])
     wave = np.random.default_rng(seed).normal(scale=4.0, size=(3, 4))
     radius = 0.7 * (1.0 + 0.08 * np.sin(direction @ wave + seed).sum(axis=1, keepdims=True))
@@ -22,19 +29,22 @@ def bumpy_sphere(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     top, bottom = len(direction) - 2, len(direction) - 1
     triangles = [np.stack([np.full(cells, top), ring, following], axis=1)]
     for a, b in rows:
-        triangles += [np.stack([a + ring, b + ring, b + following], axis=1), np.stack([a + ring, b + following, a + following], axis=1)]
+        triangles += [
+            np.stack([a + ring, b + ring, b + following], axis=1),
+            np.stack([a + ring, b + following, a + following], axis=1),
+        ]
     last = (cells - 1) * cells
     triangles.append(np.stack([last + ring, np.full(cells, bottom), last + following], axis=1))
     return direction * radius, np.concatenate(triangles)
 
 
 def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> list[tuple[float, float, float]]:
-    """Corners in the order of BOX_FACES."""
+    """Returns the corners of a box in the order of BOX_FACES."""
     return [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
 
 
 def build(room: Room, width: int, height: int) -> int:
-    """Replaces the open file by the room; returns its number of triangles."""
+    """Replaces the open file by the room and returns its number of triangles."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
@@ -52,8 +62,8 @@ def build(room: Room, width: int, height: int) -> int:
         glass = _material("Glass", "ShaderNodeBsdfGlass", (1.0, 1.0, 1.0, 1.0), Roughness=0.0, IOR=1.5)
         _mesh("Pane", box((-3.1, -2.8, -0.1), (3.1, -2.75, 3.1)), BOX_FACES, glass)
         triangles += 2 * len(BOX_FACES)
-    _lamp()
-    _camera()
+    _add_light()
+    _add_camera()
     return triangles
 
 
@@ -77,14 +87,14 @@ def _mesh(name: str, vertices: list, faces: list, material: bpy.types.Material) 
     _link(name, mesh)
 
 
-def _lamp() -> None:
-    data = bpy.data.lights.new("Lamp", "AREA")
+def _add_light() -> None:
+    data = bpy.data.lights.new("Light", "AREA")
     data.shape, data.size, data.energy = "SQUARE", 1.0, 300.0
-    _link("Lamp", data).location = (0.0, 0.0, 2.95)
+    _link("Light", data).location = (0.0, 0.0, 2.95)
 
 
-def _camera() -> None:
-    """From the middle of one wall, level, so that the whole picture is inside."""
+def _add_camera() -> None:
+    """Adds a level camera in the middle of one wall, so that every pixel shows the inside of the room."""
     data = bpy.data.cameras.new("Camera")
     data.lens = 24.0
     camera = _link("Camera", data)

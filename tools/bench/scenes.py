@@ -1,16 +1,16 @@
-"""The scenes of the benchmark. Real ones lie beside the project and are skipped, visibly, where they are missing."""
+"""The scenes of the still benchmark. Real scenes lie beside the repository; missing ones are skipped with a message."""
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from paths import CACHE, HERE, ROOT
+
 SAMPLES = ROOT / "sample_blends"
-MADE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "gradus" / "scenes"
+MADE = CACHE / "scenes"
 REAL = ROOT.parent / "shared" / "scenes"
 
 
@@ -18,9 +18,9 @@ REAL = ROOT.parent / "shared" / "scenes"
 class Scene:
     name: str
     path: Path
-    diffuse_interior: bool = False  # counts for the target R <= 0.5
-    own: bool = False  # pictures may be shown
-    maker: str = ""  # script that makes the file where it is missing
+    diffuse_interior: bool = False  # counts for the target of L2 on diffuse interiors
+    own: bool = False  # the project's own scene, of which pictures may be published
+    maker: str = ""  # script that makes the file if it is missing
 
 
 SCENES = [
@@ -30,7 +30,7 @@ SCENES = [
     Scene("many_lights", SAMPLES / "many_lights.blend", own=True),
     Scene("animated", SAMPLES / "animated.blend", own=True),
     Scene("textures_world", SAMPLES / "textures_world.blend", own=True),
-    Scene("faceted", MADE / "faceted.blend", own=True, maker="faceted.py"),
+    Scene("faceted", MADE / "faceted.blend", own=True, maker="make_faceted.py"),
     Scene("door-ajar", REAL / "door-ajar.blend", diffuse_interior=True),
     Scene("breakfast-room", REAL / "breakfast-room.blend", diffuse_interior=True),
     Scene("kitchen", REAL / "kitchen.blend"),
@@ -52,12 +52,12 @@ QUICK = ("cornell", "door-ajar")
 
 
 def select(names: str) -> list[Scene]:
-    """Scenes of stills."""
+    """Returns the scenes of the still benchmark by name ('a,b'), or all for ''."""
     return chosen(SCENES, names)
 
 
 def chosen(scenes: list[Scene], names: str) -> list[Scene]:
-    """Scenes by name ('a,b'), all for ''. Missing files are named on standard output."""
+    """Returns those of the scenes that are named ('a,b'), or all for '', without those whose file is missing."""
     wanted = [n for n in names.split(",") if n]
     unknown = set(wanted) - {s.name for s in scenes}
     if unknown:
@@ -65,7 +65,7 @@ def chosen(scenes: list[Scene], names: str) -> list[Scene]:
     found = [s for s in scenes if not wanted or s.name in wanted]
     for scene in found:
         if scene.maker and not scene.path.exists():
-            subprocess.run([sys.executable, str(Path(__file__).with_name(scene.maker)), str(scene.path)], check=True)
+            subprocess.run([sys.executable, str(HERE / scene.maker), str(scene.path)], check=True)
         if not scene.path.exists():
-            print(f"SKIP {scene.name}: its file is not here")
+            print(f"SKIP {scene.name}: {scene.path} does not exist")
     return [s for s in found if s.path.exists()]

@@ -1,14 +1,12 @@
-"""Bias and variance apart, from the sum of the images of all seeds so far, which is kept in the user's cache folder."""
+"""Bias and variance of a mode, from the sum of the images of all seeds, which is kept in the user's cache folder."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import numpy as np
+import paths
 from metrics import rel_mse
 
-CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "gradus" / "seeds"
+CACHE = paths.CACHE / "seeds"
 
 
 class SeedSum:
@@ -23,6 +21,7 @@ class SeedSum:
             self._seeds, self._sum = stored["seeds"].tolist(), stored["sum"].astype(np.float64)
 
     def add(self, seed: int, image: np.ndarray) -> None:
+        """Adds an image and stores the sum. A seed that is in the sum already is not added again."""
         if seed in self._seeds:
             return
         self._seeds, self._sum = [*self._seeds, seed], self._sum + image
@@ -32,13 +31,17 @@ class SeedSum:
         unfinished.rename(self._path)
 
     def errors(self, reference: np.ndarray, reference_variance: np.ndarray) -> dict[str, float]:
-        """relMSE of the mean over K seeds. With the mean relMSE of the seeds it gives variance and bias: bias_and_variance()."""
+        """Returns relMSE of the mean over K seeds. With the mean relMSE of the seeds it gives bias_and_variance()."""
         mean = self._sum / len(self._seeds)
-        return {"seeds_in_mean": len(self._seeds), "relmse_of_mean": rel_mse(np.asarray(mean), reference, reference_variance)}
+        error = rel_mse(np.asarray(mean), reference, reference_variance)
+        return {"seeds_in_mean": len(self._seeds), "relmse_of_mean": error}
 
 
 def bias_and_variance(mean_error: float, error_of_mean: float, count: int) -> tuple[float, float] | None:
-    """bias² and variance of one picture, both without bias: E[error of one] = b² + v and E[error of the mean of K] = b² + v/K."""
+    """Returns unbiased estimates of bias² and variance of one picture, or None for a single seed.
+
+    The expected error of one picture is b² + v, and that of the mean of K pictures is b² + v/K.
+    """
     if count < 2:
         return None
     variance = (mean_error - error_of_mean) * count / (count - 1)

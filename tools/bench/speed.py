@@ -1,108 +1,84 @@
-"""CPU time of a sample in the room (room.py): Gradus against Cycles, and gradients against plain path tracing.
+"""Measures the CPU time of a sample in a room (room.py): Gradus against Cycles, and gradients against plain paths.
 
-    speed.py [--rooms room-1k,room-2m] [--width 1280] [--repeats 3] [--modes path,cycles] [--minutes 60]
+    speed.py [--rooms room-1k,room-2m] [--width 1280] [--repeats 3] [--minutes 60]
 
-The measure is the slope of the process's CPU time between 4 and 16 samples of four bounces, so that export and build drop out. All modes
-and both hosts take turns, repeat by repeat; what counts are the ratios inside one repeat. Every render is appended to
-docs/benchmark/speed.jsonl; what is there for this version is not run again. The table: speed_report.py.
+The measure is the slope of the process's CPU time between 4 and 16 samples, so that export and build drop out. Modes
+take turns, repeat by repeat; ratios are taken within a repeat. Every render is appended to
+out/bench/results/speed.jsonl; one that is there is not repeated.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import os
-import subprocess
 import time
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
+import records
+from records import Row
+from renderers import RefusedError, Worker, blender_worker
 from rooms import ROOMS
-from scenes import ROOT
-from version import cpu_name, version_of_build
+from runs import names_of
+from version import conditions, version_of_build
 
-RESULTS = ROOT / "docs" / "benchmark" / "speed.jsonl"
-WORKER = str(Path(__file__).with_name("speed_worker.py"))
+RESULTS = records.file_of("speed")
 SAMPLES = (4, 16)
-Spread = tuple[float, float, float]
-HOSTS = {
-    "4.5": [str(ROOT / ".venv/bpy45/bin/python3"), WORKER],
-    "3.4": [os.environ.get("BLENDER") or "blender", "-b", "--factory-startup", "-noaudio", "--python", WORKER],
-}
+IDENTITY = ("room", "width", "version", "blender", "mode", "samples", "repeat")  # columns that identify a run
+Spread = tuple[float, float, float]  # median, minimum, maximum
 
 
-class Host:
-    """One Blender with the room in it."""
-
-    def __init__(self, command: list[str], room: str, size: tuple[int, int]) -> None:
-        self._process = subprocess.Popen(
-            [*command, "--", room, *map(str, size)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
-        self.facts = self._answer()
-
-    def _answer(self) -> dict:
-        assert self._process.stdout
-        for line in self._process.stdout:
-            if line.startswith("RESULT "):
-                return json.loads(line[7:])
-        raise RuntimeError(f"Blender ended with code {self._process.wait()}")
-
-    def render(self, mode: str, samples: int, seed: int) -> dict:
-        assert self._process.stdin
-        self._process.stdin.write(json.dumps({"mode": mode, "samples": samples, "seed": seed}) + "\n")
-        self._process.stdin.flush()
-        return self._answer()
-
-    def close(self) -> None:
-        if self._process.stdin:
-            self._process.stdin.close()
-        self._process.wait(timeout=60)
+def load() -> list[Row]:
+    return records.read(RESULTS)
 
 
-def load() -> list[dict]:
-    return [json.loads(line) for line in RESULTS.read_text().splitlines()] if RESULTS.exists() else []
-
-
-def measure(room: str, arguments: argparse.Namespace, deadline: float) -> None:
-    size = (arguments.width, arguments.width * 9 // 16)
-    version = version_of_build()
-    identity = ("room", "width", "version", "mode", "host", "samples", "repeat")
-    done = {tuple(row[k] for k in identity) for row in load()}
-    turns = [turn for turn in ROOMS[room].turns if not arguments.modes or turn[0] in arguments.modes]
+def jobs_of(room: str, width: int, repeats: int) -> list[Row]:
+    """Returns the runs that are not stored yet."""
+    done = {tuple(row[name] for name in IDENTITY) for row in load()}
+    fixed = {"room": room, "width": width} | conditions(version_of_build())
     jobs = [
-        {"room": room, "width": size[0], "version": version, "mode": mode, "host": host, "samples": samples, "repeat": repeat}
-        for repeat in range(arguments.repeats)
+        fixed | {"mode": mode, "samples": samples, "repeat": repeat}
+        for repeat in range(repeats)
         for samples in SAMPLES
-        for mode, host in turns
+        for mode in ROOMS[room].modes
     ]
-    jobs = [job for job in jobs if tuple(job[k] for k in identity) not in done]
-    hosts = {name: Host(HOSTS[name], room, size) for name in sorted({job["host"] for job in jobs})}
+    return [job for job in jobs if tuple(job[name] for name in IDENTITY) not in done]
+
+
+def measure(room: str, width: int, repeats: int, deadline: float) -> None:
+    jobs = jobs_of(room, width, repeats)
+    if not jobs:
+        return
+    height = width * 9 // 16
+    worker = blender_worker("speed_worker.py", room, width, height)
     try:
-        for mode, host in sorted({(job["mode"], job["host"]) for job in jobs}):  # not counted: first use loads libraries
-            hosts[host].render(mode, 1, 999)
-        for job in jobs:
+        facts = worker.answer() | {"height": height}
+        modes = [mode for mode in dict.fromkeys(job["mode"] for job in jobs) if works(worker, mode)]
+        for job in (job for job in jobs if job["mode"] in modes):
             if time.monotonic() > deadline:
                 return
-            answer = hosts[job["host"]].render(job["mode"], job["samples"], job["repeat"])
-            if "error" in answer:
-                print(f"SKIP {job['mode']} in Blender {job['host']}: {answer['error']}", flush=True)
-                continue
-            row = job | {"height": size[1], "triangles": hosts[job["host"]].facts["triangles"], "machine": cpu_name()} | answer
-            with RESULTS.open("a") as file:
-                file.write(json.dumps(row) + "\n")
-            print(f"{room:10} {job['mode']:14} {job['host']} {job['samples']:3} spp {row['cpu']:8.2f} CPU-s", flush=True)
+            answer = worker.ask({"mode": job["mode"], "samples": job["samples"], "seed": job["repeat"]})
+            records.append(job | facts | answer, RESULTS)
+            print(f"{room:12} {job['mode']:14} {job['samples']:3} spp {answer['cpu']:8.2f} CPU-s", flush=True)
     finally:
-        for host in hosts.values():
-            host.close()
+        worker.close()
+
+
+def works(worker: Worker, mode: str) -> bool:
+    """Renders one sample, which also loads libraries and is not counted."""
+    try:
+        worker.ask({"mode": mode, "samples": 1, "seed": 999})
+    except RefusedError as error:
+        print(f"SKIP {mode}: {error}", flush=True)
+        return False
+    return True
 
 
 @dataclass
 class Cost:
-    """CPU microseconds per sample of one mode in one room, one figure per repeat, and what is counted besides."""
+    """The cost of one mode in one room, by repeat where it is a time."""
 
-    per_sample: dict[int, float] = field(default_factory=dict)
-    total: dict[int, float] = field(default_factory=dict)  # CPU seconds of the larger count, export, build and what AUTO tries included
+    per_sample: dict[int, float] = field(default_factory=dict)  # CPU microseconds
+    total: dict[int, float] = field(default_factory=dict)  # CPU seconds of a whole render with the larger count
     rays: dict[str, float] = field(default_factory=dict)  # per sample
     peak_memory_bytes: int = 0
 
@@ -117,23 +93,23 @@ class Cost:
 
 
 def ratio(ours: dict[int, float], theirs: dict[int, float]) -> Spread | None:
-    """Repeat by repeat: median, lowest, highest."""
+    """Returns median, minimum and maximum of the ratios within each repeat."""
     found = [ours[repeat] / theirs[repeat] for repeat in ours.keys() & theirs.keys()]
     return (float(np.median(found)), min(found), max(found)) if found else None
 
 
-def costs(rows: list[dict]) -> dict[str, dict[tuple[str, str], Cost]]:
-    """room -> (mode, host) -> cost, of the newest version and size of each room."""
-    newest = {row["room"]: (row["version"], row["width"]) for row in rows}  # in order of time
-    rows = [row for row in rows if newest[row["room"]] == (row["version"], row["width"])]
-    table: dict[str, dict[tuple[str, str], Cost]] = {}
-    low = {(r["room"], r["mode"], r["host"], r["repeat"]): r for r in rows if r["samples"] == SAMPLES[0]}
+def costs(rows: list[Row]) -> dict[str, dict[str, Cost]]:
+    """Returns the costs by room and mode, from the commit, Blender and size that each room was measured with last."""
+    newest = {row["room"]: _conditions(row) for row in rows}
+    rows = [row for row in rows if newest[row["room"]] == _conditions(row)]
+    low = {(r["room"], r["mode"], r["repeat"]): r for r in rows if r["samples"] == SAMPLES[0]}
+    table: dict[str, dict[str, Cost]] = {}
     for row in (r for r in rows if r["samples"] == SAMPLES[-1]):
-        first = low.get((row["room"], row["mode"], row["host"], row["repeat"]))
+        first = low.get((row["room"], row["mode"], row["repeat"]))
         if first is None:
             continue
         count = row["width"] * row["height"] * (SAMPLES[-1] - SAMPLES[0])
-        cost = table.setdefault(row["room"], {}).setdefault((row["mode"], row["host"]), Cost())
+        cost = table.setdefault(row["room"], {}).setdefault(row["mode"], Cost())
         cost.per_sample[row["repeat"]] = 1e6 * (row["cpu"] - first["cpu"]) / count
         cost.total[row["repeat"]] = row["cpu"]
         cost.rays = {kind: (n - first["rays"][kind]) / count for kind, n in row.get("rays", {}).items()}
@@ -141,17 +117,20 @@ def costs(rows: list[dict]) -> dict[str, dict[tuple[str, str], Cost]]:
     return table
 
 
+def _conditions(row: Row) -> tuple[str, str, int]:
+    return row["version"], row["blender"], row["width"]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rooms", type=lambda t: t.split(","), default=list(ROOMS))
+    parser.add_argument("--rooms", type=names_of(ROOMS), default=list(ROOMS))
     parser.add_argument("--width", type=int, default=1280)
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--modes", type=lambda t: t.split(","), default=[])
     parser.add_argument("--minutes", type=float, default=600.0)
     arguments = parser.parse_args()
     deadline = time.monotonic() + 60.0 * arguments.minutes
     for room in arguments.rooms:
-        measure(room, arguments, deadline)
+        measure(room, arguments.width, arguments.repeats, deadline)
 
 
 if __name__ == "__main__":

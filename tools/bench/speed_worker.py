@@ -1,7 +1,9 @@
-"""Times renders of the room in one host: `blender -b --python speed_worker.py -- ROOM WIDTH HEIGHT`, or a Python that has bpy.
+"""Times renders of a room of rooms.py in the Python module bpy: speed_worker.py ROOM WIDTH HEIGHT
 
-Reads one JSON job per line, answers each with a line "RESULT " and JSON. Nothing is written: the pictures do not count here.
-  {"mode": "path", "samples": 4, "seed": 0}  ->  {"cpu": 1.2, "wall": 0.7, "stages": {"export": …}, "rays": {…}, "peak_memory_bytes": …}
+Sends {"triangles": n} at first, then reads one JSON job per line and answers each with a line "RESULT " and JSON. No
+file is written.
+  {"mode": "path", "samples": 4, "seed": 0}
+    -> {"cpu": 1.2, "wall": 0.7, "stages": {...}, "rays": {...}, "peak_memory_bytes": ...}
 """
 
 from __future__ import annotations
@@ -9,55 +11,41 @@ from __future__ import annotations
 import json
 import os
 import sys
-import time
-from pathlib import Path
+from typing import Any
 
 import bpy
-
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / "addon")]
-import gradus  # noqa: E402
-import memory  # noqa: E402
-import modes  # noqa: E402
-import room  # noqa: E402
-from answers import Answers  # noqa: E402
-from gradus import store  # noqa: E402
-from rooms import ROOMS  # noqa: E402
+import modes
+import room
+import worker
+from answers import Answers
+from rooms import ROOMS
 
 
-def render(job: dict, bounces: int) -> dict:
+def render(job: dict[str, Any], bounces: int) -> dict[str, Any]:
     scene = bpy.context.scene
     modes.apply(scene, modes.MODES[job["mode"]], job["samples"], job["seed"])
-    set_bounces(scene.gradus if scene.render.engine == modes.GRADUS else scene.cycles, bounces)
-    memory.reset_peak()
-    wall, cpu = time.perf_counter(), time.process_time()
-    bpy.ops.render.render()
-    answer = {"cpu": time.process_time() - cpu, "wall": time.perf_counter() - wall}
-    answer["peak_memory_bytes"] = memory.peak_bytes()
-    if scene.render.engine == modes.GRADUS:
-        stats = store.summaries[(scene.name, scene.view_layers[0].name)]
+    is_gradus = scene.render.engine == modes.GRADUS
+    for name in worker.BOUNCES:
+        setattr(scene.gradus if is_gradus else scene.cycles, name, bounces)
+    answer = worker.timed(bpy.ops.render.render)
+    if is_gradus:
+        stats = worker.store.summaries[(scene.name, scene.view_layers[0].name)]
         answer |= {"stages": stats["cpu_seconds"], "rays": stats["rays"]}
     return answer
 
 
-def set_bounces(target: bpy.types.PropertyGroup, bounces: int) -> None:
-    for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces"):
-        setattr(target, name, bounces)
-
-
 def main() -> None:
-    name, width, height = sys.argv[sys.argv.index("--") + 1 :]
+    name, width, height = sys.argv[1:]
     answers = Answers()
-    gradus.register()
-    triangles = room.build(ROOMS[name], int(width), int(height))
-    answers.send({"blender": bpy.app.version_string, "triangles": triangles})
+    worker.gradus.register()
+    answers.send({"triangles": room.build(ROOMS[name], int(width), int(height))})
     for line in sys.stdin:
         try:
             answer = render(json.loads(line), ROOMS[name].bounces)
         except (ValueError, RuntimeError) as error:  # one failed job must not end the others
             answer = {"error": str(error)}
         answers.send(answer)
-    os._exit(0)  # the 4.5 module can hang at exit
+    os._exit(0)  # the module can hang at exit
 
 
 main()

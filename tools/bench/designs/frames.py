@@ -1,4 +1,4 @@
-"""A stored frame (`gradus render -o FILE.exr`) as two half-buffers of images, differences and features. Rows as in the file, top first."""
+"""A stored frame as two half-buffers of images, differences and features. The first row is the top."""
 
 from __future__ import annotations
 
@@ -7,17 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
-LARGEST = 1e8  # what is brighter, or no number, is no light: its squares must fit
+LARGEST = 1e8  # limit of radiance, whose squares must be finite
 
 
 @dataclass(frozen=True)
 class Half:
-    """Means over half of the samples, float64 (height, width, channels)."""
+    """Means over the samples of one half-buffer, float64 (height, width, channels)."""
 
     image: np.ndarray
     dx: np.ndarray  # image at the right neighbour less image here; the last column is 0
     dy: np.ndarray  # image in the row below less image here; the last row is 0
-    features: np.ndarray  # each channel in [0, 1]: normal, albedo, d/(d + median) of the depth d, x, y, as REGULARIZED has them
+    features: (
+        np.ndarray
+    )  # each channel in [0, 1]: normal, albedo, d/(d + median) of the depth d, x, y, as REGULARIZED has them
 
 
 Frame = tuple[Half, Half]
@@ -32,7 +34,7 @@ def planes_of(path: Path) -> dict[str, np.ndarray]:
 
 
 def frame_of(planes: dict[str, np.ndarray]) -> Frame:
-    """From planes by the names of native/src/film_io/store_planes.cpp."""
+    """Returns the two half-buffers of a stored frame, from its channels by name."""
     depths = [_mean_of_samples(planes, half, f"{half}.Denoising_Depth", "V") for half in "AB"]
     median = _median_of_positive(np.concatenate(depths))
     a, b = (_half_of(planes, half, depth / (depth + median)) for half, depth in zip("AB", depths, strict=True))
@@ -40,7 +42,10 @@ def frame_of(planes: dict[str, np.ndarray]) -> Frame:
 
 
 def tidied(half: Half) -> Half:
-    """The same without what is no number, too large, or a pair without samples, for which the image's own difference stands."""
+    """Returns a half-buffer without invalid numbers: NaN and infinity become 0, and values are limited.
+
+    A difference of a pair without samples is replaced by the image's own difference.
+    """
     image = np.clip(np.nan_to_num(half.image, nan=0.0), -LARGEST, LARGEST)
     dx, dy = (
         np.clip(np.where(np.isnan(sampled), own, sampled), -2 * LARGEST, 2 * LARGEST)
@@ -55,7 +60,7 @@ def mean_of(frame: Frame) -> Half:
 
 
 def differences(image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """H^dx and H^dy of the thesis."""
+    """Returns the differences of an image to its right and lower neighbors (H^dx and H^dy of the thesis)."""
     dx, dy = np.zeros_like(image), np.zeros_like(image)
     dx[:, :-1] = image[:, 1:] - image[:, :-1]
     dy[:-1] = image[1:] - image[:-1]
@@ -71,7 +76,7 @@ def _half_of(planes: dict[str, np.ndarray], half: str, depth: np.ndarray) -> Hal
 
 
 def _mean_of_pairs(planes: dict[str, np.ndarray], half: str, offset: str) -> np.ndarray:
-    """Of the samples from this end of each pair (native/src/film/read.cpp joins both ends); NaN where there are none."""
+    """Returns the mean of the samples from one end of each pair, or NaN where there are none."""
     pairs = planes[f"{half}.{offset}.pairs.V"][:, :, None]
     return _vector(planes, f"{half}.{offset}", "RGB") / np.where(pairs > 0.0, pairs, np.nan)
 
@@ -81,7 +86,9 @@ def _mean_of_samples(planes: dict[str, np.ndarray], half: str, name: str, channe
 
 
 def _surface(planes: dict[str, np.ndarray], half: str) -> np.ndarray:
-    normal, albedo = (_mean_of_samples(planes, half, f"{half}.Denoising_{name}", "XYZ") for name in ("Normal", "Albedo"))
+    normal, albedo = (
+        _mean_of_samples(planes, half, f"{half}.Denoising_{name}", "XYZ") for name in ("Normal", "Albedo")
+    )
     return np.concatenate([0.5 + 0.5 * normal, albedo], axis=2)
 
 

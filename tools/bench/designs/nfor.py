@@ -1,6 +1,6 @@
-"""Nonlinearly weighted first-order regression (Bitterli et al. 2016): half-buffers crossed, so that no half weighs its own noise.
+"""Nonlinearly weighted first-order regression (Bitterli et al. 2016), with parameters of the authors' code (Tungsten).
 
-Numbers are those of the authors' code (Tungsten, src/denoiser).
+Each half-buffer gets its weights from the other one, so that no half is weighted by its own noise.
 """
 
 from __future__ import annotations
@@ -12,12 +12,16 @@ from .frames import Frame, mean_of
 
 RADIUS = 9  # 19×19 pixels per regression
 STRICTNESS = (0.5, 1.0)
-DAMPING = 1e-3  # share of the window's weight that holds slopes down; the authors' solver cuts small singular values
-ROWS = 6  # of the image at once: bounds memory
+DAMPING = 1e-3  # share of the window's weight that damps slopes; the authors' solver cuts small singular values instead
+ROWS = 6  # rows of the image that are fitted at once, which limits memory
 
 
 def reconstruct(frame: Frame, more_features: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
-    """more_features: further channels, of each half, that guide the *other* half, such as what gradients alone reconstruct."""
+    """Returns the reconstruction of both half-buffers.
+
+    `more_features` are further channels of each half that guide the other half, such as what gradients alone
+    reconstruct.
+    """
     colours = [half.image for half in frame]
     variance = nlm.variance_of_mean(*colours)
     own = filtered([half.features for half in frame])
@@ -33,12 +37,14 @@ def reconstruct(frame: Frame, more_features: tuple[np.ndarray, np.ndarray] | Non
 
 
 def scaled(image: np.ndarray) -> np.ndarray:
-    """About as large as features are, which damping counts on."""
+    """Scales an image to about the size of features, which the damping assumes."""
     return image / max(float(np.abs(image).mean()), np.finfo(float).tiny)
 
 
-def regressed_halves(colours: list[np.ndarray], variance: np.ndarray, features: np.ndarray, k: float) -> list[np.ndarray]:
-    """Each half with weights from the other, features[half] guiding it."""
+def regressed_halves(
+    colours: list[np.ndarray], variance: np.ndarray, features: np.ndarray, k: float
+) -> list[np.ndarray]:
+    """Returns the regression of each half with weights from the other one, guided by features[half]."""
     a, b = colours
     return [
         regressed(a, features[0], pair_weights(b, 2.0 * variance, k)),
@@ -47,7 +53,7 @@ def regressed_halves(colours: list[np.ndarray], variance: np.ndarray, features: 
 
 
 def pair_weights(guide: np.ndarray, variance: np.ndarray, k: float) -> np.ndarray:
-    """(pixels of the window, height, width)."""
+    """Returns the weights of all pixels of the window (pixels of the window, height, width)."""
 
     def at(offset: tuple[int, int]) -> np.ndarray:
         if not nlm.reached(guide.shape, *offset):
@@ -59,7 +65,10 @@ def pair_weights(guide: np.ndarray, variance: np.ndarray, k: float) -> np.ndarra
 
 
 def regressed(image: np.ndarray, features: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Fits colours around every pixel by 1 and the features' differences from it; each speaks for all pixels of its window, by weight."""
+    """Fits colors around every pixel by 1 and the features' differences from it.
+
+    Each fit predicts all pixels of its window; predictions are averaged by weight.
+    """
     height, width, channels = image.shape
     total = np.zeros((height + 2 * RADIUS, width + 2 * RADIUS, channels + 1))
     pixels, guides = (np.pad(plane, ((RADIUS, RADIUS), (RADIUS, RADIUS), (0, 0))) for plane in (image, features))
@@ -77,7 +86,7 @@ def regressed(image: np.ndarray, features: np.ndarray, weights: np.ndarray) -> n
 
 
 def _fits(colours: np.ndarray, guides: np.ndarray, centres: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """What the weighted fit of each window says of its pixels; arrays (windows, pixels of a window, channels)."""
+    """Returns the prediction of the weighted fit of each window (windows, pixels of a window, channels)."""
     rows = np.concatenate([np.ones_like(w), guides - centres.reshape(len(w), 1, -1)], axis=2)
     weighted = (w * rows).transpose(0, 2, 1)
     normal = weighted @ rows
@@ -87,14 +96,16 @@ def _fits(colours: np.ndarray, guides: np.ndarray, centres: np.ndarray, w: np.nd
 
 
 def _windows(padded: np.ndarray) -> np.ndarray:
-    """(pixels inside the margin, pixels of a window, channels)."""
+    """Returns the windows of all pixels inside the margin (pixels, pixels of a window, channels)."""
     side = 2 * RADIUS + 1
     views = np.lib.stride_tricks.sliding_window_view(padded, (side, side), axis=(0, 1))
     return views.transpose(0, 1, 3, 4, 2).reshape(-1, side * side, padded.shape[2])
 
 
 def filtered(halves: list[np.ndarray]) -> list[np.ndarray]:
-    """Non-local means of each half over 11×11 pixels with weights from the other, each channel by itself."""
+    """Returns each half filtered by non-local means over 11×11 pixels, with weights from the other half, channel by
+    channel.
+    """
     variance = 2.0 * nlm.variance_of_mean(*halves)
 
     def by(guide: np.ndarray) -> nlm.WeightAt:
@@ -105,13 +116,13 @@ def filtered(halves: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def estimated_error(candidate: list[np.ndarray], colours: list[np.ndarray], variance: np.ndarray) -> np.ndarray:
-    """Of each fit against the half that it has not seen, less that half's variance; mean over halves and channels."""
+    """Returns the error of each fit against the half that it has not seen, less the variance of that half."""
     squares = [(x - other) ** 2 - 2.0 * variance for x, other in zip(candidate, reversed(colours), strict=True)]
     return (0.5 * (squares[0] + squares[1])).mean(axis=2, keepdims=True)
 
 
 def selection(errors: list[np.ndarray], guide: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """Share of the first candidate: both the errors and the choice between them smoothed along the image."""
+    """Returns the share of the first candidate. Errors and the choice between them are smoothed along the image."""
 
     def weight(offset: tuple[int, int]) -> np.ndarray:
         return nlm.weight(nlm.distance(guide, variance, offset, 1.0, 1).mean(axis=2, keepdims=True))

@@ -1,4 +1,7 @@
-"""Non-local means with half-buffers (Rousselle, Knaus, Zwicker 2012; Rousselle, Manzi, Zwicker 2013), as chapter 8 and NFOR use it."""
+"""Non-local means with half-buffers, as chapter 8 and NFOR use it.
+
+Sources: Rousselle, Knaus, Zwicker 2012; Rousselle, Manzi, Zwicker 2013.
+"""
 
 from __future__ import annotations
 
@@ -8,30 +11,32 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, uniform_filter
 
 EPSILON = 1e-10
-WeightAt = Callable[[tuple[int, int]], np.ndarray]  # weights at an offset: (height, width, 1 or as many channels as the image)
+WeightAt = Callable[
+    [tuple[int, int]], np.ndarray
+]  # weights at an offset: (height, width, 1 or as many channels as the image)
 
 
 def window(radius: int) -> Iterator[tuple[int, int]]:
-    """Offsets (dy, dx) of a square, row by row."""
+    """Yields the offsets (dy, dx) of a square, row by row."""
     reach = range(-radius, radius + 1)
     return ((dy, dx) for dy in reach for dx in reach)
 
 
 def shifted(image: np.ndarray, dy: int, dx: int) -> np.ndarray:
-    """The image at p + (dy, dx), the border's pixel where that is outside."""
+    """Returns the image at p + (dy, dx); pixels outside the image are those of the border."""
     height, width = image.shape[:2]
     return image.take(np.arange(height) + dy, axis=0, mode="clip").take(np.arange(width) + dx, axis=1, mode="clip")
 
 
 def inside(shape: tuple[int, ...], dy: int, dx: int) -> np.ndarray:
-    """1 where p + (dy, dx) is in the image, else 0, shape (height, width, 1)."""
+    """Returns 1 where p + (dy, dx) is in the image, else 0 (height, width, 1)."""
     height, width = shape[:2]
     rows, columns = np.arange(height) + dy, np.arange(width) + dx
     return (((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width)))[:, :, None].astype(float)
 
 
 def reached(shape: tuple[int, ...], dy: int, dx: int) -> bool:
-    """Whether p + (dy, dx) is in the image for any p."""
+    """Says whether p + (dy, dx) is in the image for any p."""
     return abs(dy) < shape[0] and abs(dx) < shape[1]
 
 
@@ -40,17 +45,25 @@ def box(image: np.ndarray, radius: int) -> np.ndarray:
 
 
 def variance_of_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """From two halves: the larger of raw and blurred, so that it is neither noisy nor too small at outliers (thesis 8.4)."""
+    """Returns the variance of the mean of two halves: the larger of the raw and the blurred estimate (thesis 8.4).
+
+    It is then neither noisy nor too small at outliers.
+    """
     raw = 0.25 * (a - b) ** 2
     return np.maximum(raw, gaussian_filter(raw, sigma=(2.0, 2.0, 0.0), mode="nearest"))
 
 
 def distance(
-    guide: np.ndarray, variance: np.ndarray, offset: tuple[int, int], k: float, radius: int, tolerance: np.ndarray | None = None
+    guide: np.ndarray,
+    variance: np.ndarray,
+    offset: tuple[int, int],
+    k: float,
+    radius: int,
+    tolerance: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Squared difference of p and p + offset beyond their noise and over it, mean over small squares around both; per channel.
+    """Returns the squared difference of p and p + offset beyond their noise, relative to their noise, for each channel.
 
-    `tolerance` stands for the variance in the denominator.
+    It is the mean over small squares around both. `tolerance` replaces the variance in the denominator.
     """
     tolerance = variance if tolerance is None else tolerance
     squared = (guide - shifted(guide, *offset)) ** 2 - (variance + shifted(variance, *offset))
@@ -62,7 +75,7 @@ def weight(distances: np.ndarray) -> np.ndarray:
 
 
 def average(image: np.ndarray, radius: int, weight_at: WeightAt) -> np.ndarray:
-    """Weighted mean over a window."""
+    """Returns the weighted mean over a window."""
     total, weights = np.zeros_like(image), 0.0
     for offset in window(radius):
         if not reached(image.shape, *offset):

@@ -1,8 +1,9 @@
-"""Screened Poisson reconstruction with further rows on patches, by iteratively reweighted least squares around a banded Cholesky factor.
+"""Screened Poisson reconstruction with further rows for patches, by iteratively reweighted least squares.
 
-Rows of the system (thesis 8, equation 14): α I = α I^g; H I = (I^dx, I^dy); β P_p I = 0 for every patch p. What the thesis leaves to
-500 steps of conjugate gradients is solved exactly here, so that no preconditioner is judged with the method: unknowns that patches of 5×5
-couple are at most four columns apart, and one factor of 4·height + 5 bands serves both halves and all channels.
+Rows (thesis 8, equation 14): α I = α I^g; H I = (I^dx, I^dy); β P_p I = 0 for every patch p. The system is
+solved exactly by a banded Cholesky factor, where the thesis uses 500 steps of conjugate gradients, so that the result
+does not depend on a preconditioner. Patches of 5×5 couple pixels that are at most four columns apart, so that one
+factor of 4·height + 5 bands serves both halves and all channels.
 """
 
 from __future__ import annotations
@@ -18,19 +19,19 @@ from .frames import Frame, Half, differences, mean_of
 from .patches import OFFSETS, Patches
 
 REWEIGHTINGS = 5
-REWEIGHTINGS_L1 = 20  # as G-PT's code has it; the thesis does not say
+REWEIGHTINGS_L1 = 20  # as in the code of G-PT; the thesis does not say
 
 
 class Reweighting(Enum):
-    """What line 14 of figure 4 gives, 1/‖e‖; the value is its power in AᵀW²A."""
+    """How the weights of line 14 of figure 4, 1/‖e‖, are used; the value is their power in AᵀW²A."""
 
-    PRINTED = 2  # W: a row says the same at any residual, which is no L1 norm
+    PRINTED = 2  # W; a row then contributes the same at any residual, which is no L1 norm
     L1 = 1  # W², as in the authors' released solver
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Squares of the diagonal of W, one for the channels together."""
+    """Squares of the diagonal of W, shared by all channels."""
 
     pixel: np.ndarray  # (height, width)
     dx: np.ndarray
@@ -39,7 +40,9 @@ class Weights:
 
 
 class Stencil:
-    """A symmetric matrix between pixels: for every offset (dy, dx) to the right, or straight down, an image of coefficients."""
+    """A symmetric matrix between pixels: an image of coefficients for every offset (dy, dx) to the right or straight
+    down.
+    """
 
     def __init__(self, height: int, width: int) -> None:
         self._shape = height, width
@@ -49,7 +52,7 @@ class Stencil:
         self._images[offset][rows, columns] += values
 
     def band(self) -> np.ndarray:
-        """LAPACK's lower form, pixels numbered column by column."""
+        """Returns LAPACK's lower banded form, with pixels numbered column by column."""
         height, width = self._shape
         steps = {(dy, dx): dx * height + dy for dy, dx in self._images}
         band = np.zeros((max(steps.values()) + 1, height * width))
@@ -59,7 +62,7 @@ class Stencil:
 
 
 def normal_matrix(weights: Weights, alpha: float, beta: float, patches: Patches | None) -> Stencil:
-    """A^T W² A (equation 10)."""
+    """Returns AᵀW²A (equation 10)."""
     height, width = weights.pixel.shape
     stencil = Stencil(height, width)
     everything = slice(None)
@@ -78,7 +81,7 @@ def normal_matrix(weights: Weights, alpha: float, beta: float, patches: Patches 
 
 
 def right_side(half: Half, weights: Weights, alpha: float) -> np.ndarray:
-    """A^T W² b (equation 4, with the α² that follows from equation 3)."""
+    """Returns AᵀW²b (equation 4, with the α² that follows from equation 3)."""
     side = alpha**2 * weights.pixel[:, :, None] * half.image
     x, y = weights.dx[:, :-1, None] * half.dx[:, :-1], weights.dy[:-1, :, None] * half.dy[:-1]
     side[:, 1:] += x
@@ -88,10 +91,14 @@ def right_side(half: Half, weights: Weights, alpha: float) -> np.ndarray:
     return side
 
 
-def solve(halves: tuple[Half, ...], weights: Weights, alpha: float, beta: float = 0.0, patches: Patches | None = None) -> list[np.ndarray]:
-    """Least squares with these weights: the same linear operator for all halves."""
+def solve(
+    halves: tuple[Half, ...], weights: Weights, alpha: float, beta: float = 0.0, patches: Patches | None = None
+) -> list[np.ndarray]:
+    """Returns the least-squares solution of each half with the same weights, so with the same linear operator."""
     height, width, channels = halves[0].image.shape
-    factor = cholesky_banded(normal_matrix(weights, alpha, beta, patches).band(), lower=True, overwrite_ab=True, check_finite=False)
+    factor = cholesky_banded(
+        normal_matrix(weights, alpha, beta, patches).band(), lower=True, overwrite_ab=True, check_finite=False
+    )
     sides = np.concatenate([right_side(half, weights, alpha) for half in halves], axis=2)
     unknowns = cho_solve_banded((factor, True), sides.transpose(1, 0, 2).reshape(height * width, -1))
     images = unknowns.reshape(width, height, -1).transpose(1, 0, 2)
@@ -99,20 +106,25 @@ def solve(halves: tuple[Half, ...], weights: Weights, alpha: float, beta: float 
 
 
 def equal_weights(half: Half, patches: Patches | None) -> Weights:
-    """W of the first step."""
+    """Returns W of the first step."""
     ones = np.ones(half.image.shape[:2])
     return Weights(ones, ones, ones, None if patches is None else np.ones((ones.size, len(OFFSETS))))
 
 
 def reweighted(
-    half: Half, image: np.ndarray, step: int, alpha: float, beta: float, patches: Patches | None, reweighting: Reweighting
+    half: Half,
+    image: np.ndarray,
+    step: int,
+    alpha: float,
+    beta: float,
+    patches: Patches | None,
+    reweighting: Reweighting,
 ) -> Weights:
-    """Lines 11 to 16 of figure 4: 1/(‖e‖ + 0.05 · 0.5^(k−1)), ‖e‖ over the channels.
+    """Returns the next weights: 1/(‖e‖ + 0.05 · 0.5^(k−1)), norms over channels (figure 4, lines 11 to 16).
 
-    Rows of pixels are reweighted without patches only. With patches they stay 1 where the others have a mean of 1: set to 1 before W is
-    scaled to a mean of 1, as lines 15 and 16 have it, the scale would not matter, and α would depend on the unit of light.
+    Rows of pixels are reweighted only without patches. With patches their weight is 1, and the other rows are scaled to
+    a mean of 1. Lines 15 and 16 scale all rows together, which would make α depend on the unit of light.
     """
-
     power = reweighting.value
 
     def inverse(residual: np.ndarray) -> np.ndarray:
@@ -127,7 +139,7 @@ def reweighted(
 
 
 def l1(half: Half, alpha: float, reweighting: Reweighting) -> np.ndarray:
-    """The usual reconstruction, pixels' rows reweighted as well."""
+    """Returns the usual L1 reconstruction, in which rows of pixels are reweighted, too."""
     weights = equal_weights(half, None)
     for step in range(REWEIGHTINGS_L1):
         (image,) = solve((half,), weights, alpha)
@@ -135,8 +147,10 @@ def l1(half: Half, alpha: float, reweighting: Reweighting) -> np.ndarray:
     return image
 
 
-def regularized(frame: Frame, alpha: float, beta: float, patches: Patches, reweighting: Reweighting) -> list[np.ndarray]:
-    """POISSONREGULARIZED (figure 4): both halves by the weights of their mean."""
+def regularized(
+    frame: Frame, alpha: float, beta: float, patches: Patches, reweighting: Reweighting
+) -> list[np.ndarray]:
+    """Returns both halves, reweighted by their mean (POISSONREGULARIZED of figure 4)."""
     weights = equal_weights(frame[0], patches)
     mean = mean_of(frame)
     for step in range(REWEIGHTINGS):
